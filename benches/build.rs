@@ -34,7 +34,7 @@ fn sources() -> u64 {
     files.sort();
     let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
     for file in files {
-        // A package from a registry lacks some: its version tells them.
+        // A package from a registry lacks some files; its version identifies them.
         if let Ok(bytes) = fs::read(&file) {
             println!("cargo:rerun-if-changed={}", file.display());
             hash.add(file.to_string_lossy().as_bytes());
@@ -55,7 +55,7 @@ fn gather(folder: &Path, extension: &str, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Fowler, Noll and Vo's hash 1a: it tells versions apart and is no proof against forgery.
+/// Fowler, Noll and Vo's hash 1a: it distinguishes versions, but is not secure against forgery.
 struct Fnv(u64);
 
 impl Fnv {

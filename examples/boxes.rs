@@ -1,5 +1,5 @@
-//! Boxes that an engine has anyway: a crate falls past shelves onto a floor, and a frame of a
-//! thousand boxes is culled at once.
+//! Culling boxes that an engine already has: a crate falls past shelves onto a floor in a
+//! `BoxWorld`, and a `BoxCuller` culls a frame of a thousand boxes.
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BoxCuller, BoxWorld, Motion};
 
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
     }
 
-    // Or all boxes anew in each frame, of any aspect.
+    // Or pass all boxes in each frame, of any aspect ratio.
     let mut culler = BoxCuller::builder().threads(2).build()?;
     let spoke = |i: u16| {
         let (sin, cos) = (f32::from(i) * 0.01).sin_cos();

@@ -1,4 +1,5 @@
-//! Which of 4096 tumbling rings might touch, frame after frame: by spheres first, then by or-DOPs.
+//! Finds which of 4096 tumbling rings might touch, frame after frame: with spheres first, then with
+//! or-DOPs.
 use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec, TriangleMesh, VolumeError};
 
 /// A mesh's volumes. Poses place the mesh's own origin, wherever the mesh lies about it.

@@ -1,12 +1,13 @@
-//! Named choices: one list of names serves scene files, command-line flags, tables and JSON.
+//! Enums whose variants have names: one list of names serves scene files, command-line flags,
+//! tables and JSON.
 
 use thiserror::Error;
 
-/// A name that no choice carries.
+/// The error for an unknown name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("unknown {what} `{given}`")]
 pub struct UnknownChoice {
-    /// What was to be chosen, for example "strategy".
+    /// The kind of choice, for example "strategy".
     pub what: &'static str,
     /// The name as given.
     pub given: String,
@@ -21,7 +22,7 @@ impl UnknownChoice {
         &self.hint
     }
 
-    /// The error for `given`, with the nearest of `known` or all of them as the hint.
+    /// The error for the name `given`. Its hint is the nearest name in `known`, or all of them.
     #[must_use]
     pub fn new(what: &'static str, given: &str, known: &[&str]) -> Self {
         Self {
@@ -32,8 +33,7 @@ impl UnknownChoice {
     }
 }
 
-/// "did you mean …" when one of the known names is close to the given one, the list of all
-/// otherwise.
+/// "did you mean …" if a known name is close to the given one, otherwise the list of all names.
 #[must_use]
 pub fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
@@ -43,12 +43,11 @@ pub fn suggest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String 
     }
 }
 
-/// The known name that is close to the given one, if one is.
+/// The known name that is close to the given one, if there is one.
 #[must_use]
 pub fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let lower = given.to_lowercase().replace('_', "-");
-    // Two typing errors in a short word already make another word: allow one edit per three
-    // letters.
+    // Allow one edit per three letters: two edits in a short word already make another word.
     let allowed = given.chars().count() / 3;
     let distance = |name: &str| strsim::damerau_levenshtein(&lower, &name.replace('_', "-"));
     known
@@ -58,8 +57,8 @@ pub fn nearest<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> Option<
         .map(|(_, name)| name)
 }
 
-/// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display`, `FromStr` and serde as
-/// its name.
+/// Declares an enum of named choices with `ALL`, `NAMES`, `name`, `Display` and `FromStr`; serde
+/// reads and writes the name.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! choices {
@@ -103,7 +102,7 @@ macro_rules! choices {
 }
 pub use choices;
 
-/// Serde of a choice, as its name.
+/// Implements serde for a choice, as its name.
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 #[macro_export]
@@ -127,7 +126,7 @@ macro_rules! choices_as_text {
     };
 }
 
-/// Without the feature `serde`, nothing.
+/// Implements nothing without the feature `serde`.
 #[cfg(not(feature = "serde"))]
 #[doc(hidden)]
 #[macro_export]
@@ -136,7 +135,7 @@ macro_rules! choices_as_text {
 }
 
 #[cfg(feature = "serde")]
-/// Reads one of `names` as the value in the same place.
+/// Deserialises one of `names` as the value at the same index.
 pub struct NameVisitor<T: 'static> {
     #[doc(hidden)]
     pub what: &'static str,

@@ -1,15 +1,14 @@
-//! What is counted and timed of culling: the Nu and Nv of the paper's formula, and seconds by
-//! stage.
+//! Counters and timers of culling: the Nu and Nv of the paper's formula, and seconds per stage.
 //!
-//! A test counts when a candidate pair is handed to it, so counts are equal on every CPU, tier and
-//! thread count.
+//! A test counts when a candidate pair is passed to it, so counts are the same on every CPU, in
+//! every tier and on any number of threads.
 
 use std::ops::AddAssign;
 
 #[cfg(feature = "shapes")]
 use crate::settings::TestedVolume;
 
-/// Work done on one volume. Sums over frames.
+/// Updates and tests of one volume, summed over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VolumeCounters {
@@ -17,7 +16,7 @@ pub struct VolumeCounters {
     pub updates: u64,
     /// Nv: pairs tested.
     pub tests: u64,
-    /// Pairs that the test let through.
+    /// Pairs that the test did not reject.
     pub hits: u64,
 }
 
@@ -43,7 +42,7 @@ pub struct Counters {
     pub kdop: VolumeCounters,
     /// Oriented boxes.
     pub obb: VolumeCounters,
-    /// Pairs reported untested because the budget had ended.
+    /// Pairs reported without a test because the budget was spent.
     pub untested: u64,
     /// Pairs reported.
     pub reported: u64,
@@ -79,7 +78,7 @@ impl Counters {
 
 #[cfg(feature = "shapes")]
 impl Counters {
-    /// Those of one volume.
+    /// The counters of one volume.
     #[must_use]
     pub fn of(&self, volume: TestedVolume) -> &VolumeCounters {
         match volume {
@@ -91,7 +90,7 @@ impl Counters {
         }
     }
 
-    /// The same, to count on.
+    /// The counters of one volume, to be changed.
     pub fn of_mut(&mut self, volume: TestedVolume) -> &mut VolumeCounters {
         match volume {
             TestedVolume::Sphere => &mut self.sphere,
@@ -103,21 +102,21 @@ impl Counters {
     }
 }
 
-/// Wall time by stage, in seconds. Sums over frames, except for `construct`.
+/// Wall time per stage, in seconds, summed over frames; `construct` happens once.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Seconds {
     /// Co: building every volume, once.
     pub construct: f64,
-    /// The scene's effects; not part of culling.
+    /// The simulation's effects, which are not part of culling.
     pub effects: f64,
-    /// World-space updates.
+    /// Updating the world-space volumes.
     pub update: f64,
     /// Finding candidates and the first volume test.
     pub pair_finding: f64,
     /// or-DOP tests (with `s-dop-sequential`, timed block by block).
     pub ordop: f64,
-    /// Culling: update, pair finding and or-DOP tests. Without construction and effects.
+    /// Culling: update, pair finding and or-DOP tests, without construction and effects.
     pub total: f64,
 }
 
@@ -136,7 +135,8 @@ impl Seconds {
     }
 }
 
-/// Unordered pairs of `bodies` bodies that are not both static: all-pairs' Nv per frame.
+/// The number of unordered pairs of `bodies` bodies that are not both static: Nv per frame of the
+/// finder `all-pairs`.
 #[must_use]
 pub const fn pair_count(bodies: u64, statics: u64) -> u64 {
     (bodies * bodies.saturating_sub(1) - statics * statics.saturating_sub(1)) / 2
@@ -146,8 +146,9 @@ pub const fn pair_count(bodies: u64, statics: u64) -> u64 {
 mod tests {
     use super::*;
 
+    /// Pairs of two statics do not count.
     #[test]
-    fn pairs_of_two_statics_do_not_count() {
+    fn static_pairs_do_not_count() {
         assert_eq!(pair_count(0, 0), 0);
         assert_eq!(pair_count(5, 0), 10);
         assert_eq!(pair_count(5, 2), 9);

@@ -1,17 +1,16 @@
-//! Files, read within a limit and written whole.
+//! Reading files within a size limit, and writing files whole.
 //!
-//! What is written appears under its name only when all of it is there: it is written under a
-//! temporary name, and renamed. A crash, a full disk or a kill leaves the former file or none, and
-//! at worst a `.part` file next to it, which the next writer of that name removes. A `.part` file
-//! is locked as long as somebody writes it.
+//! A file is written under a temporary name and renamed when it is complete. A crash, a full disk
+//! or a kill leaves the former file or none, and at worst a `.part` file next to it, which the next
+//! writer of that name removes. A `.part` file is locked while it is being written.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Bytes of a file that are read unless the caller says otherwise: 1 GiB, several times the largest
-/// scanned meshes. A link to an endless device ends here.
+/// The default limit, in bytes: 1 GiB, several times the largest scanned meshes. It also ends the
+/// reading of an endless device.
 pub const MAX_BYTES: u64 = 1 << 30;
 
 /// Reads a file of at most `most` bytes.
@@ -22,7 +21,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     read_all(File::open(path)?, most)
 }
 
-/// Reads a source of at most `most` bytes to its end.
+/// Reads at most `most` bytes, up to the end of the source.
 ///
 /// # Errors
 /// As [`read`].
@@ -41,14 +40,14 @@ pub fn read_all(source: impl Read, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a UTF-8 file of at most `most` bytes.
 ///
 /// # Errors
-/// As [`read`], and [`ErrorKind::InvalidData`] for other bytes than UTF-8.
+/// As [`read`], and [`ErrorKind::InvalidData`] if the bytes are not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     let text = String::from_utf8(read(path, most)?);
     text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "the file is not UTF-8 text"))
 }
 
-/// Reads a line of at most `most` bytes and its end into `line`, which is emptied before; the
-/// number of bytes, 0 at the end.
+/// Reads a line of at most `most` bytes with its line end into `line`, whose former content is
+/// dropped. Returns the number of bytes, 0 at the end of the source.
 ///
 /// # Errors
 /// What the system says, and [`ErrorKind::FileTooLarge`] for a longer line.
@@ -66,26 +65,25 @@ pub fn read_line(source: &mut impl BufRead, most: u64, line: &mut Vec<u8>) -> io
 /// Writes a file whole.
 ///
 /// # Errors
-/// What the system says; the former file, if any, is as it was.
+/// The system's error; the former file, if any, stays as it was.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
     let mut file = Whole::create(path)?;
     file.write_all(bytes.as_ref())?;
     file.finish()
 }
 
-/// A file that is being written, and takes its name when it is finished. Dropped before, it leaves
-/// nothing.
+/// A file that is being written. It gets its name when it is finished; if it is dropped before,
+/// nothing is left of it.
 #[derive(Debug)]
 pub struct Whole {
     file: BufWriter<File>,
-    /// Where it is written, and the name that it takes; `None` for devices and pipes, which can't
-    /// be replaced.
+    /// The temporary and the final path; `None` for devices and pipes, which can't be replaced.
     part: Option<[PathBuf; 2]>,
 }
 
 impl Whole {
-    /// Starts a file. Symbolic links are followed, so that the file they lead to is replaced and
-    /// not the link.
+    /// Starts a file. Symbolic links are followed: the file that they point to is replaced, not the
+    /// link.
     ///
     /// # Errors
     /// What the system says.
@@ -119,11 +117,11 @@ impl Whole {
     /// Gives the file its name.
     ///
     /// # Errors
-    /// What the system says; the former file is as it was.
+    /// The system's error; the former file stays as it was.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         if let Some([part, target]) = &self.part {
-            // A disk that turns out to be full says so here at the latest.
+            // A full disk is reported here at the latest.
             self.file.get_ref().sync_all()?;
             fs::rename(part, target)?;
             self.part = None;
@@ -137,15 +135,15 @@ fn create_locked(part: &Path) -> io::Result<File> {
     loop {
         let file = File::create(part)?;
         let is_locked = file.lock().is_ok();
-        // Between the two, another writer may have taken it for an abandoned one.
+        // Between creating and locking, another writer may have removed it as abandoned.
         if !is_locked || part.exists() {
             return Ok(file);
         }
     }
 }
 
-/// Removes the `.part` files of a name whose writers have ended: nobody holds their lock. What
-/// can't be read or removed stays.
+/// Removes the `.part` files of a name that nobody holds a lock on, because their writers have
+/// ended. Files that can't be read or removed stay.
 fn remove_abandoned(target: &Path, name: &OsStr) {
     let directory = target.parent().filter(|path| !path.as_os_str().is_empty());
     let Ok(entries) = fs::read_dir(directory.unwrap_or(Path::new("."))) else {
@@ -186,7 +184,7 @@ impl Write for Whole {
 impl Drop for Whole {
     fn drop(&mut self) {
         if let Some([part, _]) = &self.part {
-            // What failed has said so; nobody is left to tell.
+            // The failure was already reported.
             let _ = fs::remove_file(part);
         }
     }
@@ -207,8 +205,9 @@ mod tests {
         names
     }
 
+    /// A file has its name only when it is finished.
     #[test]
-    fn a_file_has_its_name_only_when_it_is_finished() {
+    fn file_appears_when_finished() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.txt");
         let mut file = Whole::create(&path).unwrap();
@@ -249,9 +248,10 @@ mod tests {
         assert!(!at("a.txt.4000000002.part").exists());
     }
 
+    /// Devices are written to and never replaced and a full one says so.
     #[cfg(target_os = "linux")]
     #[test]
-    fn devices_are_written_to_and_never_replaced_and_a_full_one_says_so() {
+    fn devices_are_never_replaced() {
         write(Path::new("/dev/null"), "anything").unwrap();
         let full = write(Path::new("/dev/full"), "anything");
         assert_eq!(full.unwrap_err().kind(), ErrorKind::StorageFull);
@@ -259,9 +259,10 @@ mod tests {
         assert!(!kind.is_file());
     }
 
+    /// A link stays a link and permissions stay.
     #[cfg(unix)]
     #[test]
-    fn a_link_stays_a_link_and_permissions_stay() {
+    fn links_and_permissions_stay() {
         use std::os::unix::fs::PermissionsExt as _;
         let directory = tempfile::tempdir().unwrap();
         let [file, link] = ["file", "link"].map(|name| directory.path().join(name));

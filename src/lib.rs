@@ -1,14 +1,21 @@
-//! Which pairs of rigid bodies might touch? Collision culling by bounding spheres and oriented
-//! k-DOPs (S-DOP), on SIMD in every tier of the CPU, that never misses a pair.
+//! Collision culling for many rigid bodies that never misses a touching pair: a broad phase for
+//! meshes and for boxes.
+//!
+//! [`Culler`] takes the poses of all bodies and returns the pairs that might touch. It tests
+//! bounding spheres first, and oriented k-DOPs (or-DOPs) only where spheres overlap; the two
+//! together are called S-DOP. It uses SSE2, AVX2, AVX-512 or NEON, whichever the CPU has, and
+//! reports the same pairs with each. Engines and simulators put it before their narrow phase.
 //!
 //! # The promise
 //!
 //! If two posed meshes intersect in exact real arithmetic, touching included, and at least one of
-//! them may move, the pair is reported: by every [`Strategy`] but the control [`Strategy::None`],
-//! with every [`Finder`], on every CPU, for any finite poses up to 2⁶⁰ in size. Pairs that don't
-//! intersect may be reported too; strategies differ in how many, and in time. The question is who
-//! touches *now*: there is no continuous detection, and a narrow phase still has to judge what is
-//! reported.
+//! them may move, then every [`Strategy`] except the control [`Strategy::None`] reports the pair:
+//! with every [`Finder`], on every CPU, and for all finite poses up to 2⁶⁰ in size. Pairs that
+//! don't intersect may be reported too. Strategies differ in how many of those they report, and in
+//! time.
+//!
+//! The answer is about one moment. There is no continuous detection, and a narrow phase has to test
+//! the reported pairs.
 //!
 //! # A first use
 //!
@@ -37,26 +44,26 @@
 //!
 //! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of
 //! bodies; in a [`World`] they come and go, with stable ids, groups, contact margins, f64
-//! translations and events. Whoever has boxes already takes [`BoxCuller`] or [`BoxWorld`]: exactly
-//! the pairs of boxes that meet. A [`QueryIndex`] answers which bodies of a world touch a volume or
-//! lie along a line.
+//! translations and events. If you have boxes already, use [`BoxCuller`] or [`BoxWorld`]: they
+//! report exactly the pairs of boxes that meet. A [`QueryIndex`] finds the bodies of a world that
+//! touch a volume or a line.
 //!
 //! # Conventions
 //!
-//! - **Axes**: right-handed. Which one points up doesn't matter: nothing here prefers an axis.
+//! - **Axes**: right-handed. Any axis may point up.
 //! - **Rotations**: quaternions in the order (x, y, z, w), of any non-zero norm. They turn the body
-//!   frame into the world frame: a vertex p of a body stands at R(q)·p + t.
-//! - **Translations**: of the body's origin, world frame. That is the mesh's own origin, as the
-//!   file has it, unless [`Origin::Ball`] moves the centre of the smallest enclosing ball there;
-//!   [`Shape::offset`] keeps what was moved.
+//!   frame into the world frame: a vertex p of a body is at R(q)·p + t.
+//! - **Translations**: the position of the body's origin in the world frame. That origin is the
+//!   mesh's own, as the file has it, unless [`Origin::Ball`] moves it to the centre of the smallest
+//!   enclosing ball; [`Shape::offset`] says by how much.
 //! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the
 //!   mesh's size, its vertices are kept about a point near it. A [`World`] adds that offset to the
 //!   pose in f64; a [`Culler`], whose poses are f32, refuses it.
 //! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and
 //!   at most 2⁶⁰.
 //! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair
-//!   once, and its order depends on the finder and the frames so far, never on the CPU or the
-//!   number of threads; [`PairList::sorted`] gives an order of its own.
+//!   once. Its order depends on the finder and on earlier frames, never on the CPU or the number of
+//!   threads; [`PairList::sorted`] sorts it.
 //! - **Poses** are taken as anything that turns into arrays: `[f32; 4]` and `[f32; 3]`, or glam's
 //!   `Quat` and `Vec3`.
 //!
@@ -65,13 +72,12 @@
 //! ```text
 //!  mesh ──▶ volume ──▶ bodies ──▶ update ──▶ broad_phase ──▶ overlap ──▶ pairs
 //!  check    ball,      poses as   volumes    candidates      survivors   i < j
-//!           hull,      columns    into the   (who might      (who does
-//!           or-DOP                world      meet)           not miss)
+//!           hull,      columns    in the     (might          (not
+//!           or-DOP                world      meet)           separated)
 //!  ╰─────── once ──────╯          ╰───────── each frame: Culler::cull ───────╯
 //! ```
 //!
-//! [`strategy`](Strategy) names which tests run in which order; [`counters`] say how often each
-//! did.
+//! [`Strategy`] says which tests run in which order; [`counters`] count how often each ran.
 //!
 //! # Features
 //!
@@ -82,10 +88,15 @@
 //! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, OFF, `.tri` |
 //! | `serde` | settings, choices and counters as serde's data; snapshots of worlds that can be stored and sent |
 //!
-//! Every error has a `help` method: how to mend what it reports.
+//! Every error has a method `help`, which says how to mend what it reports.
 //!
-//! The crate `sdop-judge` judges any culler against the exact reference. `sdop-bench` has scenes,
-//! measurements, studies and the program `sdop`.
+//! # Related crates
+//!
+//! - `sdop-judge` checks any culler, in any language, against exact arithmetic.
+//! - `sdop-bench` has scenes, measurements, studies and the program `sdop`.
+//!
+//! The repository has a guide, `paper/guide.md`, and short recipes, `paper/how-to.md`: excluded
+//! pairs, compound bodies, rollback, coming from rapier or Bullet.
 
 #![cfg_attr(
     not(feature = "shapes"),

@@ -1,4 +1,4 @@
-//! Lists of candidate or reported pairs.
+//! [`PairList`], the list of candidate or reported pairs.
 
 mod partners;
 mod runs;
@@ -10,19 +10,18 @@ pub(crate) use sort::PairSorter;
 
 use crate::simd::MAX_WIDTH;
 
-/// Room of the smallest list that has any.
+/// The least capacity that is allocated, in pairs.
 const LEAST_CAPACITY: usize = 1024;
 
-/// Bytes that a column has taken, used or not.
+/// Bytes that a column has allocated, used or not.
 fn bytes<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()
 }
 
-/// A list of body pairs as two columns. It grows by what is needed: no pair is ever dropped for
-/// lack of memory.
+/// A list of body pairs, stored as two columns. It grows as needed: no pair is ever dropped.
 ///
-/// Kernels write a whole vector and then advance by the lanes they kept, so the columns always have
-/// [`MAX_WIDTH`] elements of room after the last pair.
+/// Kernels write a whole vector and advance by the lanes they keep, so the columns always have
+/// capacity for [`MAX_WIDTH`] elements after the last pair.
 #[derive(Clone, Debug, Default)]
 pub struct PairList {
     first: Vec<u32>,
@@ -37,7 +36,7 @@ impl PairList {
         self.len
     }
 
-    /// Whether there is none.
+    /// Whether the list is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
@@ -63,7 +62,7 @@ impl PairList {
             .map(|(&i, &j)| [i, j])
     }
 
-    /// The pairs sorted, as `pairs_sha256` and records have them.
+    /// The pairs in ascending order, as in `pairs_sha256` and records.
     #[must_use]
     pub fn sorted(&self) -> Vec<[u32; 2]> {
         let mut pairs: Vec<_> = self.iter().collect();
@@ -71,7 +70,7 @@ impl PairList {
         pairs
     }
 
-    /// Empties the list and keeps its room.
+    /// Empties the list and keeps its memory.
     pub fn clear(&mut self) {
         self.len = 0;
     }
@@ -88,7 +87,7 @@ impl PairList {
         self.append_all(std::iter::once(other));
     }
 
-    /// Appends other lists, one after the other. The list grows once, by what they take.
+    /// Appends other lists in order, with one allocation at most.
     pub(crate) fn append_all<'a>(&mut self, others: impl Iterator<Item = &'a Self> + Clone) {
         let pairs = others.clone().map(Self::len).sum::<usize>();
         if pairs == 0 {
@@ -107,7 +106,7 @@ impl PairList {
         }
     }
 
-    /// Appends another list if all pairs then are at most `limit`.
+    /// Appends another list if the result has at most `limit` pairs.
     pub(crate) fn append_up_to(&mut self, other: &Self, limit: usize) {
         if self.len + other.len <= limit {
             self.append(other);
@@ -127,7 +126,7 @@ impl PairList {
         }
     }
 
-    /// Bytes that the list has taken, used or not.
+    /// Bytes that the list has allocated, used or not.
     #[must_use]
     pub fn bytes(&self) -> usize {
         (self.first.capacity() + self.second.capacity()) * size_of::<u32>()
@@ -143,7 +142,7 @@ impl PairList {
         }
     }
 
-    /// Drops those from pair `start` on that aren't to be kept.
+    /// Drops the pairs from number `start` on for which `keep` is false.
     pub(crate) fn keep_from(&mut self, start: usize, keep: impl Fn([u32; 2]) -> bool) {
         let mut kept = start;
         for at in start..self.len {
@@ -156,7 +155,7 @@ impl PairList {
         self.len = kept;
     }
 
-    /// Both columns after the last pair, with room for `pairs` of them and a vector more.
+    /// Both columns after the last pair, with room for `pairs` more pairs and one vector.
     #[inline(always)]
     pub(crate) fn room(&mut self, pairs: usize) -> (&mut [u32], &mut [u32]) {
         let needed = self.len + pairs + MAX_WIDTH;
@@ -173,7 +172,7 @@ impl PairList {
         debug_assert!(self.len + MAX_WIDTH <= self.first.len());
     }
 
-    /// At least by an eighth, so that a list which grows pair by pair is seldom copied.
+    /// Grows by at least an eighth, so that a list that grows pair by pair is rarely copied.
     #[cold]
     fn grow(&mut self, needed: usize) {
         self.resize(needed.max(self.first.len() / 8 * 9).max(LEAST_CAPACITY));
@@ -201,8 +200,9 @@ impl FromIterator<[u32; 2]> for PairList {
 mod tests {
     use super::*;
 
+    /// A list grows past any room and keeps every pair.
     #[test]
-    fn a_list_grows_past_any_room_and_keeps_every_pair() {
+    fn growing_list_keeps_every_pair() {
         let pairs: Vec<_> = (0..5000u32).map(|i| [i, 2 * i + 1]).collect();
         let list: PairList = pairs.iter().copied().collect();
         assert_eq!(list.iter().collect::<Vec<_>>(), pairs);
@@ -212,8 +212,9 @@ mod tests {
         assert_eq!(twice.first()[9_999], 4_999);
     }
 
+    /// Pairs from one on are kept in their order.
     #[test]
-    fn pairs_from_one_on_are_kept_in_their_order() {
+    fn kept_pairs_stay_in_order() {
         let mut list: PairList = (0..9).map(|i| [i, 20 - i]).collect();
         list.keep_from(3, |[i, j]| i % 2 == 1 && j != 15);
         let kept: Vec<_> = list.iter().collect();
@@ -222,8 +223,9 @@ mod tests {
         assert_eq!(list.len(), 5);
     }
 
+    /// A list takes little more than it needs and gives it back.
     #[test]
-    fn a_list_takes_little_more_than_it_needs_and_gives_it_back() {
+    fn list_memory_is_bounded() {
         let mut list = PairList::default();
         for pair in 0..100_000 {
             list.push(pair, pair + 1);

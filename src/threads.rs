@@ -1,11 +1,12 @@
-//! The thread pool: the same results in the same order, on any number of threads.
+//! The thread pool. Results, and their order, are the same on any number of threads.
 //!
-//! Work is cut into parts by the data alone; a part's results go to buffers of its own, which are
-//! joined in the order of the parts. So lists, counters and hashes are those of one thread, to the
-//! bit.
+//! The data alone decides how work is split into parts. Each part writes its results into its own
+//! buffers, which are joined in the order of the parts. Lists, counters and hashes are therefore
+//! those of one thread, to the bit.
 //!
-//! The calling thread works too: waking another takes as long as finding the pairs of some thousand
-//! bodies. Each thread that is free takes the next part, so one that wakes late delays nothing.
+//! The calling thread works too, because waking another takes as long as finding the pairs of about
+//! a thousand bodies. Each free thread takes the next part, so a thread that wakes late delays
+//! nothing.
 
 use std::ops::Range;
 use std::sync::Mutex;
@@ -15,27 +16,28 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::simd::{Tier, in_default_mode};
 
-/// The fewest pieces of a column for which waking a thread pays.
+/// The fewest pieces of a column for which it pays to wake a thread.
 const FEWEST_PIECES: usize = 8;
 
-/// The most threads that can be asked for, the caller's included: more than machines have cores,
-/// and few enough that none of them takes seconds to start.
+/// The most threads of a pool, including the caller's: more than machines have cores, but few
+/// enough to start quickly.
 pub const MOST_THREADS: usize = 1024;
 
-/// The caller's thread, or it and a pool of others.
+/// The caller's thread, alone or with a pool of others.
 #[derive(Debug, Default)]
 pub struct Threads(Option<ThreadPool>);
 
 impl Clone for Threads {
-    /// As many threads, not the same ones: a clone may be used while the original's threads wait
-    /// for their caller. The caller's alone where the system refuses more; no result depends on it.
+    /// Starts as many threads as the original has, so that both can be used at the same time. If
+    /// the system refuses to start them, the clone runs on the caller's thread; results are the
+    /// same.
     fn clone(&self) -> Self {
         Self::new(self.threads()).unwrap_or_default()
     }
 }
 
-/// A frame's work on one thread, in nanoseconds or so (measured with AVX-512 on an Intel and
-/// rounded): by counts, so that nothing depends on the machine.
+/// An estimate of a frame's work on one thread, in nanoseconds. It is computed from counts with
+/// rounded prices (measured with AVX-512 on an Intel CPU), so that it is the same on every machine.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameWork {
     /// Volumes placed.
@@ -52,13 +54,12 @@ impl FrameWork {
     }
 }
 
-/// The least work of a frame, in nanoseconds, for which other threads are woken. Two threads take
-/// as long as one at half of that (30,000 boxes or spheres, 10,000 bodies of S-DOP, on an AMD that
-/// does nothing else: a quarter of a millisecond), and less above.
+/// The least work of a frame, in nanoseconds, for which other threads are woken. Two threads break
+/// even with one at half of that: 30,000 boxes or spheres, or 10,000 bodies of S-DOP, which take a
+/// quarter of a millisecond on an otherwise idle AMD CPU.
 pub const WORTH_WAKING: u64 = 1 << 20;
 
-/// The threads of one frame after the other: all, or the caller's alone where a frame is little
-/// work.
+/// The threads for each frame: all of them, or only the caller's if the frame is little work.
 #[derive(Clone, Debug)]
 pub struct FrameThreads {
     all: Threads,
@@ -68,8 +69,8 @@ pub struct FrameThreads {
 }
 
 impl FrameThreads {
-    /// These threads, woken for frames of so many nanoseconds ([`WORTH_WAKING`]); for all if that
-    /// is 0.
+    /// These threads, woken for frames of at least `worth_waking` nanoseconds of work
+    /// ([`WORTH_WAKING`]), or for all frames if that is 0.
     #[must_use]
     pub fn new(all: Threads, worth_waking: u64) -> Self {
         Self {
@@ -80,28 +81,29 @@ impl FrameThreads {
         }
     }
 
-    /// Says how much work the coming frame is, as far as the last one shows.
+    /// Sets the expected work of the coming frame, estimated from the last one.
     pub fn expect(&mut self, work: FrameWork) {
         self.wakes = work.nanoseconds() >= self.worth_waking;
     }
 
-    /// The threads of the frame.
+    /// The threads for this frame.
     #[must_use]
     pub fn get(&self) -> &Threads {
         if self.wakes { &self.all } else { &self.alone }
     }
 }
 
-/// What work runs on: the CPU tier that kernels are compiled for, and the threads.
+/// What work runs on: a CPU tier and a thread pool.
 #[derive(Clone, Copy, Debug)]
 pub struct Executor<'a> {
-    /// Of the kernels.
+    /// The tier that kernels use.
     pub tier: Tier,
-    /// The calling thread, or it and a pool of others.
+    /// The calling thread, alone or with a pool.
     pub pool: &'a Threads,
 }
 
-/// Threads that can't be started: more than [`MOST_THREADS`], or refused by the system.
+/// The error for threads that can't be started: more than [`MOST_THREADS`], or refused by the
+/// system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot start {threads} threads: {reason}")]
 pub struct ThreadsError {
@@ -119,10 +121,11 @@ impl ThreadsError {
 }
 
 impl Threads {
-    /// A pool of so many threads; none or one means the caller's own.
+    /// A pool of `threads` threads, including the caller's. 0 counts as 1.
     ///
     /// # Errors
-    /// More than [`MOST_THREADS`], of which none is started; the system refuses to start them.
+    /// More than [`MOST_THREADS`]; threads that the system refuses to start. No thread is left
+    /// running.
     pub fn new(threads: usize) -> Result<Self, ThreadsError> {
         if threads <= 1 {
             return Ok(Self(None));
@@ -144,7 +147,7 @@ impl Threads {
         }
     }
 
-    /// These threads with kernels of a tier.
+    /// An executor of these threads and a tier.
     #[must_use]
     pub fn executor(&self, tier: Tier) -> Executor<'_> {
         Executor { tier, pool: self }
@@ -164,8 +167,8 @@ impl Threads {
         self.share_out(is_worth_waking, items, |(index, item)| work(index, item));
     }
 
-    /// Calls `work` for consecutive pieces of a column, `size` long, with the index of each one's
-    /// first element. Less than eight pieces are the caller's own.
+    /// Calls `work` for consecutive pieces of `size` elements of a column, with the index of each
+    /// piece's first element. Fewer than eight pieces run on the caller's thread.
     pub fn pieces<T: Send>(
         &self,
         column: &mut [T],
@@ -193,8 +196,8 @@ impl Threads {
         });
     }
 
-    /// Calls `work` for consecutive ranges of 0..`len`, `size` long. Less than eight are the
-    /// caller's own.
+    /// Calls `work` for consecutive ranges of `size` numbers in 0..`len`. Fewer than eight ranges
+    /// run on the caller's thread.
     pub fn ranges(&self, len: usize, size: usize, work: impl Fn(Range<usize>) + Sync) {
         let is_worth_waking = len >= FEWEST_PIECES * size;
         let starts = (0..len).step_by(size);
@@ -202,8 +205,8 @@ impl Threads {
         self.share_out(is_worth_waking, ranges, work);
     }
 
-    /// Whether `holds` of all such ranges; those that come after one of which it doesn't aren't
-    /// asked.
+    /// Whether `holds` is true for all such ranges. Once it is false for one, no further ranges are
+    /// tested.
     pub fn all(
         &self,
         len: usize,
@@ -219,7 +222,7 @@ impl Threads {
         all.into_inner()
     }
 
-    /// Calls `work` for each item, on all threads if these are worth waking.
+    /// Calls `work` for each item, on all threads if it pays to wake them.
     fn share_out<T>(
         &self,
         is_worth_waking: bool,
@@ -235,8 +238,9 @@ impl Threads {
 
 /// Calls `work` for each item, on the calling thread and on those of the pool.
 ///
-/// A worker of another pool that waits starts that pool's next job on top of this one, and the
-/// next on top of that, until its stack ends. So a thread made for it waits in its place.
+/// If the caller is a worker of another pool, waiting here would make it start that pool's next job
+/// on top of this one, and so on until its stack overflows. Therefore a new thread waits in its
+/// place.
 fn distribute<T>(
     pool: &ThreadPool,
     items: impl Iterator<Item = T> + Send,
@@ -257,7 +261,8 @@ fn share<T>(pool: &ThreadPool, items: impl Iterator<Item = T> + Send, work: impl
     let queue = Mutex::new(items);
     // Poisoned by a panic, which the scope passes on.
     let next = || queue.lock().ok().and_then(|mut items| items.next());
-    // A worker has the mode of the thread that started it, which may be the host's.
+    // A worker inherits the floating-point mode of the thread that started it, which may be the
+    // host's.
     let work_off = || {
         in_default_mode(|| {
             while let Some(item) = next() {
@@ -285,8 +290,9 @@ mod tests {
     use super::*;
     use crate::simd::FpMode;
 
+    /// Others are woken for frames that are worth it and always for nothing.
     #[test]
-    fn others_are_woken_for_frames_that_are_worth_it_and_always_for_nothing() {
+    fn threads_wake_for_enough_work() {
         let work = |candidates| FrameWork {
             updates: 100,
             candidates,
@@ -305,8 +311,9 @@ mod tests {
         assert_eq!(always.get().threads(), 2);
     }
 
+    /// Too many threads are refused at once.
     #[test]
-    fn too_many_threads_are_refused_at_once() {
+    fn too_many_threads_are_rejected() {
         for threads in [MOST_THREADS + 1, 5_000, usize::MAX] {
             let refused = Threads::new(threads).unwrap_err().to_string();
             let wanted = format!("cannot start {threads} threads: at most 1024 can be asked for");
@@ -314,7 +321,7 @@ mod tests {
         }
     }
 
-    /// Pools that were started in another mode, and a caller that has one.
+    /// Covers pools that were started in another mode, and callers that run in one.
     #[test]
     fn work_runs_in_the_default_mode() {
         for mode in FpMode::OTHERS {
@@ -331,8 +338,9 @@ mod tests {
         }
     }
 
+    /// Ranges cover each number once on any number of threads.
     #[test]
-    fn ranges_cover_each_number_once_on_any_number_of_threads() {
+    fn ranges_cover_each_number_once() {
         for threads in [1, 3] {
             let threads = Threads::new(threads).unwrap();
             for (len, size, expected) in [(0, 4, 0), (3, 4, 1), (4, 4, 1), (33, 4, 9), (79, 8, 10)]
@@ -348,8 +356,9 @@ mod tests {
         }
     }
 
+    /// All ranges hold unless one does not wherever it is.
     #[test]
-    fn all_ranges_hold_unless_one_does_not_wherever_it_is() {
+    fn one_failing_range_is_found() {
         for threads in [1, 3] {
             let threads = Threads::new(threads).unwrap();
             let all_but = |bad| threads.all(79, 8, |range| !range.contains(&bad));
@@ -364,8 +373,9 @@ mod tests {
         assert_eq!(*asked.lock().unwrap(), [0, 8, 16], "the others are spared");
     }
 
+    /// A waiting worker of another pool starts no other job.
     #[test]
-    fn a_worker_of_another_pool_that_waits_takes_up_no_other_job() {
+    fn waiting_worker_starts_no_job() {
         thread_local!(static BUSY: Cell<bool> = const { Cell::new(false) });
         let job = || {
             assert!(!BUSY.replace(true), "a job on top of another");

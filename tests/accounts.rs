@@ -1,6 +1,5 @@
-//! What a culler keeps account of: seconds of stages that add up to those of frames, none of which
-//! is counted twice or is the caller's own; and the tests of a budget, which are spent in the order
-//! asked for.
+//! A culler's accounts: seconds of stages add up to those of frames, without counting anything
+//! twice or the caller's time; and the tests of a budget are spent in the requested order.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -46,8 +45,9 @@ fn timed(culler: &mut Culler, cull: impl FnOnce(&mut Culler)) -> (Seconds, f64) 
     (culler.seconds().since(&before), wall)
 }
 
+/// Seconds of stages add up to those of frames.
 #[test]
-fn seconds_of_stages_add_up_to_those_of_frames() {
+fn stage_seconds_add_up() {
     for strategy in [
         Strategy::Sphere,
         Strategy::SDopSequential,
@@ -85,8 +85,9 @@ fn seconds_of_stages_add_up_to_those_of_frames() {
     }
 }
 
+/// What the caller does with portions is not counted.
 #[test]
-fn what_the_caller_does_with_portions_is_not_counted() {
+fn caller_time_is_not_counted() {
     for threads in [1, 2] {
         let (mut culler, bodies) = culler(Strategy::SDopSequential, Updates::Eager, threads);
         let mut rested = Duration::ZERO;
@@ -135,7 +136,7 @@ fn is_in_order(
 
 /// Boxes in a row, whose distances are integers: what is refined, and in which order, is known.
 #[test]
-fn a_budget_of_tests_is_spent_in_the_order_asked_for() {
+fn budget_follows_the_requested_order() {
     let mesh = ProceduralShape::Box {
         x: 2.0,
         y: 9.0,
@@ -193,9 +194,9 @@ fn a_budget_of_tests_is_spent_in_the_order_asked_for() {
     }
 }
 
-/// A body that no other is near to is no candidate, whatever stands for it.
+/// A body that no other is near to is no candidate, whatever volume represents it.
 #[test]
-fn oriented_volumes_are_binned_by_their_balls() {
+fn oriented_volumes_use_ball_bins() {
     let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
     let shapes = [Shape::build(&mesh, &ShapeSpec::default()).unwrap()];
     let mut bodies = Bodies::default();

@@ -70,8 +70,9 @@ fn judge(frame: &Frame, settings: &CullSettings) -> Vec<[u32; 2]> {
     pairs.into_iter().map(|(i, j)| [i, j]).collect()
 }
 
+/// No strategy misses a pair of the reference.
 #[test]
-fn no_strategy_misses_a_pair_of_the_reference() {
+fn no_strategy_misses_a_pair() {
     let mut report = String::new();
     for &k in DirectionSet::ALL {
         for &axes in Axes::ALL {
@@ -121,7 +122,7 @@ fn every_tier_reports_the_same_list() {
 
 /// Few shapes' slabs are looked up, those of many are loaded as rows.
 #[test]
-fn the_number_of_shapes_changes_no_list() {
+fn shape_count_changes_no_list() {
     for &k in DirectionSet::ALL {
         let few = frame(13, k, Axes::Principal);
         let once = &few.shapes.built;
@@ -172,8 +173,9 @@ fn strategies_relate_as_the_paper_says() {
     }
 }
 
+/// Lazy updates change the count of updates and nothing else.
 #[test]
-fn lazy_updates_change_the_count_of_updates_and_nothing_else() {
+fn lazy_updates_only_change_counts() {
     let frame = frame(3, DirectionSet::K18, Axes::Principal);
     for &strategy in Strategy::ALL
         .iter()

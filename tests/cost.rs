@@ -61,8 +61,9 @@ fn counters(scene: &Scene, tier: Tier) -> Vec<Counts> {
     counted
 }
 
+/// Counts follow the formula and are equal on every tier.
 #[test]
-fn counts_follow_the_formula_and_are_equal_on_every_tier() {
+fn counts_equal_in_tiers() {
     let scene = scene();
     let moving = scene
         .bodies
@@ -100,8 +101,9 @@ fn counts_follow_the_formula_and_are_equal_on_every_tier() {
     }
 }
 
+/// Calibration never sees the scene it predicts.
 #[test]
-fn calibration_never_sees_the_scene_it_predicts() {
+fn calibration_is_independent_of_scene() {
     let scene = scene();
     let mut kinds = Vec::new();
     for calibration in scenes(&scene) {
@@ -119,7 +121,7 @@ fn calibration_never_sees_the_scene_it_predicts() {
 
 /// Prices belong to a kind of scene: what is peculiar to one must not enter.
 #[test]
-fn scenes_of_one_kind_share_their_calibration() {
+fn equal_kinds_share_calibration() {
     let mut other = scene();
     other.seed += 1;
     other.side = other.side.map(|side| 3.0 * side);
@@ -134,9 +136,10 @@ fn scenes_of_one_kind_share_their_calibration() {
     }
 }
 
-/// What tells prices apart: at one size hits alone vary, and tests are no multiple of bodies.
+/// Calibration can separate prices: at one size only hits vary, and tests are not proportional to
+/// bodies.
 #[test]
-fn calibration_varies_one_count_at_a_time() {
+fn calibration_varies_one_count() {
     let scene = scene();
     let mut by_size = std::collections::BTreeMap::new();
     for calibration in scenes(&scene) {
@@ -167,8 +170,9 @@ fn calibration_varies_one_count_at_a_time() {
     assert!(most > 5.0 * fewest, "{tests_per_body:?}");
 }
 
+/// Every volume gets prices and terms that add up.
 #[test]
-fn every_volume_gets_prices_and_terms_that_add_up() {
+fn prices_and_terms_add_up() {
     let scene = scene();
     let effort = Effort {
         turns: 1,

@@ -136,16 +136,18 @@ fn assert_same(settings: &CullSettings, threads: usize, bodies: usize) {
     assert_counted(taken.counters(), settings, total);
 }
 
+/// Few pairs come as the list in every way too.
 #[test]
-fn few_pairs_come_as_the_list_in_every_way_too() {
+fn few_pairs_match_the_list() {
     for settings in ways() {
         assert_same(&settings, 1, 120);
         assert_same(&settings, 3, 120);
     }
 }
 
+/// Portions are the list in every way that pairs flow.
 #[test]
-fn portions_are_the_list_in_every_way_that_pairs_flow() {
+fn portions_match_in_every_flow() {
     for settings in ways() {
         for threads in [1, 2, 3] {
             assert_same(&settings, threads, 640);
@@ -153,8 +155,9 @@ fn portions_are_the_list_in_every_way_that_pairs_flow() {
     }
 }
 
+/// Portions are the list of every finder.
 #[test]
-fn portions_are_the_list_of_every_finder() {
+fn portions_match_every_finder() {
     for &pairs in Finder::ALL {
         for strategy in [Strategy::Sphere, Strategy::SDopSequential, Strategy::KDop] {
             assert_same(&settings(strategy, pairs), 2, 640);
@@ -162,8 +165,9 @@ fn portions_are_the_list_of_every_finder() {
     }
 }
 
+/// Memory is bounded whatever the number of pairs.
 #[test]
-fn memory_is_bounded_whatever_the_number_of_pairs() {
+fn memory_of_portions_is_bounded() {
     let (shapes, bodies) = (shapes(), crowd(5000));
     for settings in ways() {
         let sorts = settings.order != Order::AsFound;
@@ -186,8 +190,9 @@ fn memory_is_bounded_whatever_the_number_of_pairs() {
     }
 }
 
+/// Memory of a crowd is counted and given back.
 #[test]
-fn memory_of_a_crowd_is_counted_and_given_back() {
+fn crowd_memory_is_freed() {
     let (shapes, bodies) = (shapes(), crowd(120));
     for settings in ways() {
         let mut culler = culler(&shapes, &bodies, &settings, 1);
@@ -202,8 +207,9 @@ fn memory_of_a_crowd_is_counted_and_given_back() {
     }
 }
 
+/// A limit is kept and an error says how many pairs there are.
 #[test]
-fn a_limit_is_kept_and_an_error_says_how_many_pairs_there_are() {
+fn pair_limit_reports_the_count() {
     let (shapes, bodies) = (shapes(), crowd(640));
     let settings = settings(Strategy::SDopSequential, Finder::Grid);
     let mut culler = culler(&shapes, &bodies, &settings, 1);

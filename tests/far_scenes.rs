@@ -9,7 +9,7 @@ use sdop::settings::{Interest, Strategy, ViewCone};
 use sdop::simd::Tier;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::simulate::{Simulation, SimulationError, Summary, run};
-use sdop_bench::tradeoff::truth::Judge;
+use sdop_bench::tradeoff::truth::ExactJudge;
 use sdop_judge::record::{FrameLine, Reader, Recorder};
 use sdop_judge::report::pose_in_text;
 use tempfile::TempDir;
@@ -115,7 +115,7 @@ fn cones_see_exact_places() {
 #[test]
 fn truth_is_of_exact_places() {
     let scene = tetrahedra(&FAR, "");
-    let judge = Judge::new(&scene.shapes).unwrap();
+    let judge = ExactJudge::new(&scene.shapes).unwrap();
     let translations = scene.fine.of(&scene.bodies);
     let meets =
         |translations: Option<&[[f64; 3]]>| judge.meetings(&scene.bodies, translations).unwrap();

@@ -121,7 +121,7 @@ fn cube(rng: &mut ChaCha8Rng, side: f32) -> [f32; 3] {
     std::array::from_fn(|_| rng.random_range(0.0..side))
 }
 
-/// 1.5 sphere partners a body, in shapes of space that starve or crowd cells.
+/// 1.5 sphere partners per body, in arrangements that starve or crowd cells.
 fn scenes() -> Vec<Scene> {
     let n = N as f32;
     let wide: Vec<f32> = (0..=20).map(|i| 1e-3 * 2f32.powf(0.5 * i as f32)).collect();
@@ -167,8 +167,9 @@ fn scenes_with_wide_bodies() -> impl Iterator<Item = Scene> {
     scenes().into_iter().chain([wide])
 }
 
+/// The grid tests few candidates beyond its output.
 #[test]
-fn the_grid_tests_few_candidates_beyond_its_output() {
+fn grid_has_few_candidates() {
     for scene in scenes() {
         let mut culler = scene.culler(Finder::Grid, Strategy::Sphere);
         let mut bodies = scene.bodies.clone();
@@ -180,8 +181,7 @@ fn the_grid_tests_few_candidates_beyond_its_output() {
         culler.cull(&bodies).unwrap();
         let after = culler.counters().sphere;
         let tests = after.tests - before.tests;
-        // A cube needs 6 a body, half of them for the 27 cells around it; 1:1000 looks through
-        // levels.
+        // A cube needs 6 per body, half of them for the 27 cells around it; 1:1000 searches levels.
         let needed = (bodies.len() + culler.pairs().len()) as u64;
         assert!(
             tests <= 12 * needed,
@@ -192,8 +192,9 @@ fn the_grid_tests_few_candidates_beyond_its_output() {
     }
 }
 
+/// No finder uses a hundred bytes per body.
 #[test]
-fn no_finder_takes_a_hundred_bytes_a_body() {
+fn finders_use_under_100_bytes() {
     for scene in scenes_with_wide_bodies() {
         for &finder in Finder::ALL {
             let mut culler = scene.culler(finder, Strategy::Sphere);

@@ -1,6 +1,5 @@
-//! Hosts change the floating-point mode: subnormal numbers are flushed, results rounded otherwise.
-//! Shapes and pairs must not vary with it, and the host must find its mode as it was, also after a
-//! panic.
+//! Hosts may change the floating-point mode: flush subnormal numbers, or round differently. Shapes
+//! and pairs must not depend on it, and the host's mode must be restored, also after a panic.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -99,8 +98,9 @@ fn culled(strategy: Strategy, finder: Finder, size: f64, threads: usize) -> Vec<
         .collect()
 }
 
+/// Shapes are the same in every mode.
 #[test]
-fn shapes_are_the_same_in_every_mode() {
+fn shapes_ignore_fp_mode() {
     for size in SIZES {
         assert_same("a shape", || {
             let shape = shape(size);
@@ -111,8 +111,9 @@ fn shapes_are_the_same_in_every_mode() {
     }
 }
 
+/// Pairs of cullers are the same in every mode.
 #[test]
-fn pairs_of_cullers_are_the_same_in_every_mode() {
+fn cullers_ignore_fp_mode() {
     for size in SIZES {
         for strategy in [Strategy::Sphere, Strategy::SDopSequential, Strategy::Aabb] {
             for &finder in Finder::ALL {
@@ -137,8 +138,9 @@ fn boxes(size: f64, frame: usize) -> Vec<Aabb> {
         .collect()
 }
 
+/// Pairs of boxes are the same in every mode.
 #[test]
-fn pairs_of_boxes_are_the_same_in_every_mode() {
+fn boxes_ignore_fp_mode() {
     for (size, threads) in SIZES.into_iter().flat_map(|size| [(size, 1), (size, 3)]) {
         for &finder in Finder::ALL {
             assert_same(&format!("boxes, {finder}, {size}"), || {
@@ -165,7 +167,7 @@ fn pairs_of_boxes_are_the_same_in_every_mode() {
 
 /// Margins and the rounding of f64 translations choose models.
 #[test]
-fn pairs_of_worlds_are_the_same_in_every_mode() {
+fn worlds_ignore_fp_mode() {
     for size in SIZES {
         assert_same("a world", || {
             let mut world = World::new(vec![shape(size)]).unwrap();
@@ -184,8 +186,9 @@ fn pairs_of_worlds_are_the_same_in_every_mode() {
     }
 }
 
+/// Single pairs are the same in every mode.
 #[test]
-fn single_pairs_are_the_same_in_every_mode() {
+fn pair_tests_ignore_fp_mode() {
     for size in SIZES {
         assert_same("single pairs", || {
             let mut test = PairTest::new(DirectionSet::K18);
@@ -198,8 +201,9 @@ fn single_pairs_are_the_same_in_every_mode() {
     }
 }
 
+/// The mode returns after an error or a panic.
 #[test]
-fn the_mode_returns_after_an_error_or_a_panic() {
+fn errors_restore_the_mode() {
     let boxes = given(|| boxes(1.0, 0));
     for mode in FpMode::OTHERS {
         mode.run(|| {

@@ -1,5 +1,5 @@
-//! Golden pair lists: what a run reports and counts is equal to the bit on every CPU, in every SIMD
-//! level and build.
+//! Golden pair lists: reported pairs and counts are equal to the bit on every CPU, in every SIMD
+//! tier and build.
 //!
 //! The hashes were recorded once and change only with the volumes, the trajectories or the deciding
 //! arithmetic. Run this test's binary under an emulated CPU to see it: `qemu-x86_64 -cpu Nehalem
@@ -46,8 +46,9 @@ fn every_strategy_reports_what_was_recorded() {
     }
 }
 
+/// Every ordop test reports what was recorded.
 #[test]
-fn every_ordop_test_reports_what_was_recorded() {
+fn every_ordop_test_matches_record() {
     for k in DirectionSet::ALL {
         let recorded = OVERLAPS.iter().any(|row| row.0 == *k);
         assert!(recorded, "k = {k}: record its list in OVERLAPS");

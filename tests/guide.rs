@@ -17,7 +17,7 @@ fn described(heading: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The keys that a scene with one wrong key is told to use instead.
+/// The keys that the error for a wrong key lists.
 fn accepted(scene: &str) -> BTreeSet<String> {
     let error = SceneFile::parse(scene, "scene.toml", Path::new("."));
     let said = error.unwrap_err().to_string();
@@ -31,8 +31,9 @@ fn accepted(scene: &str) -> BTreeSet<String> {
 
 const WRONG: &str = "zzzzzzzzzzzz = 1\n";
 
+/// The guide has every key of a scene.
 #[test]
-fn the_guide_has_every_key_of_a_scene() {
+fn guide_lists_every_scene_key() {
     let head = "name = \"a\"\nframes = 1\n";
     let bodies = "[[bodies]]\nshape = \"box\"\ncount = 1\n";
     for (heading, scene) in [
@@ -48,7 +49,7 @@ fn the_guide_has_every_key_of_a_scene() {
 
 /// A scene is shown whole before its keys are listed, and it is one.
 #[test]
-fn the_guide_shows_a_scene_that_builds() {
+fn guide_scene_builds() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("paper/guide.md");
     let guide = std::fs::read_to_string(path).unwrap();
     let (_, section) = guide.split_once("## Scene files\n").unwrap();
@@ -83,8 +84,9 @@ fn tables(directory: &Path, found: &mut Vec<std::path::PathBuf>) {
     }
 }
 
+/// The guide explains every column of every recorded table.
 #[test]
-fn the_guide_explains_every_column_of_every_recorded_table() {
+fn guide_explains_every_column() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let guide = std::fs::read_to_string(root.join("paper/guide.md")).unwrap();
     let mut found = Vec::new();

@@ -19,10 +19,10 @@ use sdop_judge::ours::rounds::{Ledger, Run, group};
 use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
 use sdop_judge::ours::{Answers, Predicate};
 
-type Variant = (DirectionSet, Axes);
+type OrDopChoice = (DirectionSet, Axes);
 
 /// Every group for every or-DOP, with its exact answers.
-fn for_all(test: impl Fn(&str, &Group, Variant, &Cases, &[Vec<Answers>]) + Sync) {
+fn for_all(test: impl Fn(&str, &Group, OrDopChoice, &Cases, &[Vec<Answers>]) + Sync) {
     let jobs: Vec<_> = FILES
         .iter()
         .flat_map(|file| variants().map(move |variant| (file, variant)))
@@ -35,8 +35,9 @@ fn for_all(test: impl Fn(&str, &Group, Variant, &Cases, &[Vec<Answers>]) + Sync)
     });
 }
 
+/// No way to cull misses a pair on the scalar tier and kernels agree on all.
 #[test]
-fn no_way_to_cull_misses_a_pair_on_the_scalar_tier_and_kernels_agree_on_all() {
+fn hard_cases_are_never_missed() {
     let faster = Tier::available()
         .into_iter()
         .filter(|tier| *tier != Tier::SCALAR);
@@ -143,8 +144,9 @@ fn known_by_construction(name: &str, group: &Group, cases: &Cases, answers: &[Ve
     }
 }
 
+/// Every group defeats a naive test and the page says so.
 #[test]
-fn every_group_defeats_a_naive_test_and_the_page_says_so() {
+fn every_group_defeats_naive_tests() {
     let naive: Vec<_> = FILES
         .par_iter()
         .map(|(name, text)| {
@@ -166,8 +168,9 @@ fn every_group_defeats_a_naive_test_and_the_page_says_so() {
     assert_eq!(recorded, page(FILES.iter().copied()).unwrap());
 }
 
+/// Every file is a group and every group has its answers.
 #[test]
-fn every_file_is_a_group_and_every_group_has_its_answers() {
+fn every_group_has_its_answers() {
     let mut files: BTreeSet<String> = BTreeSet::new();
     for entry in std::fs::read_dir("data/hard_cases").unwrap() {
         let path = entry.unwrap().path();
@@ -194,7 +197,7 @@ fn every_file_is_a_group_and_every_group_has_its_answers() {
 /// What `sdop verify` does first, on as many tiers as any CPU has: whatever else it is asked for,
 /// no cell stays empty.
 #[test]
-fn hard_cases_alone_fill_every_cell_of_the_matrix() {
+fn hard_cases_fill_the_matrix() {
     // Small cases, so that this counts turns; the others are culled by the test above.
     let small = r#"{ kind = "chain", bodies = [3] }"#;
     let any = Group::parse(&format!(
@@ -223,7 +226,7 @@ fn hard_cases_alone_fill_every_cell_of_the_matrix() {
 /// A new strategy, finder, overlap test or volume shows up here by itself: the ways are counted,
 /// not assumed.
 #[test]
-fn the_ways_have_every_strategy_finder_overlap_and_volume() {
+fn ways_cover_every_choice() {
     let mut seen = BTreeSet::new();
     for (k, axes) in variants() {
         for way in ways(k, axes) {
@@ -301,7 +304,8 @@ fn what_must_be_refused_is_refused() {
     }
 }
 
+/// An invalid group is rejected.
 #[test]
-fn a_group_that_is_none_is_refused() {
+fn invalid_group_is_rejected() {
     assert!(matches!(Group::parse("why = 3"), Err(GroupError::File(_))));
 }

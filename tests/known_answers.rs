@@ -1,5 +1,5 @@
-//! The estimators behind `sdop tradeoff` against answers that are known: from integral geometry,
-//! from the literature.
+//! The estimators of `sdop tradeoff` compared with known answers from integral geometry and from
+//! the literature.
 
 #![allow(
     clippy::unwrap_used,
@@ -44,8 +44,9 @@ fn minkowski([x, y, z]: [f64; 3]) -> f64 {
     (2.0 * volume + area * PI * (x + y + z) / (2.0 * PI)) / (32.0 * PI * radius.powi(3) / 3.0)
 }
 
+/// Boxes meet as often as their mean minkowski volume says.
 #[test]
-fn boxes_meet_as_often_as_their_mean_minkowski_volume_says() {
+fn boxes_match_minkowski_volume() {
     let tier = Tier::detect();
     for (sizes, known) in [([1.0, 1.0, 1.0], 0.505), ([1.0, 1.0, 2.0], 0.390)] {
         let exact = minkowski(sizes);
@@ -69,7 +70,7 @@ fn boxes_meet_as_often_as_their_mean_minkowski_volume_says() {
 /// its fifteen axes the box test finds 6 to 7 % of disjoint pairs colliding. His boxes are random;
 /// ours have uniform sizes, and overlapping spheres.
 #[test]
-fn dropping_the_last_nine_axes_of_an_obb_pair_keeps_six_or_seven_percent_of_disjoint_pairs() {
+fn six_axes_keep_seven_percent() {
     let mut draws = Stream::new(7, 0);
     let shapes: Vec<Shape> = (0..200)
         .map(|_| cuboid([(); 3].map(|()| draws.between(0.05, 1.0))))
@@ -94,7 +95,7 @@ fn dropping_the_last_nine_axes_of_an_obb_pair_keeps_six_or_seven_percent_of_disj
 /// that don't, or-DOPs practically never meet while the spheres don't; round ones are the exception
 /// that shows the count can be large.
 #[test]
-fn ordops_hardly_ever_meet_outside_of_their_spheres() {
+fn ordops_rarely_meet_outside_spheres() {
     for (shape, limit) in [
         ("cube", 3e-4),
         ("box 1:1:2", 3e-4),

@@ -1,6 +1,6 @@
-//! Proofs speak of code: when a function or constant that a lemma is about changes, the lemma has
-//! to be looked at. Beside each lemma, `paper/proofs/code.toml` keeps a digest of the code that it
-//! was last read with.
+//! Proofs are about code: if a function or constant of a lemma changes, the lemma has to be read
+//! again. For each lemma, `paper/proofs/code.toml` has digests of the code with which it was last
+//! compared.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 
 const TABLE: &str = "paper/proofs/code.toml";
 
-/// Set, it makes [`the_code_is_what_the_lemmas_were_read_with`] write the digests of today.
+/// Set, it makes [`lemmas_were_read_with_this_code`] write the digests of today.
 const RENEW: &str = "SDOP_LEMMAS_READ";
 
 #[derive(Deserialize)]
@@ -65,8 +65,8 @@ fn whole(text: &str, ends_with_brace: bool) -> Option<&str> {
     None
 }
 
-/// The blocks that begin with `word`, and behind it have `name` as a word of its own before `{`,
-/// `(`, `<`, `:` or a space.
+/// The blocks that begin with `word` followed by `name` as a whole word, before `{`, `(`, `<`, `:`
+/// or a space.
 fn starts<'a>(source: &'a str, word: &str, name: &str) -> impl Iterator<Item = &'a str> {
     let (word, name) = (word.to_owned(), name.to_owned());
     let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
@@ -114,8 +114,9 @@ fn digest(file: &str, name: &str) -> String {
     hash[..8].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// The code is what the lemmas were read with.
 #[test]
-fn the_code_is_what_the_lemmas_were_read_with() {
+fn lemmas_were_read_with_this_code() {
     let mut changed = Vec::new();
     let mut renewed = fs::read_to_string(TABLE).unwrap();
     for About {
@@ -149,8 +150,9 @@ fn the_code_is_what_the_lemmas_were_read_with() {
     );
 }
 
+/// Every script and every theorem is about some code.
 #[test]
-fn every_script_and_every_theorem_is_about_some_code() {
+fn every_script_names_its_code() {
     let table = table();
     assert!(table.about.iter().all(|about| !about.code.is_empty()));
     let named: BTreeSet<String> = table.about.iter().flat_map(|a| a.scripts.clone()).collect();
@@ -170,7 +172,7 @@ fn every_script_and_every_theorem_is_about_some_code() {
     assert_eq!(lemmas, theorems.collect());
 }
 
-/// Definitions in Coq say which code they are: a file and names in it, which exist.
+/// Definitions in Coq name their code: a file and names in it, which exist.
 #[test]
 fn coq_definitions_name_existing_code() {
     let mut named = 0;
@@ -185,7 +187,7 @@ fn coq_definitions_name_existing_code() {
                 let end =
                     name.find(|letter: char| !letter.is_alphanumeric() && !"_:".contains(letter));
                 let (word, rest) = name.split_at(end.unwrap_or(name.len()));
-                // Behind the names there may be prose.
+                // Prose may follow the names.
                 if place > 0 && rest.starts_with(' ') && !rest.starts_with(" *)") {
                     break;
                 }
@@ -205,8 +207,9 @@ fn coq_definitions_name_existing_code() {
     assert!(named > 60, "{named}");
 }
 
+/// A digest is of the code and not of its layout.
 #[test]
-fn a_digest_is_of_the_code_and_not_of_its_layout() {
+fn digest_ignores_layout() {
     let source = "
         /// Doc.
         const SIZES: [f64; 2] = [1.0, 2.0]; // two

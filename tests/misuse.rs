@@ -95,8 +95,9 @@ fn construction_names_what_is_wrong() {
     );
 }
 
+/// A shape of no sound size is refused by name.
 #[test]
-fn a_shape_of_no_sound_size_is_refused_by_name() {
+fn invalid_shape_is_named() {
     let bodies = row(3);
     let outcome = |change: fn(&mut Shape, f32), size: f32| {
         let mut shapes = shapes();
@@ -118,8 +119,9 @@ fn a_shape_of_no_sound_size_is_refused_by_name() {
     }
 }
 
+/// Every quaternion with a finite norm above zero is a rotation.
 #[test]
-fn every_quaternion_with_a_finite_norm_above_zero_is_a_rotation() {
+fn every_nonzero_quaternion_is_valid() {
     let is_taken = |rotation: [f32; 4]| {
         let mut bodies = row(3);
         bodies.rotation[1] = rotation;
@@ -141,8 +143,9 @@ fn every_quaternion_with_a_finite_norm_above_zero_is_a_rotation() {
     }
 }
 
+/// Another number of bodies is an error until refresh.
 #[test]
-fn another_number_of_bodies_is_an_error_until_refresh() {
+fn changed_body_count_needs_refresh() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {
         let wanted = culler.cull(&bodies).unwrap().sorted();
@@ -164,8 +167,9 @@ fn another_number_of_bodies_is_an_error_until_refresh() {
     }
 }
 
+/// A toggled flag is an error until refresh.
 #[test]
-fn a_toggled_flag_is_an_error_until_refresh() {
+fn toggled_flag_needs_refresh() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {
         let mut toggled = bodies.clone();
@@ -178,8 +182,9 @@ fn a_toggled_flag_is_an_error_until_refresh() {
     }
 }
 
+/// A translation outside of the contract is an error and no freeze.
 #[test]
-fn a_translation_outside_of_the_contract_is_an_error_and_no_freeze() {
+fn invalid_translation_is_an_error() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {
         let wanted = culler.cull(&bodies).unwrap().sorted();
@@ -211,8 +216,9 @@ fn a_translation_outside_of_the_contract_is_an_error_and_no_freeze() {
     }
 }
 
+/// A rotation outside of the contract loses no pair.
 #[test]
-fn a_rotation_outside_of_the_contract_loses_no_pair() {
+fn invalid_rotation_loses_no_pair() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {
         let wanted = culler.cull(&bodies).unwrap().sorted();
@@ -240,8 +246,9 @@ fn a_rotation_outside_of_the_contract_loses_no_pair() {
     }
 }
 
+/// Shapes and static poses are those of the last refresh.
 #[test]
-fn shapes_and_static_poses_are_those_of_the_last_refresh() {
+fn static_poses_wait_for_refresh() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {
         let wanted = culler.cull(&bodies).unwrap().sorted();
@@ -291,8 +298,9 @@ fn groups_have_one_entry_a_body() {
     }
 }
 
+/// Groups are forgotten with another number of bodies only.
 #[test]
-fn groups_are_forgotten_with_another_number_of_bodies_only() {
+fn groups_survive_equal_body_counts() {
     let (some, more) = (row(40), row(41));
     let nobody = Groups { member: 0, mask: 0 };
     for mut culler in cullers(&some) {
@@ -304,8 +312,9 @@ fn groups_are_forgotten_with_another_number_of_bodies_only() {
     }
 }
 
+/// Shapes of unlike directions are refused where slabs are compared.
 #[test]
-fn shapes_of_unlike_directions_are_refused_where_slabs_are_compared() {
+fn mixed_directions_are_rejected() {
     let mut unlike = shapes();
     unlike[1] = unlike[1].clone().with_directions(sdop::DirectionSet::K26);
     let told = Culler::new(&unlike, &row(3)).unwrap_err().to_string();

@@ -75,8 +75,9 @@ fn misses(touches: &[Touch], exponent: i32, stored: impl Fn(f32) -> f32) -> usiz
 
 const U: f32 = f32::EPSILON / 2.0;
 
+/// Naive radii miss exact touches and inflated ones none.
 #[test]
-fn naive_radii_miss_exact_touches_and_inflated_ones_none() {
+fn naive_radii_miss_touches() {
     for (bits, expected) in [(24, [7_477, 0, 0]), (25, [13_592, 20, 0])] {
         let touches = touches(bits, 50_000);
         let found = [1.0, 1.0 + 2.0 * U, 1.0 + 4.0 * U].map(|k| misses(&touches, 0, |r| r * k));
@@ -90,8 +91,9 @@ fn small_quadruples_are_toothless() {
     assert_eq!(misses(&touches(12, 50_000), 0, |r| r), 0);
 }
 
+/// No size misses down to subnormal numbers.
 #[test]
-fn no_size_misses_down_to_subnormal_numbers() {
+fn subnormal_sizes_miss_nothing() {
     let touches = touches(25, 20_000);
     // Squares underflow below 2⁻⁷⁵, at numbers of some 2⁻⁹⁹·2²⁴.
     for exponent in [-149, -120, -105, -100, -95, -90, -60, 0, 36] {

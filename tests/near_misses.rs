@@ -161,16 +161,18 @@ on_tiers! {
     neon = "neon".parse().ok(),
 }
 
+/// The suite is stamped on every tier.
 #[test]
-fn the_suite_is_stamped_on_every_tier() {
+fn suite_covers_every_tier() {
     let stamped = ["scalar", "sse2", "avx2", "avx512", "neon"];
     assert_eq!(stamped, Tier::NAMES, "a new tier: stamp it in on_tiers!");
     let names: Vec<_> = Tier::available().iter().map(|tier| tier.name()).collect();
     assert!(names.iter().all(|name| stamped.contains(name)), "{names:?}");
 }
 
+/// A list that lacks one required pair is caught.
 #[test]
-fn a_list_that_lacks_one_required_pair_is_caught() {
+fn missing_pair_is_caught() {
     let (variant, shapes) = &SHAPES[0];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let spec = sdop_judge::ours::draw::ContactSpec::default();

@@ -47,7 +47,7 @@ fn bracket() -> TriangleMesh {
     mesh
 }
 
-/// Random poses about the origin, at which a first bracket stands unturned.
+/// Random poses about the origin, at which a first bracket is not rotated.
 fn poses() -> Vec<Pose> {
     let mut random = ChaCha8Rng::seed_from_u64(40);
     let mut unit = move || (random.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0;

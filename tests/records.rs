@@ -1,5 +1,4 @@
-//! Records: what is written reads back, and whatever is wrong with one is said with its line and a
-//! remedy.
+//! Records: what is written reads back, and every error names its line and a remedy.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -96,8 +95,9 @@ fn a_written_record_reads_back() {
     }
 }
 
+/// Shapes and poses are those of the scene.
 #[test]
-fn shapes_and_poses_are_those_of_the_scene() {
+fn record_has_scene_shapes() {
     let text = record();
     let mut reader = Reader::new(text.as_bytes(), "r.ndjson").unwrap();
     let directory = tempfile::tempdir().unwrap();
@@ -122,8 +122,9 @@ fn shapes_and_poses_are_those_of_the_scene() {
     assert_eq!(reader.next_frame().unwrap(), None);
 }
 
+/// A record of minor 0 and unknown keys are read.
 #[test]
-fn a_record_of_minor_0_and_unknown_keys_are_read() {
+fn older_records_are_read() {
     let text = r#"{"format":"sdop-record","version":1,"scene":"s","seed":1,"shapes":[{"name":"p","vertices":[[0,0,0]],"triangles":[],"ball":[0,0,0,0],"ordop":{"k":6,"basis":[1,0,0,0,1,0,0,0,1],"lo":[0,0,0],"hi":[0,0,0]}}],"bodies":[{"shape":0,"static":false,"colour":"red"}],"mood":"fine"}
 {"frame":4,"poses":[[0,0,0,1,1,2,3]],"pairs":[],"ns":12}
 
@@ -164,8 +165,9 @@ fn other_files_are_told_from_records() {
     assert!(help.contains("write it again"), "{help}");
 }
 
+/// A first line that contradicts itself is refused.
 #[test]
-fn a_first_line_that_contradicts_itself_is_refused() {
+fn contradictory_header_is_rejected() {
     let record = record();
     let body = record.find("{\"shape\":0").unwrap();
     let seven = format!(
@@ -202,8 +204,9 @@ fn a_first_line_that_contradicts_itself_is_refused() {
     }
 }
 
+/// A bad frame is refused with its line.
 #[test]
-fn a_bad_frame_is_refused_with_its_line() {
+fn invalid_frame_names_its_line() {
     let record = record();
     let lines: Vec<&str> = record.lines().collect();
     let third = serde_json::from_str::<FrameLine>(lines[3]).unwrap();
@@ -267,8 +270,9 @@ fn a_bad_frame_is_refused_with_its_line() {
     }
 }
 
+/// A record cut off anywhere keeps its whole frames.
 #[test]
-fn a_record_cut_off_anywhere_keeps_its_whole_frames() {
+fn truncated_record_keeps_whole_frames() {
     let text = record();
     let header = text.find('\n').unwrap();
     for end in (header + 1..text.len()).step_by(97) {

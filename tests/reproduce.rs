@@ -17,7 +17,7 @@ use sdop_bench::reproduce::readings::{Reading, cell, table};
 use sdop_bench::reproduce::sensitivity::{self, Bounce, Interpretation, Start};
 use sdop_bench::reproduce::units::{Experiments, UnitResult};
 use sdop_bench::reproduce::{
-    Estimate, PaperScene, Plan, Results, Run, claims, rates, run_scene, study,
+    Estimate, ExperimentPlan, PaperScene, Results, StrategyRun, claims, rates, run_scene, study,
 };
 use sdop_bench::scene::SceneFile;
 use sdop_bench::sweep::Sweep as _;
@@ -28,17 +28,17 @@ fn scenes() -> PathBuf {
 }
 
 /// A few frames of the smallest scene and of the crowded one.
-fn plan(seeds: u64, tier: Tier) -> Plan {
+fn plan(seeds: u64, tier: Tier) -> ExperimentPlan {
     let effort = Effort {
         turns: 1,
         builds: 1,
     };
-    let mut plan = Plan::new(&scenes(), seeds, 5, effort, tier);
+    let mut plan = ExperimentPlan::new(&scenes(), seeds, 5, effort, tier);
     plan.names = vec![PaperScene::Paper50, PaperScene::Crowded500];
     plan
 }
 
-fn run(plan: &Plan) -> Results {
+fn run(plan: &ExperimentPlan) -> Results {
     let mut steps = 0;
     let results = plan.run(|| steps += 1).unwrap();
     assert_eq!(steps, plan.steps());
@@ -48,7 +48,7 @@ fn run(plan: &Plan) -> Results {
 #[test]
 fn counts_and_hashes_are_golden() {
     let results = run(&plan(1, Tier::detect()));
-    let line = |run: &Run| {
+    let line = |run: &StrategyRun| {
         let [sphere, ordop] =
             [run.counters.sphere, run.counters.ordop].map(|v| [v.updates, v.tests, v.hits]);
         let hash = run.pairs_sha256.as_deref().map_or("-", |hash| &hash[..16]);
@@ -98,7 +98,7 @@ fn units_joined_have_the_golden_counts() {
         joined.take(&text).unwrap();
     }
     let counts = |results: &Results| {
-        let of = |run: &Run| (run.scene.clone(), run.seed, run.strategy, run.counters);
+        let of = |run: &StrategyRun| (run.scene.clone(), run.seed, run.strategy, run.counters);
         let counts: Vec<_> = results.runs.iter().map(of).collect();
         (
             counts,
@@ -108,7 +108,7 @@ fn units_joined_have_the_golden_counts() {
     };
     assert_eq!(counts(&joined), counts(&whole));
     let hashes = |results: &Results| -> Vec<_> {
-        let hash = |run: &Run| run.pairs_sha256.clone();
+        let hash = |run: &StrategyRun| run.pairs_sha256.clone();
         results.runs.iter().map(hash).collect()
     };
     assert_eq!(hashes(&joined), hashes(&whole));
@@ -119,7 +119,7 @@ fn units_joined_have_the_golden_counts() {
 /// The loops that test the claim of the paper's sequential algorithm report what the culler does,
 /// whatever they wait for.
 #[test]
-fn pair_loops_report_the_culler_s_pairs() {
+fn pair_loops_match_the_culler() {
     let scene = SceneFile::read(&scenes().join("crowded-500.toml"))
         .unwrap()
         .build()
@@ -142,8 +142,8 @@ fn pair_loops_report_the_culler_s_pairs() {
     }
 }
 
-/// As the scenes stand, an interpretation's percentages are those of the runs; others differ, and
-/// the likeliest stands first.
+/// With the scenes as they are, an interpretation's percentages are those of the runs; others
+/// differ, and the likeliest comes first.
 #[test]
 fn interpretations_are_swept_from_the_scenes() {
     let mut plan = plan(1, Tier::detect());
@@ -178,7 +178,7 @@ fn interpretations_are_swept_from_the_scenes() {
 /// walls; static bodies are placed the same way, and their mutual pairs are not tests. The seeds
 /// are fixed, so this can't fail by chance.
 #[test]
-fn sphere_percentage_is_the_closed_form_s() {
+fn sphere_percentage_matches_closed_form() {
     for name in ["paper-150", "crowded-500"] {
         let mut file = SceneFile::read(&scenes().join(name).with_extension("toml")).unwrap();
         let mut percentages = Vec::new();
@@ -213,8 +213,9 @@ fn sphere_percentage_is_the_closed_form_s() {
     }
 }
 
+/// Tables and verdicts follow from the runs.
 #[test]
-fn tables_and_verdicts_follow_from_the_runs() {
+fn tables_follow_from_runs() {
     let results = run(&plan(3, Tier::detect()));
     assert_eq!(table(&results).len(), 2 * 4 * Reading::ALL.len());
     assert_eq!(rates::table(&results).len(), 2 * 6 * 2);

@@ -167,8 +167,9 @@ fn no_room_imports_upward() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
+/// An upward import is seen however it is written.
 #[test]
-fn an_upward_import_is_seen_however_it_is_written() {
+fn upward_imports_are_found() {
     for source in [
         "use crate::world::World;",
         "use crate::{simd::Tier, world::{Body, World}};",

@@ -54,8 +54,9 @@ fn closed_form(s: f64) -> f64 {
     4.0 / 3.0 * pi * s.powi(3) - 1.5 * pi * s.powi(4) + 1.6 * s.powi(5) - s.powi(6) / 6.0
 }
 
+/// One seed is one scene and another is another.
 #[test]
-fn one_seed_is_one_scene_and_another_is_another() {
+fn seeds_determine_scenes() {
     let group = "count = 100\nradius = [0.5, 2]\nspeed = [1, 2]";
     let a = cubes("side = 40", 7, group);
     let again = cubes("side = 40", 7, group);
@@ -78,8 +79,9 @@ fn one_seed_is_one_scene_and_another_is_another() {
     }
 }
 
+/// One draw leaves the others as they are.
 #[test]
-fn one_draw_leaves_the_others_as_they_are() {
+fn draws_are_independent() {
     let a = cubes("side = 40", 7, "count = 50\nspeed = [1, 2]");
     let b = cubes("side = 40", 7, "count = 70\nspeed = [3, 4]");
     assert_eq!(a.bodies.translation[..], b.bodies.translation[..50]);
@@ -87,8 +89,9 @@ fn one_draw_leaves_the_others_as_they_are() {
     assert!(a.velocities.linear[0] != b.velocities.linear[0]);
 }
 
+/// Spheres start inside of the box and speeds in their range.
 #[test]
-fn spheres_start_inside_of_the_box_and_speeds_in_their_range() {
+fn placed_spheres_are_inside() {
     let scene = cubes(
         "side = 10",
         3,
@@ -119,8 +122,9 @@ fn spheres_start_inside_of_the_box_and_speeds_in_their_range() {
     }
 }
 
+/// Radii take eight steps an octave log uniformly.
 #[test]
-fn radii_take_eight_steps_an_octave_log_uniformly() {
+fn radii_snap_to_eight_steps() {
     let scene = cubes("side = 100", 5, "count = 8000\nradius = [0.3, 4.8]");
     // Mantissas 1.25 to 1.875 · 2^-2 (0.3 itself moves to 0.3125), three octaves, 1 and 1.125 ·
     // 2^2, and 4.8.
@@ -171,8 +175,9 @@ fn directions_and_rotations_are_uniform() {
     }
 }
 
+/// Overlaps of a given box agree with the closed form.
 #[test]
-fn overlaps_of_a_given_box_agree_with_the_closed_form() {
+fn overlaps_match_closed_form() {
     let n = 3000.0;
     let scene = cubes("side = 40", 2, "count = 3000\nradius = 1");
     let expected = 0.5 * n * (n - 1.0) * closed_form(2.0 / 38.0);
@@ -230,8 +235,9 @@ fn placements_keep_to_their_form() {
     );
 }
 
+/// Poses keep the files frame and seeded bodies are centred.
 #[test]
-fn poses_keep_the_files_frame_and_seeded_bodies_are_centred() {
+fn poses_keep_the_file_origin() {
     let text = "name = \"p\"\nframes = 1\n[box]\nside = 20\n[[bodies]]\nmesh = \"../meshes/spot.tri\"\n\
                 poses = [[0, 0, 0, 2, 1, 2, 3]]\nvelocities = [[4, 5, 6]]\nstatic = false\n\
                 [[bodies]]\nmesh = \"../meshes/spot.tri\"\ncount = 1\nstatic = true\n";

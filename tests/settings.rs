@@ -6,8 +6,9 @@ use sdop::settings::*;
 use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;
 
+/// Every name reads back as its choice.
 #[test]
-fn every_name_reads_back_as_its_choice() {
+fn names_read_back() {
     macro_rules! round_trip {
         ($($choice:ident),+) => {$(
             for (choice, name) in $choice::ALL.iter().zip($choice::NAMES) {
@@ -40,8 +41,9 @@ fn an_unknown_name_suggests_the_nearest() {
     );
 }
 
+/// Scene files default to the librarys settings.
 #[test]
-fn scene_files_default_to_the_librarys_settings() {
+fn scene_defaults_match_the_library() {
     let settings: CullSettings = serde_json::from_str("{}").unwrap();
     assert_eq!(settings, CullSettings::default());
     assert_eq!(settings.pairs, Finder::Auto);
@@ -55,8 +57,9 @@ fn scene_files_default_to_the_librarys_settings() {
     settings.check(0).unwrap();
 }
 
+/// Settings that cannot be carried out are refused.
 #[test]
-fn settings_that_cannot_be_carried_out_are_refused() {
+fn invalid_settings_are_rejected() {
     let problem = |change: fn(&mut CullSettings)| {
         let mut settings = CullSettings::all_pairs();
         change(&mut settings);
@@ -101,8 +104,9 @@ fn settings_that_cannot_be_carried_out_are_refused() {
     );
 }
 
+/// A builder keeps each setting and no other.
 #[test]
-fn a_builder_keeps_each_setting_and_no_other() {
+fn builder_keeps_each_setting() {
     let settings = CullSettings {
         strategy: Strategy::KDop,
         pairs: Finder::Sweep,

@@ -9,7 +9,7 @@ use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop_bench::scene::SceneFile;
-use sdop_bench::verify::shrink::Smallest;
+use sdop_bench::verify::shrink::SmallestScene;
 use sdop_judge::ours::draw::crowd;
 use sdop_judge::ours::forms::{self, Form};
 use sdop_judge::ours::rounds::{Failure, Ledger, judge_and_check};
@@ -34,8 +34,9 @@ fn lying_crowd() -> (Shapes, Ledger) {
     (shapes, ledger.unwrap())
 }
 
+/// A lying ball is found out and shrinks to two bodies.
 #[test]
-fn a_lying_ball_is_found_out_and_shrinks_to_two_bodies() {
+fn wrong_ball_shrinks_to_two_bodies() {
     let (shapes, ledger) = lying_crowd();
     assert!(ledger.missed() > 0);
     for (row, count) in &ledger.rows {
@@ -45,7 +46,7 @@ fn a_lying_ball_is_found_out_and_shrinks_to_two_bodies() {
         );
         assert_eq!(count.missed > 0, uses_spheres, "{row:?}");
     }
-    let smallest = Smallest::of(&ledger.failures[0]).unwrap();
+    let smallest = SmallestScene::of(&ledger.failures[0]).unwrap();
     let bodies = &smallest.shrunk.case.frames[0].bodies;
     assert_eq!((smallest.shrunk.case.frames.len(), bodies.len()), (1, 2));
     assert!(smallest.shrunk.case.shapes.len() <= shapes.built.len());
@@ -59,8 +60,9 @@ fn a_lying_ball_is_found_out_and_shrinks_to_two_bodies() {
     assert_eq!(scene.cull, smallest.settings);
 }
 
+/// A scene without a miss is not shrunk.
 #[test]
-fn a_scene_without_a_miss_is_not_shrunk() {
+fn complete_scene_is_not_shrunk() {
     let (shapes, ledger) = lying_crowd();
     let honest = Failure {
         settings: CullSettings::all_pairs(),
@@ -73,5 +75,5 @@ fn a_scene_without_a_miss_is_not_shrunk() {
         },
         pair: ledger.failures[0].pair,
     };
-    assert!(Smallest::of(&honest).is_none());
+    assert!(SmallestScene::of(&honest).is_none());
 }

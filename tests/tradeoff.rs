@@ -17,7 +17,7 @@ use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::tradeoff::counts::Tally;
 use sdop_bench::tradeoff::safety::without_margins;
 use sdop_bench::tradeoff::shapes::{Crowd, builtin};
-use sdop_bench::tradeoff::truth::{Judge, samples};
+use sdop_bench::tradeoff::truth::{ExactJudge, samples};
 use sdop_bench::tradeoff::variant::{self, Variant};
 use sdop_reference::Pose;
 use sdop_reference::exact::{meeting, mesh::Mesh};
@@ -56,8 +56,9 @@ fn scene() -> Scene {
         .unwrap()
 }
 
+/// Hulls agree with the exact meeting of hull meshes.
 #[test]
-fn hulls_agree_with_the_exact_meeting_of_hull_meshes() {
+fn hulls_agree_with_exact_meshes() {
     let (mut meetings, mut pairs) = (0, 0);
     for shape in builtin().unwrap() {
         let hull = Hull::of(&shape.vertices);
@@ -102,15 +103,16 @@ fn touching_hulls_are_reported() {
     }
 }
 
+/// The truth is every meeting and is kept.
 #[test]
-fn the_truth_is_every_meeting_and_is_kept() {
+fn truth_is_complete_and_cached() {
     let scene = scene();
     let samples = samples(&scene, 3).unwrap();
     assert_eq!(
         samples.iter().map(|s| s.frame).collect::<Vec<_>>(),
         [0, 13, 26]
     );
-    let judge = Judge::new(&scene.shapes).unwrap();
+    let judge = ExactJudge::new(&scene.shapes).unwrap();
     let cache = tempfile::tempdir().unwrap();
     let truth = judge.truth(&samples, Some(cache.path())).unwrap();
 
@@ -139,11 +141,12 @@ fn the_truth_is_every_meeting_and_is_kept() {
     assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 2);
 }
 
+/// Every variant finds every true pair and finer ones report fewer.
 #[test]
-fn every_variant_finds_every_true_pair_and_finer_ones_report_fewer() {
+fn finer_variants_report_fewer() {
     let scene = scene();
     let samples = samples(&scene, 5).unwrap();
-    let truth = Judge::new(&scene.shapes)
+    let truth = ExactJudge::new(&scene.shapes)
         .unwrap()
         .truth(&samples, None)
         .unwrap();
@@ -173,8 +176,9 @@ fn every_variant_finds_every_true_pair_and_finer_ones_report_fewer() {
     }
 }
 
+/// Shrunk volumes are what the margins make of the true ones.
 #[test]
-fn shrunk_volumes_are_what_the_margins_make_of_the_true_ones() {
+fn margins_equal_shrunk_volumes() {
     for shape in builtin().unwrap() {
         let bare = without_margins(&shape);
         assert!(inflate_radius(bare.ball.radius) <= shape.ball.radius);
@@ -295,8 +299,9 @@ fn nothing_is_left_out(path: &Path) {
     assert!(result["narrow_phase"]["miss"].as_f64().unwrap() > 0.0);
 }
 
+/// The command counts alike twice redraws a record and fails on a miss.
 #[test]
-fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
+fn tradeoff_repeats_and_redraws() {
     let place = tempfile::tempdir().unwrap();
     let here = place.path();
     fs::write(here.join("few.toml"), SCENE).unwrap();
@@ -371,8 +376,9 @@ fn the_command_counts_alike_twice_redraws_a_record_and_fails_on_a_miss() {
     assert_eq!(run.status.code(), Some(2));
 }
 
+/// Advice has three lines and names the cheapest candidate.
 #[test]
-fn advice_is_three_lines_and_the_cheapest_of_the_numbers_behind_them() {
+fn advice_names_the_cheapest() {
     let place = tempfile::tempdir().unwrap();
     let here = place.path();
     fs::write(here.join("few.toml"), SCENE).unwrap();
@@ -433,7 +439,7 @@ fn advice_is_three_lines_and_the_cheapest_of_the_numbers_behind_them() {
         "{text}"
     );
 
-    // A millisecond a check: whoever leaves the fewest pairs wins, and those are the hulls.
+    // A check takes a millisecond: the variant with the fewest pairs wins, which is the hulls.
     let pairs = |candidate: &serde_json::Value| candidate["pairs"].as_f64().unwrap();
     let fewest = candidates.iter().map(pairs).fold(f64::INFINITY, f64::min);
     assert_eq!(pairs(&candidates[0]), fewest);

@@ -125,8 +125,9 @@ fn streamed(strategy: Strategy, forms: &[Shape], steps: usize, is_fresh: bool) -
     world
 }
 
+/// A stream of shapes keeps memory constant.
 #[test]
-fn a_stream_of_shapes_leaves_nothing_behind() {
+fn shape_stream_keeps_memory() {
     let forms: Vec<Shape> = (0..48).map(form).collect();
     // World-aligned slabs take a hull of each shape, which takes time: fewer of them.
     for (strategy, steps) in [
@@ -155,8 +156,9 @@ fn dispersed(body: usize) -> [f32; 3] {
 /// 1,500 bodies and 1.1 million pairs; 15,000 and 112 million behave alike, and take a gigabyte.
 const CROWD: usize = 1500;
 
+/// A crowd of bodies that disperses gives its memory back.
 #[test]
-fn a_crowd_of_bodies_that_disperses_gives_its_memory_back() {
+fn body_crowd_memory_is_freed() {
     for strategy in [
         Strategy::Sphere,
         Strategy::SDopSequential,
@@ -201,8 +203,9 @@ fn box_at(place: [f32; 3]) -> Aabb {
     Aabb::new(place, place.map(|x| x + 1.0))
 }
 
+/// A crowd of boxes that disperses gives its memory back.
 #[test]
-fn a_crowd_of_boxes_that_disperses_gives_its_memory_back() {
+fn box_crowd_memory_is_freed() {
     let make = |has_met: bool| {
         let mut world = BoxWorld::new();
         let there = |body| if has_met { [0.0; 3] } else { dispersed(body) };
@@ -227,8 +230,9 @@ fn a_crowd_of_boxes_that_disperses_gives_its_memory_back() {
     assert!(10 * bytes <= 11 * wanted, "{bytes} of {wanted}");
 }
 
+/// A world that most bodies have left is small.
 #[test]
-fn a_world_that_most_bodies_have_left_is_small() {
+fn emptied_world_is_small() {
     let few = |many: usize| {
         let mut world = BoxWorld::new();
         let ids: Vec<BodyId> = (0..many)
@@ -277,7 +281,7 @@ fn a_world_that_most_bodies_have_left_is_small() {
 
 /// Events are read off two lists: no third is kept, and bodies may be removed meanwhile.
 #[test]
-fn events_of_a_crowd_take_no_list() {
+fn crowd_events_need_no_list() {
     let mut world = BoxWorld::new();
     for body in 0..CROWD {
         let bounds = box_at([0.0; 3]);

@@ -1,4 +1,4 @@
-//! Co: building each volume of the shipped meshes, once a mesh.
+//! Co: building each volume of the shipped meshes, once per mesh.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! The whole: culling a frame of the paper's 500 objects, every strategy, in the usual and in the
+//! Whole frames: culling the paper's 500 objects with every strategy, in the usual and in the
 //! crowded box.
 
 mod common;

@@ -1,10 +1,10 @@
-//! What distance from the origin costs: reported pairs and time of frames, of f32 poses, of f64
-//! ones in a world, and of a world whose bodies are in many places. `cargo bench --bench far`
-//! prints CSV.
+//! The cost of distance from the origin: reported pairs and time per frame, for f32 poses, for f64
+//! poses in a world, and for a world with bodies in many places. `cargo bench --bench far` prints
+//! CSV.
 //!
-//! The same bodies move in the same way in every row, and only the place differs. Pairs are
-//! compared with those next to the origin, where rounding moves nothing noticeably: f32 poses far
-//! out lose pairs and gain others, f64 ones only where f64 rounds.
+//! In every row the same bodies move in the same way; only the position differs. Pairs are compared
+//! with those near the origin, where rounding is negligible: far out, f32 poses lose pairs and gain
+//! others, f64 poses only where f64 rounds.
 
 use std::collections::HashSet;
 use std::time::Instant;
@@ -31,7 +31,7 @@ const PLACES: usize = 100;
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 const DISTANCES: [f64; 8] = [0.0, 1e3, 1e4, 1e5, 1e6, 1e7, 1e9, 1e11];
 
-/// Beyond it f32 has room for a few places alone, and nearly all pairs meet.
+/// Beyond this distance f32 has only a few positions, and nearly all pairs meet.
 const FARTHEST_F32: f64 = 1e7;
 
 /// Bodies as they are next to the origin, in places of equal numbers.

@@ -1,8 +1,9 @@
 //! The long search for a pair that a finder loses on a border between cells: `cargo bench --bench
 //! finder_borders -- SCENES`.
 //!
-//! One search a thread from seeds of its own, over the scenes of `lab::verify::borders`; prints a
-//! Markdown table, and fails when a finder's list isn't that of all pairs, or when one panics.
+//! Runs one search per thread, each with its own seeds, over the scenes of
+//! `sdop_judge::ours::borders`. Prints a Markdown table, and fails if a finder's list differs from
+//! that of all pairs or a finder panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -12,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use sdop::simd::Tier;
 use sdop_judge::ours::borders::{Borders, bar};
 
-/// Scenes when the command line names no number.
+/// The default number of scenes.
 const SCENES: u64 = 1_000_000;
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,6 +1,6 @@
-//! What motion costs the finders that `auto` chooses between: update and finding, nanoseconds a
-//! body and frame, and the frames' spread, since a list's worst frame is the one that makes it.
-//! `cargo bench --bench motion` prints a Markdown table.
+//! The cost of motion for the finders that `auto` chooses between: update and finding in
+//! nanoseconds per body and frame, and percentiles of frames, because a list's worst frame is the
+//! one that builds it. `cargo bench --bench motion` prints a Markdown table.
 //!
 //! Cullers take turns of eight frames on one swarm, so that each sees the same motion and the same
 //! machine; the first frame of a turn, before which others ran, isn't counted.
@@ -15,15 +15,15 @@ use sdop_bench::measure::turns::{Regime, Turns};
 use sdop_bench::percentiles::Percentiles;
 use sdop_judge::contestant::Contestant;
 
-/// Turns of a row at most, and bodies times frames.
+/// The most turns per row; [`WORK`] limits bodies times frames.
 const TURNS: usize = 60;
 const WORK: usize = 48_000_000;
-/// Frames of a turn.
+/// Frames per turn.
 const FRAMES: usize = 8;
 /// By how many radii a coordinate changes per frame, at most.
 const MOTIONS: [f32; 4] = [0.01, 0.03, 0.1, 0.3];
 
-/// The finders that `auto` chooses between where bodies are many, and itself.
+/// The finders that `auto` chooses between for many bodies, and `auto` itself.
 fn takes_part(finder: Finder) -> bool {
     match finder {
         Finder::AllPairs | Finder::Sweep => false,

@@ -1,4 +1,4 @@
-//! What the exact answer costs: triangle pairs by the stage that was certain, and frames of 500
+//! The cost of the exact answer: triangle pairs by the stage that decides them, and frames of 500
 //! real meshes. `cargo bench --bench oracle` prints a Markdown table.
 
 mod common;
@@ -12,7 +12,7 @@ use sdop_reference::Pose;
 use sdop_reference::exact::view::View;
 use sdop_reference::exact::{Path, judge, mesh::Mesh};
 
-/// A median is of so many.
+/// Rounds per median.
 const ROUNDS: usize = 21;
 
 fn main() {

@@ -1,8 +1,8 @@
-//! Cv of or-DOPs after spheres, in every tier: hits alone, misses alone, and as S-DOP lists them;
-//! an element a pair.
+//! Cv of or-DOPs after spheres, in every tier: hits alone, misses alone, and pairs as S-DOP lists
+//! them. An element is a pair.
 //!
-//! A miss alone leaves with A's normals, or in the scalar tier at its first separating axis; a hit
-//! tries them all.
+//! A miss ends after A's normals, or in the scalar tier at its first separating axis; a hit tries
+//! all axes.
 
 mod common;
 

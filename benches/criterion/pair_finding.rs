@@ -1,9 +1,9 @@
-//! F and Cv of the first test: finding pairs in the calibration scenes, an element a test. And the
-//! pair finders side by side: update and finding, an element a body.
+//! F and Cv of the first test: finding pairs in the calibration scenes; an element is a test. Then
+//! all pair finders: update and finding; an element is a body.
 //!
-//! Calibration scenes of one number of bodies differ in their box, and so in their hits: the
-//! difference prices a hit. The finders' scenes are [`common::swarm`]'s. What a second thread is
-//! worth on the machine at the time is measured with the peers: `sdop-peers control`.
+//! Calibration scenes with the same number of bodies have different boxes and therefore different
+//! numbers of hits; the difference gives the price of a hit. The finders' scenes are those of
+//! [`common::swarm`]. `sdop-peers control` measures the gain of a second thread.
 
 #![allow(clippy::unwrap_used, reason = "a bench without its scene can't go on")]
 

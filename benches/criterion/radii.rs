@@ -1,5 +1,5 @@
-//! What radii of many sizes cost: update and pair finding, nanoseconds a reported pair, for radii
-//! of one size, 1 : 16 and 1 : 1000. `cargo bench --bench radii` prints a Markdown table.
+//! The cost of mixed radii: update and pair finding in nanoseconds per reported pair, for radii of
+//! one size, 1 : 16 and 1 : 1000. `cargo bench --bench radii` prints a Markdown table.
 //!
 //! The three take turns, and a ratio is the median over rounds of a time over that of one size in
 //! the same round.
@@ -11,7 +11,7 @@ use sdop::culler::Culler;
 use sdop::settings::Finder;
 use sdop_bench::measure::turns::median;
 
-/// Turns that everyone has.
+/// Turns of each contestant.
 const ROUNDS: usize = 15;
 
 const KINDS: [(&str, Kind); 3] = [

@@ -1,11 +1,11 @@
-//! How far each kernel is from what the CPU can do: `cargo bench --bench roofline` prints a
+//! How close each kernel comes to the CPU's limits. `cargo bench --bench roofline` prints a
 //! Markdown table.
 //!
-//! The ceilings are measured in the same run: vector operations a nanosecond with everything in
-//! registers, and bytes a nanosecond from a column that doesn't fit any cache. A kernel's work is
-//! counted from its source: f32 operations of the longest way through (no early exit, padding lanes
-//! apart), and bytes of the columns that it must touch once. Its floor is the larger of work over
-//! ceiling; the share is floor over measured time.
+//! The limits are measured in the same run: vector operations per nanosecond with all data in
+//! registers, and bytes per nanosecond from a column that fits into no cache. A kernel's work is
+//! counted from its source: f32 operations on the longest path (without early exit or padding
+//! lanes), and bytes of the columns that it has to read or write once. The least possible time is
+//! the larger of the two works over their limits; the share is that over the measured time.
 
 mod common;
 
@@ -22,7 +22,7 @@ use sdop_bench::scene::Scene;
 /// Samples of every measurement.
 const SAMPLES: usize = 15;
 
-/// One kernel's work an element, and where it is measured.
+/// A kernel's work per element, and where it is measured.
 struct Work {
     name: &'static str,
     /// f32 operations.

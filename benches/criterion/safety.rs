@@ -1,4 +1,4 @@
-//! The price of safety: frames of the paper's scene culled with margins and without, in every tier.
+//! The price of margins: frames of the paper's scene culled with and without them, in every tier.
 //! `cargo bench --bench safety` prints a Markdown table.
 //!
 //! The two take turns, and a ratio is of a round's warm frames. `sdop tradeoff` counts the extra

@@ -1,10 +1,9 @@
-//! The paper's formula reproduced by seeded benches: Co, Cu, F and Cv of hits and of misses from
-//! calibration scenes, whole frames of other scenes next to them, and at the end predicted,
-//! measured and residual of every strategy.
+//! The paper's formula: Co, Cu, F and Cv of hits and misses from calibration scenes, whole frames
+//! of other scenes, and at the end the predicted and measured time and the residual of every
+//! strategy.
 //!
-//! An iteration is a pass, exactly as `sdop cost` makes it, with another seed each time; what
-//! criterion shows is the mean seconds of a frame of every strategy. `cargo bench --bench
-//! total_cost` takes two minutes.
+//! An iteration is a pass, as in `sdop cost`, with another seed each time. Criterion shows the mean
+//! seconds per frame of every strategy. `cargo bench --bench total_cost` takes two minutes.
 
 mod common;
 
@@ -23,7 +22,7 @@ use sdop_bench::scene::SceneFile;
 
 /// What is predicted. They have the same shapes, and bodies for the same cache: one set of prices.
 const SCENES: [&str; 3] = ["paper-300", "paper-500", "crowded-500"];
-/// Frames of a pass.
+/// Frames per pass.
 const FRAMES: u32 = 96;
 const EFFORT: Effort = Effort {
     turns: 1,

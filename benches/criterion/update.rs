@@ -1,7 +1,7 @@
-//! Cu: the update stage of every volume, an element a body.
+//! Cu: the update stage of every volume. An element is a body.
 //!
-//! Then that of meshes off their origin, which posing has to turn: by the mesh's own origin, the
-//! default, and by the ball's centre.
+//! Then the update of meshes off their origin, posed by the mesh's own origin (the default) and by
+//! the ball's centre.
 
 mod common;
 

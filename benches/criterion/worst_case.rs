@@ -1,9 +1,9 @@
 //! The long search for the worst rounding error of every bound: `cargo bench --bench worst_case --
 //! EVALUATIONS`.
 //!
-//! One search per thread from seeds of its own; the table is what `paper/proofs/README.md` and
-//! `src/rounding` quote. Fails when a bound is exceeded, or when a search finds less than the short
-//! one of the tests must.
+//! Runs one search per thread, each with its own seeds. `paper/proofs/README.md` and `src/rounding`
+//! quote the table. Fails if a bound is exceeded, or if a search finds less than the short search
+//! of the tests has to.
 
 #[path = "../../tests/worst_case/bounds.rs"]
 mod bounds;

@@ -1,5 +1,5 @@
-//! Hashes that make results comparable across machines: of the reported pairs, and of every volume
-//! of a scene. Two machines' pairs are comparable only where their volumes agree.
+//! Hashes of the reported pairs and of all volumes of a scene, to compare results between machines.
+//! Pairs are comparable only if the volumes agree.
 
 use std::fmt::Write as _;
 
@@ -106,8 +106,9 @@ mod tests {
         digest.finish()
     }
 
+    /// Digest sees every change but that of order.
     #[test]
-    fn digest_sees_every_change_but_that_of_order() {
+    fn digest_ignores_order_alone() {
         let whole = digest(&[(0, &[[1, 2], [1, 3]]), (1, &[[1, 2]])]);
         assert_eq!(
             whole,
@@ -124,8 +125,9 @@ mod tests {
         }
     }
 
+    /// Hash is sha256 of the documented bytes.
     #[test]
-    fn hash_is_sha256_of_the_documented_bytes() {
+    fn hash_matches_documented_bytes() {
         let mut hash = PairsHash::default();
         hash.frame(7, &[[1, 2], [1, 300]]);
         let mut bytes = Vec::new();

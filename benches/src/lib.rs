@@ -1,5 +1,5 @@
-//! The laboratory: scenes, their simulation, and the studies that judge and measure the culler. An
-//! engine needs none of it.
+//! Scenes, their simulation, and the studies that judge and measure the culler; the library of the
+//! program `sdop`. Engines only need the crate `sdop`.
 
 extern crate self as sdop_bench; // commands name the rooms as from outside
 

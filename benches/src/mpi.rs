@@ -1,8 +1,8 @@
-//! Ranks: one program, started many times by `mpirun` or a scheduler, whose copies talk by MPI.
+//! Ranks: copies of this program that `mpirun` or a scheduler starts and that communicate by MPI.
 //!
-//! Without the feature `mpi` nothing is linked, and [`launched`] is there to refuse a start as many
-//! ranks. With it, a program that is run alone stays an ordinary one: MPI starts with
-//! `Ranks::start` and not before. [`Ending`] sees to it that no rank waits for one that failed.
+//! Without the feature `mpi` nothing is linked, and [`launched`] only serves to reject a start as
+//! many ranks. With it, a program that runs alone does not start MPI; `Ranks::start` does.
+//! [`Ending`] ensures that no rank waits for one that failed.
 
 use std::env;
 
@@ -40,7 +40,8 @@ fn ranks(var: impl Fn(&str) -> Option<String>) -> usize {
     said.unwrap_or(1).max(1)
 }
 
-/// How a rank's part ends. Held by `main` from the beginning: a rank that panics ends all of them.
+/// Ends a rank in step with the others. `main` holds it from the beginning, so that a rank that
+/// panics ends all of them.
 #[derive(Debug)]
 pub struct Ending;
 
@@ -180,8 +181,9 @@ mod started {
 mod tests {
     use super::*;
 
+    /// Launchers say how many ranks there are.
     #[test]
-    fn launchers_say_how_many_ranks_there_are() {
+    fn launchers_set_the_rank_count() {
         let told = |vars: &[(&str, &str)]| {
             ranks(|name| {
                 let var = vars.iter().find(|(known, _)| *known == name);

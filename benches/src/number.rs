@@ -1,4 +1,5 @@
-//! Numbers of a scene file, checked while they are read so that an error points at the very number.
+//! Number types of a scene file. They are checked while they are read, so that an error points at
+//! the number.
 
 use std::fmt;
 
@@ -29,33 +30,33 @@ pub struct Interval {
 }
 
 /// One kind of number: what it is called and which values it takes.
-trait Kind: Sized {
+trait NumberKind: Sized {
     const EXPECTED: &'static str;
     fn accept(value: f32) -> Option<Self>;
 }
 
-impl Kind for Real {
+impl NumberKind for Real {
     const EXPECTED: &'static str = "a number of size at most 2^60";
     fn accept(value: f32) -> Option<Self> {
         (value.abs() <= LIMIT).then_some(Self(value))
     }
 }
 
-impl Kind for Positive {
+impl NumberKind for Positive {
     const EXPECTED: &'static str = "a number above 0, at most 2^60";
     fn accept(value: f32) -> Option<Self> {
         (value > 0.0 && value <= LIMIT).then_some(Self(value))
     }
 }
 
-impl Kind for Share {
+impl NumberKind for Share {
     const EXPECTED: &'static str = "a number from 0 to 1";
     fn accept(value: f32) -> Option<Self> {
         (0.0..=1.0).contains(&value).then_some(Self(value))
     }
 }
 
-impl Kind for Interval {
+impl NumberKind for Interval {
     const EXPECTED: &'static str = "a number or [min, max], from 0 to 2^60";
     fn accept(value: f32) -> Option<Self> {
         (0.0..=LIMIT).contains(&value).then_some(Self {
@@ -67,7 +68,7 @@ impl Kind for Interval {
 
 struct NumberVisitor<T>(std::marker::PhantomData<T>);
 
-impl<'de, T: Kind + FromEnds> Visitor<'de> for NumberVisitor<T> {
+impl<'de, T: NumberKind + IntervalEnds> Visitor<'de> for NumberVisitor<T> {
     type Value = T;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -97,15 +98,15 @@ impl<'de, T: Kind + FromEnds> Visitor<'de> for NumberVisitor<T> {
 }
 
 /// Kinds that can also be written as a list; none but [`Interval`] can.
-trait FromEnds: Sized {
+trait IntervalEnds: Sized {
     fn from_ends(_ends: &[f32]) -> Option<Self> {
         None
     }
 }
-impl FromEnds for Real {}
-impl FromEnds for Positive {}
-impl FromEnds for Share {}
-impl FromEnds for Interval {
+impl IntervalEnds for Real {}
+impl IntervalEnds for Positive {}
+impl IntervalEnds for Share {}
+impl IntervalEnds for Interval {
     fn from_ends(ends: &[f32]) -> Option<Self> {
         match *ends {
             [min, max] if min >= 0.0 && min <= max => Some(Self { min, max }),

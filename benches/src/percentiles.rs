@@ -1,9 +1,9 @@
-//! How single frames' times are spread: a mean hides the frame that a viewer sees stutter.
+//! Percentiles of the times of single frames. A mean would hide a frame that stutters visibly.
 
 use serde::Serialize;
 
-/// Of single frames' seconds: what half of them don't exceed, what 99 in 100 don't, and the most.
-/// All zero without frames.
+/// The median, the 99th percentile and the maximum of the frames' seconds. All are zero without
+/// frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Percentiles {
     /// The median frame, the earlier of the two middle ones.
@@ -19,7 +19,7 @@ impl Percentiles {
     #[must_use]
     pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
-        // The first of which at least so many in a hundred are no greater.
+        // The smallest value that at least this many percent of the values don't exceed.
         let at = |hundredths: usize| {
             let rank = (values.len() * hundredths).div_ceil(100);
             values.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
@@ -36,8 +36,9 @@ impl Percentiles {
 mod tests {
     use super::*;
 
+    /// Each is the least value that so many do not exceed.
     #[test]
-    fn each_is_the_least_value_that_so_many_do_not_exceed() {
+    fn percentiles_use_nearest_rank() {
         for (values, [p50, p99, most]) in [
             (0, [0.0; 3]),
             (1, [1.0; 3]),

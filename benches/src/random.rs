@@ -1,16 +1,16 @@
-//! Seeded draws that are equal to the bit on every platform and stay so when libraries change.
+//! Seeded random draws that are equal to the bit on every platform and don't change with library
+//! versions.
 //!
-//! Only ChaCha's words come from a crate: the stream cipher is specified to the bit. The maps from
-//! words to floats are written out here, and directions and rotations come by rejection (Marsaglia
-//! 1972), which needs a square root but no trigonometry.
+//! Only ChaCha's words come from a crate, because that stream cipher is specified to the bit. The
+//! maps from words to floats are in this file. Directions and rotations are drawn by rejection
+//! (Marsaglia 1972), which needs a square root but no trigonometry.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::number::Interval;
 
-/// A stream of draws. Streams of one seed are independent: what one draws leaves the others as they
-/// are.
+/// A stream of draws. Streams of one seed are independent of each other.
 #[derive(Clone, Debug)]
 pub struct Stream(ChaCha8Rng);
 
@@ -95,8 +95,8 @@ impl Stream {
         }
     }
 
-    /// A radius, log-uniform between the ends, moved to the nearest of eight steps an octave
-    /// (mantissas 1, 1.125 … 1.875): vertices are rounded per scaled shape, so few radii mean few
+    /// A radius, log-uniform between the ends, snapped to the nearest of eight steps per octave
+    /// (mantissas 1, 1.125 … 1.875). Every radius needs its own shape, so few radii mean few
     /// shapes.
     pub fn radius(&mut self, range: Interval) -> f32 {
         if range.min == range.max {

@@ -1,4 +1,4 @@
-//! Lines of a run record ([`sdop_judge::record`]) for scenes and culled frames.
+//! The lines of a run record ([`sdop_judge::record`]) for scenes and culled frames.
 
 use sdop::counters::Counters;
 use sdop::settings::Strategy;
@@ -6,7 +6,7 @@ use sdop_judge::record::{EffectLine, FrameLine, Header, VolumeLine};
 
 use crate::measure::counts::{Counts, Volume};
 use crate::scene::Scene;
-use crate::simulate::Frame;
+use crate::simulate::SimulatedFrame;
 
 /// The first line of a scene's record.
 #[must_use]
@@ -28,7 +28,7 @@ pub fn header(scene: &Scene) -> Header {
 
 /// The line of a culled frame.
 #[must_use]
-pub fn frame_line(frame: &Frame<'_>, strategy: Strategy) -> FrameLine {
+pub fn frame_line(frame: &SimulatedFrame<'_>, strategy: Strategy) -> FrameLine {
     FrameLine {
         frame: frame.number,
         poses: FrameLine::poses(frame.bodies),

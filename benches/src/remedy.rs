@@ -1,5 +1,5 @@
-//! Errors of the library and the judge as miette's diagnostics: those crates name a remedy, the
-//! program prints it.
+//! Converts errors of the library and the judge, which name a remedy, to miette's diagnostics,
+//! which the program prints.
 
 use std::error::Error;
 use std::fmt::Display;

@@ -6,8 +6,8 @@ macro_rules! corpus {
         pub const HARD_CASES: &[(&str, &str)] =
             &[$(($name, include_str!(concat!("../hard_cases/", $name, ".toml")))),+];
 
-        /// Calls a macro with `hard { identifier = "name"; … }` before what is given: every group of hard
-        /// cases, in the order of [`HARD_CASES`].
+        /// Calls a macro with `hard { identifier = "name"; … }` before its other input: every group
+        /// of hard cases, in the order of [`HARD_CASES`].
         #[macro_export]
         macro_rules! with_hard_cases {
             ($d then:ident! { $d ($d given:tt)* }) => {

@@ -1,4 +1,4 @@
-"""Collision culling that never misses a touching pair, and the exact judge that proves it.
+"""Collision culling that never misses a touching pair, and an exact judge for any culler.
 
 >>> import numpy as np, sdop
 >>> boxes = np.array([[0, 0, 0, 1, 1, 1], [1, 0, 0, 2, 1, 1], [5, 5, 5, 6, 6, 6]], dtype=np.float32)
@@ -6,11 +6,11 @@
 array([[0, 1]], dtype=uint32)
 
 Lengths have any one unit. Axes are right-handed; rotations are quaternions x, y, z, w of any non-zero norm that turn a body's
-frame into the world's. Columns are float32: arrays of float64 are taken where float32 holds each number exactly, and refused
-otherwise, because the answer would be about other numbers. `World` takes float64 translations as they are.
+frame into the world's. Columns are float32: arrays of float64 are accepted if float32 holds each number exactly, and rejected
+otherwise, because the answer would be about other numbers. `World` keeps float64 translations.
 
 Classes may be used from several threads; calls on one object take turns, and other threads of Python run meanwhile. Arrays are
-read where they are: don't write to one while a call reads it.
+read in place: don't write to one while a call reads it.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def rounded_outward(boxes: ArrayLike) -> NDArray[np.float32]:
-    """Boxes of float64 as the smallest boxes of float32 that contain them.
+    """Rounds boxes of float64 to the smallest boxes of float32 that contain them.
 
     No pair is missed with them; boxes that are apart by less than the rounding may be reported.
 

@@ -14,12 +14,12 @@ _Vector = NDArray[np.float64]
 
 
 class CollisionManager:
-    """Meshes under names, and which of them collide.
+    """A set of named meshes that finds which of them collide.
 
     Method names and meanings are those of ``trimesh.collision.CollisionManager``; a pair collides when its posed meshes share a
     point, or one lies inside of a closed part of the other, in exact arithmetic. Transforms are rigid: 4 × 4, a rotation and a
-    translation. The rotation is rounded to a quaternion of float32, the translation is taken in float64. A mesh that lies far
-    from its own origin is placed by a point near it, whose position is computed in float64. Distances and contact points are
+    translation. The rotation is rounded to a quaternion of float32, the translation stays in float64. A mesh far from its
+    origin is placed by a point near it, whose position is computed in float64. Distances and contact points are
     not computed.
     """
 
@@ -29,7 +29,7 @@ class CollisionManager:
         self._names: dict[int, str] = {}
 
     def add_object(self, name: str, mesh: Any, transform: ArrayLike | None = None) -> None:
-        """Adds a ``trimesh.Trimesh`` or a `Shape`; one of the same name is replaced."""
+        """Adds a ``trimesh.Trimesh`` or a `Shape`; an object of the same name is replaced."""
         shape = mesh if isinstance(mesh, Shape) else Shape(mesh, name=name)
         offset = np.array(shape.pose_offset)
         if offset.any():

@@ -30,7 +30,7 @@ class MissedPair:
     point: tuple[float, float, float] | None
     """A point that both bodies share, rounded to float64."""
     depth_ulps: int | None
-    """The least shift that parts them, in float32 steps at the pair; None if all shifts tried were too short."""
+    """The least shift that separates them, in float32 steps at the pair; None if all tried shifts were too short."""
     boxes: NDArray[np.float32] = field(repr=False)
     """The boxes of that frame, shape (n, 6)."""
     files: dict[str, bytes] = field(repr=False)
@@ -44,13 +44,13 @@ class MissedPair:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the judge says of a culler; true if it is a pass."""
+    """The judge's verdict on a culler; true if it is a pass."""
 
     passed: bool
     text: str = field(repr=False)
     """The summary, as the command prints it."""
     data: dict[str, Any] = field(repr=False)
-    """Every case, as the command's ``--format json`` has it."""
+    """Every case, in the form of the command's ``--format json``."""
     missed: MissedPair | None = None
     """The smallest case of a miss, if there is one."""
 
@@ -83,8 +83,8 @@ def judge(
     make : a class, or anything else that makes a culler of a `Scene`
         The culler has ``frame(rotations, translations)``, which returns the pairs i < j as an array of shape (m, 2); with the
         claim "aabb" it has ``frame(boxes)``. If its set of bodies can change, it has ``change(body_shapes, dynamic, was)``,
-        where ``was`` holds each body's former number, or -1; otherwise cases with such a change are skipped. One that can't do a
-        case raises `CaseSkipped` with the reason.
+        where ``was`` holds each body's former number, or -1; otherwise cases with such a change are skipped. A culler that can't
+        answer a case raises `CaseSkipped` with the reason.
     claims : {"mesh", "hull", "or-dop", "sphere", "aabb"}
         What it never misses.
     cases : str
@@ -130,7 +130,7 @@ def tradeoff(scene: str | os.PathLike[str], *flags: str) -> list[dict[str, str |
 
 
 def _rows(*arguments: str) -> list[dict[str, str | float]]:
-    """Runs the command in a process of its own, which can be interrupted, and reads its table."""
+    """Runs the command in a separate process, which can be interrupted, and reads its table."""
     command = [sys.executable, "-m", "sdop", *arguments, "--format", "csv"]
     run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8")
     if run.returncode == 2:

@@ -1,8 +1,8 @@
 //! Arrays of numpy as rows of numbers, and back.
 //!
 //! One rule for all columns of f32: an array of float32 whose rows lie one after the other is read
-//! where it is; any other array of numbers is copied; a number that float32 can't hold is refused,
-//! since the answer would be about another one.
+//! in place; any other array of numbers is copied; a number that float32 can't hold is rejected,
+//! since the answer would be about another number.
 
 use numpy::{
     PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn,
@@ -32,7 +32,7 @@ impl<const N: usize> Rows<'_, N> {
     }
 }
 
-/// A column of rows of N numbers in f32. `what` names it in errors, `remedy` says what to do with
+/// A column of rows of N numbers in f32. `what` is its name in errors, and `remedy` the advice for
 /// numbers that f32 can't hold.
 pub fn rows<'py, const N: usize>(
     given: &Bound<'py, PyAny>,
@@ -72,7 +72,7 @@ pub fn wide_rows<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResu
     Ok(numbers.as_chunks().0.to_vec())
 }
 
-/// Whole numbers from 0 to 2³² − 1, in rows of N; `shape` says which shapes are taken.
+/// Whole numbers from 0 to 2³² − 1, in rows of N; `shape` names the accepted shapes.
 pub fn whole_rows<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[u32; N]>> {
     let (numbers, shape) = whole(given, what)?;
     check_shape::<N>(&shape, what)?;
@@ -131,8 +131,8 @@ fn as_f64(given: &Bound<'_, PyAny>, what: &str) -> PyResult<(Vec<f64>, Vec<usize
     Ok((numbers, array.shape().to_vec()))
 }
 
-/// Anything that numpy takes for an array of numbers, in another type of the same kind: no fraction
-/// is cut off.
+/// Converts anything that numpy accepts as an array of numbers to another type of the same kind: no
+/// fraction is cut off.
 fn as_array<'py>(
     given: &Bound<'py, PyAny>,
     dtype: &str,
@@ -203,7 +203,7 @@ pub fn check_length(what: &str, length: usize, bodies: usize) -> PyResult<()> {
     ))
 }
 
-/// Rows of two as an array of shape (rows, 2), which takes the vector over.
+/// Rows of two as an array of shape (rows, 2), which reuses the vector's memory.
 pub fn pairs<T: numpy::Element>(
     py: Python<'_>,
     pairs: Vec<[T; 2]>,

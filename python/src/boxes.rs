@@ -1,4 +1,4 @@
-//! Boxes on the world's axes.
+//! Axis-aligned boxes: one call, frames, and a world.
 
 use std::sync::Mutex;
 use std::time::Instant;
@@ -20,7 +20,7 @@ fn boxes<'py>(given: &Bound<'py, PyAny>) -> PyResult<Rows<'py, 6>> {
     rows(given, "boxes", ROUND)
 }
 
-/// Pairs as rows, sorted if wanted.
+/// Pairs as rows, sorted if `sort` is true.
 pub(super) fn list(found: &PairList, sort: bool) -> Vec<[u32; 2]> {
     if sort {
         found.sorted()
@@ -43,16 +43,16 @@ pub(super) fn groups(
     Ok(Some(groups.collect()))
 }
 
-/// Which boxes meet? Touching is meeting.
+/// Finds the pairs of boxes that meet, touching included.
 ///
 /// Parameters
 /// ----------
 /// boxes : array of float32, shape (n, 6) or (n, 2, 3)
-///     Lower corner x, y, z, then the upper one. float64 is taken where float32 holds each number.
+///     Lower corner x, y, z, then the upper one. float64 is accepted if float32 holds each number.
 /// groups : array of whole numbers, shape (n, 2), optional
 ///     Bits of the groups that each box is in, and of those that it collides with.
 /// sort : bool
-///     Whether the rows are sorted; otherwise the same boxes give the same order.
+///     Whether the rows are sorted. Otherwise equal boxes give an equal order.
 /// threads : int
 ///     Number of threads.
 ///
@@ -72,13 +72,13 @@ pub fn box_pairs<'py>(
     BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort)
 }
 
-/// Finds the boxes that meet, frame after frame: faster than `box_pairs`, since what one frame
-/// finds serves the next.
+/// Finds the boxes that meet, frame after frame. It is faster than `box_pairs`, since results of
+/// one frame are reused in the next.
 ///
 /// Parameters
 /// ----------
 /// finder : str
-///     Who finds the candidates; the reported set doesn't depend on it.
+///     The algorithm that finds candidates. The reported set doesn't depend on it.
 /// threads : int
 ///     Number of threads.
 #[pyclass(frozen, module = "sdop")]
@@ -102,8 +102,8 @@ impl BoxCuller {
         })))
     }
 
-    /// The pairs of this frame's boxes, as `box_pairs` has them. Their number may change from frame
-    /// to frame.
+    /// The pairs of this frame's boxes, in the form of `box_pairs`. The number of boxes may change
+    /// from frame to frame.
     #[pyo3(signature = (boxes, *, groups=None, sort=false))]
     fn cull<'py>(
         &self,
@@ -125,15 +125,14 @@ impl BoxCuller {
         pairs(py, found.map_err(refused)?)
     }
 
-    /// How long the last `cull` took, without what passing arrays took.
+    /// Seconds of the last `cull`, without the time for passing arrays.
     #[getter]
     fn seconds(&self, py: Python<'_>) -> f64 {
         locked(py, &self.0, |timed| timed.seconds)
     }
 }
 
-/// A long-lived set of boxes: ids that stay, boxes at rest, groups, and pairs as a list or as
-/// events.
+/// A long-lived set of boxes: stable ids, boxes at rest, groups, and pairs as a list or as events.
 #[pyclass(frozen, module = "sdop")]
 pub struct BoxWorld(Mutex<sdop::BoxWorld>);
 
@@ -175,7 +174,7 @@ impl BoxWorld {
         locked(py, &self.0, |world| world.remove(BodyId::from_bits(id))).map_err(refused)
     }
 
-    /// Moves a box, or gives it another size.
+    /// Moves or resizes a box.
     fn set_bounds(&self, py: Python<'_>, id: u64, bounds: &Bound<'_, PyAny>) -> PyResult<()> {
         let bounds = one(bounds)?;
         locked(py, &self.0, |world| {
@@ -184,8 +183,8 @@ impl BoxWorld {
         .map_err(refused)
     }
 
-    /// Puts a box to rest, wakes it, or makes it scenery: "resting", "dynamic" or "fixed". Rest
-    /// begins and ends no pair.
+    /// Puts a box to rest, wakes it, or fixes it: "resting", "dynamic" or "fixed". Putting a box
+    /// to rest begins and ends no pair.
     fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
         let motion = self::motion(motion)?;
         locked(py, &self.0, |world| {
@@ -194,8 +193,8 @@ impl BoxWorld {
         .map_err(refused)
     }
 
-    /// Moves many boxes: ids of shape (n,), boxes as `box_pairs` takes them. Those before one that
-    /// is refused have moved.
+    /// Moves many boxes: ids of shape (n,), boxes in the form of `box_pairs`. If one is rejected,
+    /// those before it have moved.
     fn set_many(
         &self,
         py: Python<'_>,
@@ -225,7 +224,8 @@ impl BoxWorld {
         pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())))
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    /// The pairs that began, persisted or ended between the last call of this method and the last
+    /// cull.
     fn events(&self, py: Python<'_>) -> Events {
         locked(py, &self.0, |world| Events::new(&world.events()))
     }
@@ -236,7 +236,7 @@ impl BoxWorld {
         super::world::saved(&snapshot)
     }
 
-    /// Makes this world the one of a snapshot.
+    /// Replaces this world by that of a snapshot.
     fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         let snapshot = super::world::read_back(snapshot)?;
         locked(py, &self.0, |world| world.restore(&snapshot)).map_err(refused)

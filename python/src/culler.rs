@@ -25,11 +25,11 @@ const ROUND: &str = "pass float32, whose pose is then the one that is culled; `s
 /// body_shapes : array of whole numbers, shape (n,)
 ///     For each body, the index of its shape.
 /// dynamic : array of bool, shape (n,), optional
-///     Whether a body may move; pairs of two that may not are never reported. All may, unless given.
+///     Whether a body may move; pairs of two static bodies are never reported. Default: all may.
 /// strategy : str
 ///     Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs.
 /// finder : str
-///     Who finds the candidates; the reported set doesn't depend on it.
+///     The algorithm that finds candidates. The reported set doesn't depend on it.
 /// interest : list of int, optional
 ///     Bodies of interest, for the strategies that need them.
 /// groups : array of whole numbers, shape (n, 2), optional
@@ -42,7 +42,7 @@ pub struct Culler(Mutex<State>);
 struct State {
     culler: sdop::Culler,
     bodies: Bodies,
-    /// Whether no frame has come yet, so that the poses of static bodies are unknown.
+    /// Whether there was no frame yet, so that the poses of static bodies are unknown.
     is_new: bool,
     seconds: f64,
 }
@@ -106,7 +106,7 @@ impl Culler {
     /// rotations : array of float32, shape (n, 4)
     ///     Quaternions x, y, z, w of any non-zero norm.
     /// translations : array of float32, shape (n, 3)
-    ///     Of each body's origin, in world coordinates.
+    ///     Position of each body's origin, in world coordinates.
     /// sort : bool
     ///     Whether the rows are sorted.
     ///
@@ -131,13 +131,13 @@ impl Culler {
         pairs(py, found?)
     }
 
-    /// The finder in use: the one asked for, or what "auto" has picked.
+    /// The finder in use: the chosen one, or the choice of "auto".
     #[getter]
     fn finder(&self, py: Python<'_>) -> &'static str {
         locked(py, &self.0, |state| state.culler.finder().name())
     }
 
-    /// How long the last `cull` took, without what passing arrays took.
+    /// Seconds of the last `cull`, without the time for passing arrays.
     #[getter]
     fn seconds(&self, py: Python<'_>) -> f64 {
         locked(py, &self.0, |state| state.seconds)

@@ -1,4 +1,4 @@
-//! What the library refuses, as Python's exceptions with the same text and remedy.
+//! Errors of the library as Python's exceptions, with the same text and remedy.
 
 use std::fmt::Display;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -43,7 +43,7 @@ pub fn locked<T: Send, R: Send>(
     py.detach(|| run(&mut lock(guarded)))
 }
 
-/// A panic in one call is that call's alone: whatever it left is checked by the next.
+/// A panic in one call doesn't affect others: the next call checks the state that it left.
 fn lock<T>(guarded: &Mutex<T>) -> MutexGuard<'_, T> {
     guarded.lock().unwrap_or_else(PoisonError::into_inner)
 }

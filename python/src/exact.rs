@@ -15,7 +15,7 @@ use super::shape::Shape;
 /// shape_a, shape_b : Shape
 /// pose_a, pose_b : (rotation, translation)
 ///     Quaternion x, y, z, w of any non-zero norm, and translation, of float32 or float64: the
-///     answer is about these very numbers.
+///     answer is about exactly these numbers.
 ///
 /// Returns
 /// -------

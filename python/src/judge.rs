@@ -20,7 +20,8 @@ use super::errors::{CaseSkipped, SdopError, refused};
 /// it has `frame(boxes)` instead. If its set of bodies can change, it has `change(body_shapes,
 /// dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
 /// skipped otherwise. So are those of the claims "filter", "margin" and "restore" without
-/// `filter(groups, excluded)`, `margins(margins)`, or `save()` and `restore()`. `CaseSkipped` skips a case, any other exception is an error of it.
+/// `filter(groups, excluded)`, `margins(margins)`, or `save()` and `restore()`. `CaseSkipped` skips
+/// a case, any other exception is an error of the case.
 ///
 /// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss;
 /// `sdop.judge` makes a `Verdict` of it.
@@ -75,10 +76,10 @@ fn missed(py: Python<'_>, smallest: &Smallest) -> PyResult<Missed> {
     Ok((data.to_string(), matrix(py, boxes)?.unbind(), files))
 }
 
-/// What a culler is made for: the shapes of a case, and the bodies of its first frame.
+/// The input of a culler's constructor: the shapes of a case, and the bodies of its first frame.
 #[pyclass(frozen, get_all, module = "sdop")]
 pub struct Scene {
-    /// What it is judged by.
+    /// The claim by which it is judged.
     claim: &'static str,
     /// A dict for each shape: `name`, `vertices` (n, 3), `triangles` (m, 3), `ball` (centre and
     /// radius), and the or-DOP's `basis` (3, 3, a row for each axis), `lo` and `hi` (k / 2).
@@ -112,7 +113,7 @@ impl Scene {
     }
 }
 
-/// A class of Python, or anything else that makes cullers when it is called.
+/// A Python class, or another callable that makes cullers.
 struct InPython {
     make: Py<PyAny>,
 }
@@ -139,7 +140,7 @@ impl Subject for InPython {
 }
 
 impl InPython {
-    /// Answers all frames, or says why the case is skipped.
+    /// Answers all frames, or returns the reason why the case is skipped.
     fn run(
         &self,
         py: Python<'_>,
@@ -174,7 +175,7 @@ impl InPython {
     }
 }
 
-/// Calls a method that a culler may have; false if it hasn't.
+/// Calls a method that a culler may have. Returns false if it has none.
 fn told<'py>(
     culler: &Bound<'py, PyAny>,
     method: &str,

@@ -1,5 +1,5 @@
-//! The extension module behind the Python package `sdop`: arrays in, arrays out, and nothing
-//! decided here.
+//! The extension module of the Python package `sdop`: arrays in, arrays out, and no
+//! decisions.
 //!
 //! Every class guards its culler with a lock that is taken without the interpreter's, so that
 //! threads of Python take turns instead of failing, and others run while a frame is culled.

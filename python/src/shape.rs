@@ -1,4 +1,4 @@
-//! Meshes made ready for culling.
+//! Meshes prepared for culling.
 
 use std::sync::OnceLock;
 
@@ -17,20 +17,21 @@ use super::errors::{refused, with_help};
 /// Parameters
 /// ----------
 /// vertices : array of floats, shape (n, 3), or a `trimesh.Trimesh`
-///     Positions in the mesh's own frame, to whose origin poses refer. float64 is rounded to float32, about a point near the
-///     mesh if it is far from its origin.
+///     Positions in the mesh's frame, whose origin poses place. float64 is rounded to float32, about
+///     a point near the mesh if it is far from its origin.
 /// triangles : array of whole numbers, shape (m, 3)
 ///     Vertex indices of each triangle; left out for a `trimesh.Trimesh`.
 /// radius : float, optional
 ///     Scales the mesh about its origin until its smallest enclosing ball has this radius.
 /// origin : {"file", "ball"}
-///     Which point of the mesh poses place: its own origin, or the centre of its smallest enclosing ball.
+///     The point of the mesh that poses place: its origin, or the centre of its smallest enclosing
+///     ball.
 /// k : {6, 14, 18, 26}
 ///     Number of or-DOP faces.
 /// axes : {"principal", "model"}
 ///     Axes of the or-DOP: principal axes of the hull, or the mesh's own.
 /// name : str
-///     What errors call the mesh.
+///     Its name in errors.
 #[pyclass(frozen, module = "sdop")]
 pub struct Shape {
     pub(super) built: sdop::Shape,
@@ -132,14 +133,14 @@ impl Shape {
         self.built.offset
     }
 
-    /// Where the origin of `vertices` lies, seen from the point that poses place: zero unless the
+    /// The origin of `vertices` relative to the point that poses place: zero unless the
     /// mesh is so far from its origin that float32 can't hold its vertices there.
     #[getter]
     fn pose_offset(&self) -> [f64; 3] {
         self.built.pose_offset
     }
 
-    /// By how much the mesh was scaled.
+    /// The factor by which the mesh was scaled.
     #[getter]
     fn scale(&self) -> f64 {
         self.built.scale
@@ -166,7 +167,7 @@ impl Shape {
         })
     }
 
-    /// The shape as the exact reference takes it, prepared at first use.
+    /// The shape for the exact reference, prepared at first use.
     pub(super) fn judged(&self) -> PyResult<&reference::Shape> {
         if self.built.is_far() {
             return Err(with_help(

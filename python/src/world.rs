@@ -14,7 +14,7 @@ use super::shape::{Shape, built};
 
 const ROUND: &str = "pass a float32 quaternion, whose rotation is then the one that is culled";
 
-/// A long-lived set of bodies that come and go, with ids that stay, groups, contact margins,
+/// A long-lived set of bodies that come and go, with stable ids, groups, contact margins,
 /// float64 translations, and pairs as a list or as events.
 ///
 /// At every `cull`, if two meshes, each grown by its body's margin and posed at its float64
@@ -27,7 +27,7 @@ const ROUND: &str = "pass a float32 quaternion, whose rotation is then the one t
 /// strategy : str
 ///     Which volumes are tested: "s-dop-sequential" tests spheres, then or-DOPs.
 /// finder : str
-///     Who finds the candidates; the reported set doesn't depend on it.
+///     The algorithm that finds candidates. The reported set doesn't depend on it.
 /// threads : int
 ///     Number of threads.
 #[pyclass(frozen, module = "sdop")]
@@ -61,7 +61,7 @@ impl World {
         locked(py, &self.0, |world| world.add_shape(shape)).map_err(refused)
     }
 
-    /// Removes a shape that no body has.
+    /// Removes a shape that no body uses.
     fn remove_shape(&self, py: Python<'_>, shape: u32) -> PyResult<()> {
         locked(py, &self.0, |world| world.remove_shape(shape)).map_err(refused)
     }
@@ -75,11 +75,11 @@ impl World {
     /// rotation : four numbers
     ///     Quaternion x, y, z, w of any non-zero norm, in float32.
     /// translation : three numbers
-    ///     Of its origin, in world coordinates, in float64.
+    ///     Position of its origin, in world coordinates, in float64.
     /// margin : float
     ///     A length: pairs are reported whose meshes, each grown by its margin, meet.
     /// dynamic : bool
-    ///     Whether it may move; pairs of two bodies that may not are never reported.
+    ///     Whether it may move; pairs of two static bodies are never reported.
     /// groups : (int, int)
     ///     Bits of the groups that it is in, and of those that it collides with.
     #[pyo3(signature = (shape, rotation, translation, *, margin=0.0, dynamic=true, groups=(u32::MAX, u32::MAX)))]
@@ -118,7 +118,7 @@ impl World {
         locked(py, &self.0, |world| world.remove(BodyId::from_bits(id))).map_err(refused)
     }
 
-    /// Moves a body: a step or a teleport.
+    /// Moves a body by any distance.
     fn set_pose(
         &self,
         py: Python<'_>,
@@ -133,8 +133,8 @@ impl World {
         .map_err(refused)
     }
 
-    /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). Those before
-    /// one that is refused have moved.
+    /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). If one
+    /// is rejected, those before it have moved.
     fn set_poses(
         &self,
         py: Python<'_>,
@@ -158,7 +158,7 @@ impl World {
         .map_err(refused)
     }
 
-    /// The body as it is now, by the names of `insert`'s parameters.
+    /// The present body, with the names of `insert`'s parameters.
     fn body<'py>(&self, py: Python<'py>, id: u64) -> PyResult<Bound<'py, PyDict>> {
         let body =
             locked(py, &self.0, |world| world.body(BodyId::from_bits(id))).map_err(refused)?;
@@ -185,7 +185,8 @@ impl World {
         pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())))
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    /// The pairs that began, persisted or ended between the last call of this method and the last
+    /// cull.
     fn events(&self, py: Python<'_>) -> Events {
         locked(py, &self.0, |world| Events::new(&world.events()))
     }
@@ -197,7 +198,8 @@ impl World {
         saved(&snapshot)
     }
 
-    /// Makes this world the one of a snapshot. It must have the same shapes under the same numbers.
+    /// Replaces this world by that of a snapshot. It must have the same shapes under the same
+    /// numbers.
     fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         let snapshot = read_back(snapshot)?;
         locked(py, &self.0, |world| world.restore(&snapshot)).map_err(refused)
@@ -230,8 +232,7 @@ fn pose(
     ))
 }
 
-/// What has changed between two reads of events: three lists of pairs, each of shape (m, 2),
-/// sorted.
+/// The changes between two calls of `events`: three lists of pairs, each of shape (m, 2), sorted.
 #[pyclass(frozen, module = "sdop")]
 pub struct Events {
     begun: Vec<[u64; 2]>,

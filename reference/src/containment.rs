@@ -1,5 +1,5 @@
-//! Is the mesh in its volumes, exactly? Checked apart from every overlap, for body-frame volumes
-//! and for posed ones.
+//! Containment: whether a mesh is in its volumes, exactly. It is checked separately from overlaps,
+//! for body-frame volumes and for posed ones.
 //!
 //! All checks take a pose; a volume in the body frame is checked under [`Pose::IDENTITY`], a
 //! world-aligned one with the identity basis under the body's pose. The cascade is that of
@@ -17,7 +17,7 @@ use crate::pose::Pose;
 use crate::shape::Shape;
 use crate::volume::{Ball, Slabs};
 
-/// What sticks out.
+/// The error for a mesh that is not inside its volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Breach {
     /// A vertex outside the ball.
@@ -42,7 +42,7 @@ pub enum Breach {
     },
 }
 
-/// Every vertex in the ball and in the slabs, and every direction exact.
+/// Checks that every vertex is in the ball and in the slabs, and that every direction is exact.
 ///
 /// # Errors
 /// The first breach.

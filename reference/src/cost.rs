@@ -1,7 +1,6 @@
-//! The paper's equation 1, T = Nu·Cu + Nv·Cv + Co, with Cv split into hits and misses (design,
-//! section 3).
+//! The paper's equation 1, T = Nu·Cu + Nv·Cv + Co, with Cv split into hits and misses.
 
-/// What one run counted.
+/// The counts of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Sphere pairs tested.
@@ -12,11 +11,11 @@ pub struct Counters {
     pub ordop_tests: u64,
     /// or-DOP pairs that overlap.
     pub ordop_hits: u64,
-    /// Pairs of a homogeneous `aabb`, `k-dop` or `obb` tested.
+    /// Pairs of a single volume (`aabb`, `k-dop` or `obb`) tested.
     pub volume_tests: u64,
     /// Those that overlap.
     pub volume_hits: u64,
-    /// Sphere hits reported without an or-DOP test, the budget having ended.
+    /// Sphere hits reported without an or-DOP test, because the budget was spent.
     pub untested: u64,
     /// Pairs reported.
     pub reported: u64,
@@ -28,7 +27,7 @@ pub fn pair_tests(bodies: u64, static_bodies: u64) -> u64 {
     pairs(bodies) - pairs(static_bodies)
 }
 
-/// Seconds that one update, one hit and one miss of a volume take, and what building it took once.
+/// The prices of a volume in seconds: one update, one hit and one miss, and building it once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VolumeCost {
     /// Cu

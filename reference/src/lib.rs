@@ -1,9 +1,10 @@
-//! The plain reference of S-DOP culling: one formula a function, no code shared with the culler.
+//! The reference of S-DOP culling: plain formulas, one per function, with no code shared with the
+//! culler. It decides which pairs a culler must report, for the judge and for tests.
 //!
-//! The stages carry the culler's names: [`pose`], [`volume`], [`shape`], [`overlap`],
-//! [`broad_phase`], [`strategy`], [`cost`]. Loops are plain f64 and read like the paper; [`exact`]
-//! decides the same predicates in exact real arithmetic, and `optimised ⊇ reference predicate ⊇
-//! exact mesh intersection` is what the culler's tests hold against it.
+//! Modules have the names of the culler's stages: [`pose`], [`volume`], [`shape`], [`overlap`],
+//! [`broad_phase`], [`strategy`], [`cost`]. They are plain f64 loops that read like the paper.
+//! [`exact`] decides the same predicates in exact real arithmetic. The culler's tests check that
+//! `optimised ⊇ reference predicate ⊇ exact mesh intersection`.
 //!
 //! Conventions: right-handed axes, column vectors `[x, y, z]`, quaternions `(x, y, z, w)` of any
 //! non-zero norm, a pose is x ↦ R(q)x/|q|² + t. Volumes are the exactly posed, uninflated ones;
@@ -50,7 +51,7 @@ pub use strategy::{Strategy, pairs};
 pub use volume::{Ball, DirectionSet, Slabs};
 pub use wide::WidePose;
 
-/// What the reference refuses to judge: an answer about it would mean nothing.
+/// Invalid input, for which an answer would be meaningless.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum InvalidInput {
     /// A coordinate is NaN or infinite.

@@ -135,8 +135,9 @@ mod tests {
         }
     }
 
+    /// A quarter turn about z takes x to y.
     #[test]
-    fn a_quarter_turn_about_z_takes_x_to_y() {
+    fn quarter_turn_takes_x_to_y() {
         let q = [0.0, 0.0, 1.0, 1.0];
         let image = apply(&rotation(&q), &[1.0, 0.0, 0.0]);
         assert_eq!(image, [0.0, 2.0, 0.0]);

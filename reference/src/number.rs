@@ -1,4 +1,4 @@
-//! The numbers that a formula may be written over.
+//! [`Number`]: the kinds of numbers over which formulas are written.
 //!
 //! A decision is the sign of a polynomial in the input. Written once over [`Number`], the same
 //! polynomial is guessed in f64, bounded in intervals ([`crate::exact::interval`]) and computed
@@ -36,8 +36,7 @@ pub trait Number: Clone {
     fn sign(&self) -> Option<Ordering>;
 }
 
-/// Unguarded: the sign is a guess, which whoever asks checks by a bound or by another kind of
-/// number.
+/// Unguarded: the sign is a guess, which the caller checks by a bound or by another kind of number.
 impl Number for f64 {
     fn lift(x: f64, _unit: i32) -> Self {
         x

@@ -1,9 +1,9 @@
-//! Poses: x ↦ R(q)x/|q|² + t with any non-zero quaternion (design, section 2).
+//! Poses: x ↦ R(q)x/|q|² + t with any non-zero quaternion.
 
 use crate::InvalidInput;
 use crate::linear::{Matrix, Vector, apply, norm_squared, rotation, sub};
 
-/// Where a body is: a quaternion and a translation as given, never renormalised.
+/// The pose of a body: a quaternion and a translation as given, never renormalised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     q: [f64; 4],
@@ -25,8 +25,8 @@ impl Pose {
         Self::from_f64(q, t.map(f64::from))
     }
 
-    /// The same with a translation that f32 may not hold. Its numbers are of f32's range, so that
-    /// what is shown of f64's range for f32 input holds.
+    /// A pose with an f64 translation, whose numbers are in f32's range, so that the error analysis
+    /// for f32 input remains valid.
     ///
     /// # Errors
     /// As [`Self::new`], and when a number of the translation is beyond f32's largest or, other
@@ -49,7 +49,7 @@ impl Pose {
         Ok(Self::of_f64(q.map(f64::from), t))
     }
 
-    /// Numbers that f32 need not hold: only for [`WidePose`](crate::WidePose).
+    /// A pose of arbitrary f64 numbers, only for [`WidePose`](crate::WidePose).
     pub(crate) fn of_f64(q: [f64; 4], t: Vector<f64>) -> Self {
         Self { q, t }
     }

@@ -1,4 +1,4 @@
-//! What is judged: a mesh with its volumes, prepared once, and bodies that are in one shape each.
+//! [`Shape`], a mesh with its volumes, and [`Body`], a shape with a pose.
 
 use std::sync::OnceLock;
 
@@ -60,7 +60,7 @@ impl Shape {
         })
     }
 
-    /// The same shape with an oriented box of its own (`directions` K6) for the `obb` strategy.
+    /// The shape with another oriented box (`directions` K6) for the `obb` strategy.
     ///
     /// # Errors
     /// As [`Shape::new`].
@@ -83,13 +83,13 @@ impl Shape {
     }
 }
 
-/// A rigid body: its form, where it is, and whether it may move.
+/// A rigid body: its shape, its pose, and whether it may move.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'a> {
     /// Mesh and volumes in the body frame.
     pub shape: &'a Shape,
     /// Position and orientation.
     pub pose: Pose,
-    /// Pairs of two bodies that are not are never reported.
+    /// Whether it may move. Pairs of two bodies that may not are never reported.
     pub dynamic: bool,
 }

@@ -1,5 +1,4 @@
-//! The paper's strategies as predicates over a pair (sections 4 and 5; design, section 2), and all
-//! pairs of a scene.
+//! The paper's strategies (sections 4 and 5) as predicates over a pair, and all pairs of a scene.
 //!
 //! Strategies share one loop and differ in which volumes must overlap. What decides a volume
 //! overlap is a [`OverlapTests`]: the plain f64 formulas here, or the exact ones.
@@ -26,7 +25,7 @@ pub enum Strategy<'a> {
     OrDop,
     /// Spheres overlap and or-DOPs overlap, each sphere hit tested at once.
     Sequential,
-    /// The same from the listed sphere hits.
+    /// The same pairs, from a list of the sphere hits.
     Batch,
     /// Spheres overlap and (neither body is of interest, or or-DOPs overlap). One flag per body.
     ObjectOfInterest(&'a [bool]),

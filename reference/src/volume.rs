@@ -1,5 +1,4 @@
-//! Bounding volumes as plain numbers in the body frame (design, section 2): built elsewhere, judged
-//! here.
+//! Bounding volumes as plain numbers in the body frame. They are built by others and judged here.
 
 use crate::InvalidInput;
 

@@ -1,4 +1,4 @@
-//! The exact mesh answer for poses of f64.
+//! [`WidePose`]: exact mesh intersection for poses of f64.
 //!
 //! [`Pose`] takes f32, and the error bounds of volumes assume that. Whether two meshes meet depends
 //! on the poses through [`Relative`](crate::exact::relative::Relative) alone. Its intervals and
@@ -28,7 +28,7 @@ use crate::{InvalidInput, Pose, Shape};
 /// Components that are smaller than the largest by more than this power of two are refused.
 const SPREAD: i32 = 900;
 
-/// Where a mesh is, in f64: x ↦ R(q)x/|q|² + t.
+/// The pose of a mesh in f64: x ↦ R(q)x/|q|² + t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WidePose(pub(crate) Pose);
 

@@ -1,4 +1,5 @@
-//! Boxes on the world's axes, as engines hand them over.
+//! World-aligned boxes, the type that engines pass to [`BoxCuller`](crate::BoxCuller) and
+//! [`BoxWorld`](crate::BoxWorld).
 
 use super::contract::{ContractError, refuse};
 use crate::simd::{boxes_of, in_default_mode};
@@ -13,7 +14,8 @@ impl Aabb {
         Self { min, max }
     }
 
-    /// Rows of six numbers as boxes, where they are: the lower corner x, y, z, then the upper one.
+    /// Reads rows of six numbers as boxes, without a copy: the lower corner x, y, z, then the upper
+    /// one.
     #[must_use]
     pub fn from_rows(rows: &[[f32; 6]]) -> &[Self] {
         boxes_of(rows)
@@ -23,18 +25,19 @@ impl Aabb {
     #[inline(always)]
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
-        // Without a branch: who asks has mostly sifted before.
+        // Without a branch: most callers have already rejected the pairs that are apart.
         let on =
             |axis: usize| (self.min[axis] <= other.max[axis]) & (other.min[axis] <= self.max[axis]);
         on(0) & on(1) & on(2)
     }
 
-    /// Half its sides.
+    /// Half of each side's length.
     pub(crate) fn half_sides(&self) -> [f32; 3] {
         std::array::from_fn(|axis| 0.5 * self.max[axis] - 0.5 * self.min[axis])
     }
 
-    /// Whether its ends have the bits of another's: equal ones are equal in any floating-point mode.
+    /// Whether the ends have the same bits as another's. Comparing bits works in every
+    /// floating-point mode.
     #[inline]
     pub(crate) fn has_bits_of(&self, other: &Self) -> bool {
         // Written out and without a branch: of every box that is set.
@@ -45,12 +48,13 @@ impl Aabb {
         difference(0) | difference(1) | difference(2) == 0
     }
 
-    /// Whether its ends are finite and in order, by their bits: in any floating-point mode, but not
-    /// of zeros of two signs.
+    /// Whether the ends are finite and in order. Compares bits, so it works in every floating-point
+    /// mode; it is false for a lower end of 0 and an upper end of −0.
     #[inline]
     fn is_surely_sound(&self) -> bool {
         const INFINITY: u32 = f32::INFINITY.to_bits();
-        // Numbers of one sign are in the order of their bits, negative ones in the opposite one.
+        // The bits of positive numbers are in the order of the numbers; those of negative ones in
+        // the opposite order.
         let rank = |bits: u32| (bits ^ (((bits as i32) >> 31) as u32 >> 1)) as i32;
         let size = |bits: u32| bits & !(1 << 31);
         let is_sound = |axis: usize| {
@@ -60,7 +64,7 @@ impl Aabb {
         is_sound(0) & is_sound(1) & is_sound(2)
     }
 
-    /// Checks that a box is one; `body` is its number.
+    /// Checks that a box is valid; `body` is its number in the error.
     #[inline]
     pub(crate) fn check(&self, body: usize) -> Result<(), ContractError> {
         if self.is_surely_sound() {

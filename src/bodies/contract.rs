@@ -1,8 +1,8 @@
-//! The contract between bodies and culling (design, section 4): within it, no strategy misses a
-//! pair.
+//! The contract: what bodies have to satisfy so that no strategy misses a pair.
 //!
-//! Checked where bodies enter and again after every effects step, so that a NaN is reported with
-//! its body's number at the step that made it, and not as a wrong pair list frames later.
+//! It is checked when bodies enter, and again in every step of a simulation. A NaN is therefore
+//! reported with its body's number in the step that produced it, and not as a wrong pair list
+//! frames later.
 
 #[cfg(feature = "shapes")]
 mod poses;
@@ -19,15 +19,15 @@ pub(crate) use poses::{
 #[cfg(feature = "shapes")]
 pub use poses::{check_bodies, check_pose, check_poses, check_vectors};
 
-/// A body outside of the contract.
+/// The error for a body that breaks the contract.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("body {body}: {quantity} {value}")]
 pub struct ContractError {
     /// The body's index.
     pub body: usize,
-    /// The quantity at fault: a column of [`Bodies`](super::Bodies).
+    /// The invalid quantity: a column of [`Bodies`](super::Bodies).
     pub quantity: &'static str,
-    /// Its impossible value.
+    /// The invalid value.
     pub value: String,
     /// How to mend it.
     pub hint: &'static str,
@@ -40,7 +40,8 @@ impl ContractError {
         self.hint
     }
 
-    /// The same, with the body's number in a set in which this one's bodies begin at `first`.
+    /// The same error with the body's number in a larger set, in which these bodies begin at
+    /// `first`.
     #[cfg(feature = "internals")]
     #[doc(hidden)]
     #[must_use]
@@ -50,11 +51,11 @@ impl ContractError {
     }
 }
 
-/// The most bodies that a culler can number: one a quad of its table of balls, and a vector of
-/// padding.
+/// The most bodies that a culler can hold. Its table of balls has one quad per body and one vector
+/// of padding.
 pub const MOST_BODIES: usize = MOST_QUADS - MAX_WIDTH;
 
-/// Checks that so many bodies can be numbered.
+/// Checks that there are at most [`MOST_BODIES`] bodies.
 pub(crate) fn check_number(bodies: usize) -> Result<(), ContractError> {
     if bodies <= MOST_BODIES {
         return Ok(());
@@ -64,7 +65,7 @@ pub(crate) fn check_number(bodies: usize) -> Result<(), ContractError> {
     refuse(MOST_BODIES, "number", value, hint)
 }
 
-/// Checks that a column has one entry a body.
+/// Checks that a column has one entry per body.
 #[doc(hidden)]
 pub fn check_column(name: &'static str, length: usize, bodies: usize) -> Result<(), ContractError> {
     if length == bodies {
@@ -93,8 +94,9 @@ pub(crate) fn refuse(
 mod tests {
     use super::*;
 
+    /// As many bodies are taken as can be numbered.
     #[test]
-    fn as_many_bodies_are_taken_as_can_be_numbered() {
+    fn body_limit_is_enforced() {
         assert_eq!(check_number(0), Ok(()));
         assert_eq!(check_number(MOST_BODIES), Ok(()));
         let told = check_number(MOST_BODIES + 1).map_err(|error| error.to_string());
@@ -105,9 +107,10 @@ mod tests {
         );
     }
 
+    /// An error names a body of a share by its number in the whole scene.
     #[cfg(feature = "internals")]
     #[test]
-    fn a_body_of_a_share_is_told_by_its_number_in_the_whole() {
+    fn error_uses_scene_body_number() {
         let own = ContractError {
             body: 3,
             quantity: "shape",

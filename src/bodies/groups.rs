@@ -1,6 +1,6 @@
 //! Collision groups: which bodies may collide at all.
 
-/// Bits of the groups that a body is in, and of those that it collides with.
+/// Which groups a body is in, and which it collides with: one bit per group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)] // as `sdop.h` has it
 pub struct Groups {
@@ -11,7 +11,7 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// In all groups, colliding with all.
+    /// In all groups, and collides with all: the default.
     pub const ALL: Self = Self {
         member: u32::MAX,
         mask: u32::MAX,
@@ -35,8 +35,9 @@ impl Default for Groups {
 mod tests {
     use super::*;
 
+    /// Bodies collide when each is in a group that the other collides with.
     #[test]
-    fn bodies_collide_when_each_is_in_a_group_that_the_other_collides_with() {
+    fn groups_must_collide_mutually() {
         for (member, mask) in [(0b01, 0b10), (0b10, 0b01), (0b01, 0b01)] {
             let one = Groups { member, mask };
             for other in (0..16).map(|bits| Groups {

@@ -1,4 +1,4 @@
-//! The state of all rigid bodies, one column a quantity; index i is body i in every column.
+//! The state of all rigid bodies, one column per quantity. Index i is body i in every column.
 
 mod aabb;
 pub mod contract;
@@ -21,7 +21,7 @@ pub(crate) use read_ahead::read_ahead;
 pub struct Bodies {
     /// Index into the scene's shapes.
     pub shape: Vec<u32>,
-    /// Whether the body may move; pairs of two bodies that may not are never tested.
+    /// Whether the body may move. Pairs of two bodies that may not are never tested or reported.
     pub dynamic: Vec<bool>,
     /// Orientation quaternion (x, y, z, w) of any non-zero norm.
     pub rotation: Vec<[f32; 4]>,

@@ -1,16 +1,16 @@
 //! Whether a body moves.
 
-/// What a body may do. Pairs of two fixed bodies are never reported; all others are, whatever the
-/// two do.
+/// Whether a body moves, rests or never moves. Pairs of two fixed bodies are never reported; all
+/// other pairs are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Motion {
-    /// It moves, or may at any time.
+    /// It moves, or may move at any time.
     #[default]
     Dynamic,
-    /// It lies still for the time being: asleep, say. Its pairs stay, also those with others at
-    /// rest and with fixed ones, and waking it changes none.
+    /// It does not move at present, for example because it is asleep. Its pairs stay, also those
+    /// with other resting and with fixed bodies. Waking it neither begins nor ends a pair.
     Resting,
-    /// It is scenery.
+    /// It never moves, like scenery.
     Fixed,
 }
 

@@ -1,20 +1,20 @@
 //! The order in which bodies are stored inside a culler.
 //!
-//! A body has a place: all volumes stand in columns by place. Moving bodies come first, then static
-//! ones, so that updates and static pairs need no look at a flag; a pair finder sorts places by
-//! location now and then, so that neighbours in space are neighbours in memory, whatever the order
-//! of the user's columns.
+//! A body's place is its index in a culler's columns of volumes. Moving bodies come first, then
+//! static ones, so that neither updates nor static pairs need a flag. A pair finder now and then
+//! sorts places by location, so that neighbours in space are neighbours in memory, whatever the
+//! order of the user's columns.
 
 use crate::bodies::Bodies;
 
-/// Which body stands where. All columns have one length.
+/// Which body is in which place. All columns have one length.
 #[derive(Clone, Debug, Default)]
 pub struct Places {
     /// The body in each place.
     pub body: Vec<u32>,
     /// Its shape.
     pub shape: Vec<u32>,
-    /// How many bodies move: theirs are the first places.
+    /// How many bodies move. They have the first places.
     pub moving: usize,
 }
 
@@ -35,8 +35,8 @@ impl Places {
         }
     }
 
-    /// The order of the user's columns, every body taken as moving: what times a stage apart from a
-    /// culler.
+    /// The order of the user's columns, with every body taken as moving: for timing a stage without
+    /// a culler.
     #[must_use]
     pub fn as_given(bodies: &Bodies) -> Self {
         let n = bodies.shape.len();
@@ -53,16 +53,16 @@ impl Places {
         self.body.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no bodies.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.body.is_empty()
     }
 
-    /// Replaces the set of bodies by those that are `present`. Of those that move, as of those that
-    /// don't, the ones that did so before keep their order; the others follow. Shapes are left to
-    /// [`Self::reread_shapes`]. Returns of each former place whether its body is among those that
-    /// keep their order.
+    /// Replaces the set of bodies by those that are `present`. Among moving bodies, those that were
+    /// moving before keep their order and the others follow; the same holds for static bodies.
+    /// Shapes are left to [`Self::reread_shapes`]. Returns, for each former place, whether its body
+    /// kept its order.
     pub(crate) fn replace(&mut self, dynamic: &[bool], present: &[bool]) -> Vec<bool> {
         let mut is_new = present.to_vec();
         let former = self.body.iter().enumerate();
@@ -100,8 +100,8 @@ impl Places {
         }
     }
 
-    /// Puts the bodies in another order: `order` names the body that takes each place, by its
-    /// present place or by itself, and is left with the former order.
+    /// Puts the bodies in another order. `order` names the body that takes each place, by its
+    /// present place or by its number, and holds the former order afterwards.
     #[cfg(feature = "shapes")]
     pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &mut Vec<u32>, by_place: bool) {
         if by_place {
@@ -118,8 +118,9 @@ impl Places {
 mod tests {
     use super::*;
 
+    /// An order names bodies or their places and shapes follow.
     #[test]
-    fn an_order_names_bodies_or_their_places_and_shapes_follow() {
+    fn reorder_takes_bodies_or_places() {
         let mut bodies = Bodies::default();
         for body in 0..4 {
             bodies.push(10 + body, body != 1, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);

@@ -1,9 +1,9 @@
-//! Reading a column ahead of its use.
+//! Reading a column into the caches before it is gathered from.
 //!
-//! Users' columns are by body, and what gathers them goes by place: bodies that are neighbours in
-//! space lie anywhere in the column. A column that has just been written by another thread, or so
-//! much else since that it is in memory again, comes into the caches several times as fast from end
-//! to end as in that order.
+//! The user's columns are in the order of bodies and are gathered in the order of places, which is
+//! a random order in memory. A column that is no longer in the caches (another thread has just
+//! written it, or much else was written since) is read several times as fast from end to end as in
+//! that random order.
 
 use std::hint::black_box;
 
@@ -13,9 +13,9 @@ use crate::threads::Threads;
 /// Elements that one thread reads at a time.
 const ELEMENTS_PER_TASK: usize = 8192;
 
-/// Reads a number of each cache line of a column whose elements will be wanted soon, `wanted` of
-/// them in any order. Does nothing and returns false where most won't be, or where the column is
-/// longer than so many bytes: then, what is wanted is better prefetched element by element.
+/// Reads one number of each cache line of a column of which `wanted` elements will be used soon, in
+/// any order. Returns false without reading anything if most elements won't be used or if the
+/// column is longer than `longest` bytes; the caller then prefetches element by element.
 pub fn read_ahead<T: Sync>(
     pool: &Threads,
     column: &[T],
@@ -43,8 +43,8 @@ mod tests {
     /// The longest column that is read, in bytes.
     const MOST_BYTES: usize = 1 << 20;
 
-    /// The numbers that are read of a column of `N` numbers an element, each of which is its own
-    /// index.
+    /// The numbers that are read from a column with `N` numbers per element, each of which is its
+    /// own index.
     fn read<const N: usize>(elements: usize, wanted: usize) -> Vec<usize> {
         let column: Vec<[f32; N]> = (0..elements).map(|i| [(N * i) as f32; N]).collect();
         let seen = Mutex::new(Vec::new());
@@ -67,7 +67,7 @@ mod tests {
     fn leaves_no_line_out<const N: usize>() {
         let elements = 2 * ELEMENTS_PER_TASK + 77;
         let seen = read::<N>(elements, elements);
-        // Wherever lines begin: they are sixteen numbers long.
+        // A line is sixteen numbers long, wherever the lines begin.
         let gaps = seen.windows(2).map(|two| two[1] - two[0]);
         assert!(gaps.max().is_some_and(|gap| gap <= 16), "{N}");
         assert!(
@@ -81,15 +81,17 @@ mod tests {
         );
     }
 
+    /// Each line of a column is read and hardly one twice.
     #[test]
-    fn each_line_of_a_column_is_read_and_hardly_one_twice() {
+    fn every_cache_line_is_read() {
         leaves_no_line_out::<3>();
         leaves_no_line_out::<4>();
         leaves_no_line_out::<6>();
     }
 
+    /// Columns of which less than half is wanted or that are too long are left alone.
     #[test]
-    fn columns_of_which_less_than_half_is_wanted_or_that_are_too_long_are_left_alone() {
+    fn sparse_or_long_columns_are_skipped() {
         assert!(!read::<4>(101, 51).is_empty() && read::<4>(101, 50).is_empty());
         let longest = MOST_BYTES / 16;
         assert!(!read::<4>(longest, longest).is_empty());

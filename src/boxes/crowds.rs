@@ -1,4 +1,4 @@
-//! Crowds of boxes: pairs in portions, a limit to their number, and memory that is given back.
+//! Crowds of boxes: pairs in portions, a limit to their number, and the release of memory.
 
 use super::BoxWorld;
 use crate::culler::CullError;
@@ -7,12 +7,12 @@ use crate::strategy::Output;
 use crate::world::{WorldError, WorldPairs, shrink_column};
 
 impl BoxWorld {
-    /// Culls as [`Self::cull`] does and hands the pairs to `take`, some 65,000 at a time. Returns
-    /// their number; there are no [`Self::pairs`] then, and [`Self::events`] see a cull without
-    /// any.
+    /// Culls as [`Self::cull`] does and hands the pairs to `take`, about 65,000 at a time. Returns
+    /// their number. Then there are no [`Self::pairs`], and for [`Self::events`] the cull found
+    /// none.
     ///
-    /// Portions are not sorted: their order depends on the finder and on the frames so far, never
-    /// on threads. Memory doesn't grow with the number of pairs. With several threads, `take` is
+    /// Portions are not sorted: their order depends on the finder and on earlier frames, never on
+    /// threads. Memory doesn't grow with the number of pairs. With several threads, `take` is
     /// called from any of them, one call at a time.
     ///
     /// # Errors
@@ -28,11 +28,11 @@ impl BoxWorld {
     }
 
     /// Culls as [`Self::cull`] does, if there are at most `limit` pairs. Memory for more is never
-    /// taken.
+    /// allocated.
     ///
     /// # Errors
-    /// More pairs than that, with their number: there are no [`Self::pairs`] then, and the frame
-    /// counts as culled. Otherwise as [`Self::cull`].
+    /// There are more pairs, and the error has their number: then there are no [`Self::pairs`], and
+    /// the frame counts as culled. Otherwise as [`Self::cull`].
     pub fn cull_up_to(&mut self, limit: usize) -> Result<WorldPairs<'_>, WorldError> {
         if self.cull_changed(limit) && self.log.pairs(&self.ids).len() <= limit {
             return Ok(self.log.pairs(&self.ids));
@@ -57,17 +57,17 @@ impl BoxWorld {
         Ok(reported)
     }
 
-    /// Bytes that lists of pairs hold: those of the last cull, those that events were last read of,
-    /// and those on the way to them.
+    /// Bytes of the lists of pairs: those of the last cull, those of the last events, and
+    /// intermediate ones.
     #[must_use]
     pub fn pair_bytes(&self) -> usize {
         self.log.bytes() + self.frames.pair_bytes()
     }
 
-    /// Gives back all memory but what the boxes that are there need, and the last pairs: after a
-    /// crowd, or after most of a world has gone. Free slots at the end are given back, too
-    /// ([`Self::slots`]); ids are still never given again. The next cull begins anew, at the price
-    /// of a first one, and reports the same pairs in the same order.
+    /// Frees all memory except that of the present boxes and the last pairs. Use it after a crowd,
+    /// or when most of a world is gone. Free slots at the end are removed, too ([`Self::slots`]);
+    /// ids are still never reused. The next cull starts without lists, takes as long as a first
+    /// one, and reports the same pairs in the same order.
     pub fn shrink_to_fit(&mut self) {
         self.log.shrink_to_fit(&self.ids);
         let slots = self.ids.shrink();

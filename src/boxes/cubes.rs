@@ -1,29 +1,29 @@
-//! Cubes about boxes, a vector of them at a time.
+//! Computes cubes around boxes, a vector of them at a time.
 
 use crate::bodies::Aabb;
 use crate::rounding::cube::Cube;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, numbers_of, prefetch_ends};
 
-/// How many names ahead boxes are prefetched: neighbours in space lie anywhere in the user's list,
-/// and a core can wait for dozens of cache misses at once.
-pub(super) const AHEAD: usize = 128;
+/// Boxes are prefetched this many names ahead: neighbours in space can be anywhere in the user's
+/// list, and a core can overlap dozens of cache misses.
+pub(super) const PREFETCH_DISTANCE: usize = 128;
 
-/// Makes the cubes of the boxes of these names. Returns the greatest H − h, and whether all boxes
-/// are sound.
-pub(super) struct Make<'a> {
+/// Computes the cubes of the boxes with these names. Returns the greatest H − h, and whether all
+/// boxes are valid.
+pub(super) struct MakeCubes<'a> {
     pub boxes: &'a [Aabb],
     pub names: &'a [u32],
-    /// The names from the one at [`AHEAD`] on, whose boxes are prefetched, or none where boxes are
-    /// in the caches.
+    /// The names from number [`PREFETCH_DISTANCE`] on, whose boxes are prefetched, or none if boxes
+    /// are in the caches.
     pub ahead: &'a [u32],
     pub cubes: &'a mut [[f32; 4]],
 }
 
-impl Kernel for Make<'_> {
+impl Kernel for MakeCubes<'_> {
     type Output = (f32, bool);
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> (f32, bool) {
-        let mut seen = Seen {
+        let mut seen = CubeFacts {
             gap: l.splat(0.0),
             sound: u32::MAX,
         };
@@ -52,16 +52,16 @@ impl Kernel for Make<'_> {
     }
 }
 
-/// What the cubes that were made have in common.
-struct Seen<L: Lanes> {
+/// Facts about all computed cubes.
+struct CubeFacts<L: Lanes> {
     /// The greatest H − h in each lane.
     gap: L::F,
-    /// Bits of the lanes that had sound boxes alone.
+    /// A bit for each lane that had only valid boxes.
     sound: u32,
 }
 
-impl<L: Lanes> Seen<L> {
-    /// Makes the cubes of sixteen boxes, each of which is six numbers.
+impl<L: Lanes> CubeFacts<L> {
+    /// Computes the cubes of sixteen boxes, each given as six numbers.
     #[inline(always)]
     fn make(
         &mut self,
@@ -85,21 +85,21 @@ mod tests {
     use super::*;
     use crate::simd::{Tier, dispatch};
 
-    /// What a tier makes of boxes in an order of its own: their cubes, the greatest H − h, and
-    /// whether all are sound.
+    /// The results of a tier for boxes in the order of `names`: their cubes, the greatest H − h,
+    /// and whether all are valid.
     fn made(tier: Tier, boxes: &[Aabb], names: &[u32]) -> (Vec<[f32; 4]>, f32, bool) {
         let mut cubes = vec![[f32::NAN; 4]; names.len()];
-        let make = Make {
+        let make = MakeCubes {
             boxes,
             names,
-            ahead: names.get(AHEAD..).unwrap_or_default(),
+            ahead: names.get(PREFETCH_DISTANCE..).unwrap_or_default(),
             cubes: &mut cubes,
         };
         let (gap, are_sound) = dispatch(tier, make);
         (cubes, gap, are_sound)
     }
 
-    /// Of so many boxes, the last of which is the longest.
+    /// `count` boxes, of which the last is the longest.
     fn boxes(count: usize) -> Vec<Aabb> {
         let long = |i: usize| if i + 1 == count { 800.0 } else { 8.0 };
         let from = |i: usize| [16.0 * i as f32, -24.0, 8.0 * (i % 7) as f32];
@@ -109,9 +109,10 @@ mod tests {
             .collect()
     }
 
+    /// Every box has its cube in every tier.
     #[test]
-    fn every_box_has_its_cube_in_every_tier() {
-        for count in [1, 15, 16, 17, 33, AHEAD + 22] {
+    fn cubes_are_equal_in_tiers() {
+        for count in [1, 15, 16, 17, 33, PREFETCH_DISTANCE + 22] {
             let boxes = boxes(count);
             let names: Vec<u32> = (0..count as u32).rev().collect();
             for tier in Tier::available() {
@@ -135,8 +136,9 @@ mod tests {
         }
     }
 
+    /// An invalid box is reported at every position.
     #[test]
-    fn a_box_that_is_none_is_told_wherever_it_stands() {
+    fn invalid_boxes_are_reported() {
         let names: Vec<u32> = (0..40).collect();
         for bad in 0..40 {
             let mut boxes = boxes(40);

@@ -1,6 +1,6 @@
-//! All boxes anew in each frame.
+//! A culler that gets all boxes anew in each frame.
 
-use super::frame::Frames;
+use super::frame::BoxFrames;
 use crate::bodies::contract::{check_column, check_number};
 use crate::bodies::{Aabb, Groups, PairFilter};
 use crate::counters::VolumeCounters;
@@ -23,17 +23,17 @@ use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 /// # Ok::<(), sdop::CullError>(())
 /// ```
 ///
-/// A clone culls on as the original would, on threads that it starts for itself.
+/// A clone continues as the original would, on its own threads.
 #[derive(Clone, Debug)]
 pub struct BoxCuller {
-    frames: Frames,
+    frames: BoxFrames,
     groups: Option<Vec<Groups>>,
     pairs: PairList,
     counters: VolumeCounters,
 }
 
-/// What of a [`BoxCuller`] or a [`BoxWorld`](super::BoxWorld) can be chosen; what isn't, has its
-/// default.
+/// Choices for a [`BoxCuller`] or a [`BoxWorld`](super::BoxWorld). Those that aren't made have
+/// defaults.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "a builder does nothing before `build`"]
 pub struct BoxCullerBuilder {
@@ -55,21 +55,21 @@ impl Default for BoxCullerBuilder {
 }
 
 impl BoxCullerBuilder {
-    /// Who finds the candidates; the reported set doesn't depend on it.
+    /// The algorithm that finds candidates. The reported set doesn't depend on it.
     pub fn finder(self, finder: Finder) -> Self {
         Self { finder, ..self }
     }
 
-    /// Number of threads, the caller's included, at most 1,024 or the culler isn't built; 0 is
-    /// taken as 1. Frames of little work stay on the caller's. Lists and counters don't depend on
+    /// Number of threads, the caller's included, at most 1,024, or the culler isn't built; 0 means
+    /// 1. Frames with little work stay on the caller's thread. Lists and counters don't depend on
     /// it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
 
-    /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which
-    /// threads besides the caller's are woken: a millisecond (2²⁰ ns) by default, 0 for always.
-    /// Lists and counters don't depend on it.
+    /// The least work of a frame for which other threads than the caller's are woken, in
+    /// nanoseconds of one thread as estimated from counters: a millisecond (2²⁰ ns) by default, 0
+    /// for always. Lists and counters don't depend on it.
     pub fn worth_waking(self, nanoseconds: u64) -> Self {
         let worth_waking = nanoseconds;
         Self {
@@ -78,7 +78,7 @@ impl BoxCullerBuilder {
         }
     }
 
-    /// A tier of SIMD in place of the fastest of this CPU. Lists and counters don't depend on it.
+    /// A SIMD tier instead of the fastest of this CPU. Lists and counters don't depend on it.
     pub fn tier(self, tier: Tier) -> Self {
         let tier = Some(tier);
         Self { tier, ..self }
@@ -87,19 +87,19 @@ impl BoxCullerBuilder {
     /// The culler.
     ///
     /// # Errors
-    /// Threads that the system refuses.
+    /// The system cannot start the threads.
     pub fn build(&self) -> Result<BoxCuller, CullError> {
         Ok(BoxCuller::with(self.frames()?))
     }
 
-    pub(super) fn frames(&self) -> Result<Frames, CullError> {
+    pub(super) fn frames(&self) -> Result<BoxFrames, CullError> {
         Ok(self.frames_on(Threads::new(self.threads)?))
     }
 
-    pub(super) fn frames_on(&self, threads: Threads) -> Frames {
+    pub(super) fn frames_on(&self, threads: Threads) -> BoxFrames {
         let tier = self.tier.unwrap_or_else(Tier::detect);
         let threads = FrameThreads::new(threads, self.worth_waking);
-        Frames::new(self.finder, tier, threads)
+        BoxFrames::new(self.finder, tier, threads)
     }
 }
 
@@ -110,19 +110,19 @@ impl Default for BoxCuller {
 }
 
 impl BoxCuller {
-    /// A culler with every default: the finder that `auto` picks, the fastest tier of this CPU, the
+    /// A culler with all defaults: the finder that `auto` picks, the fastest tier of this CPU, the
     /// caller's thread.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The choices that [`Self::new`] makes, to be made otherwise.
+    /// The choices of [`Self::new`], which can be changed.
     pub fn builder() -> BoxCullerBuilder {
         BoxCullerBuilder::default()
     }
 
-    fn with(frames: Frames) -> Self {
+    fn with(frames: BoxFrames) -> Self {
         Self {
             frames,
             groups: None,
@@ -131,20 +131,20 @@ impl BoxCuller {
         }
     }
 
-    /// From now on, only pairs of boxes that may collide are listed; `None`: all may. One entry a
-    /// box.
+    /// From now on, only pairs of boxes whose groups collide are listed; with `None`, all are. One
+    /// entry per box.
     pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) {
         self.groups = groups;
     }
 
     /// The pairs i < j of boxes that meet and whose groups collide, each once, in an order that
-    /// depends on the finder and on the frames so far alone. The number of boxes may change from
-    /// frame to frame; such a frame takes longer.
+    /// depends only on the finder and on earlier frames. The number of boxes may change from frame
+    /// to frame; such a frame takes longer.
     ///
     /// # Errors
-    /// An end that is infinite or no number, a lower one above the upper one, more boxes than can
-    /// be numbered, a column of groups of another length. [`Self::pairs`] is empty then, and the
-    /// next frame is culled as ever.
+    /// An end is infinite or NaN, a lower end is above the upper one, there are more boxes than can
+    /// be numbered, or the column of groups has another length. Then [`Self::pairs`] is empty, and
+    /// the next frame is culled as usual.
     pub fn cull(&mut self, boxes: &[Aabb]) -> Result<&PairList, CullError> {
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
@@ -153,10 +153,10 @@ impl BoxCuller {
         outcome.map(|()| &self.pairs)
     }
 
-    /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, some 65,000 at a time,
-    /// in the order of that list. Returns their number; [`Self::pairs`] is empty. Memory doesn't
-    /// grow with their number. With several threads, `take` is called from any of them, one call at
-    /// a time.
+    /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, about 65,000 at a
+    /// time, in the order of that list. Returns their number; [`Self::pairs`] is empty. Memory
+    /// doesn't grow with their number. With several threads, `take` is called from any of them, one
+    /// call at a time.
     ///
     /// # Errors
     /// As [`Self::cull`].
@@ -176,11 +176,11 @@ impl BoxCuller {
     }
 
     /// Culls one frame as [`Self::cull`] does, if it has at most `limit` pairs. Memory for more is
-    /// never taken.
+    /// never allocated.
     ///
     /// # Errors
-    /// More pairs than that, with their number: [`Self::pairs`] is empty then, and the frame counts
-    /// as culled. Otherwise as [`Self::cull`].
+    /// There are more pairs, and the error has their number: then [`Self::pairs`] is empty, and the
+    /// frame counts as culled. Otherwise as [`Self::cull`].
     pub fn cull_up_to(&mut self, boxes: &[Aabb], limit: usize) -> Result<&PairList, CullError> {
         let mut kept = std::mem::take(&mut self.pairs);
         kept.clear();
@@ -222,21 +222,21 @@ impl BoxCuller {
         &self.counters
     }
 
-    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests
-    /// that [`Self::counters`] count. See [`Culler::list_tests`](crate::Culler::list_tests).
+    /// Candidates that the last frame tested to build a list of neighbours, in addition to the
+    /// tests that [`Self::counters`] count. See [`Culler::list_tests`](crate::Culler::list_tests).
     #[must_use]
     pub fn list_tests(&self) -> u64 {
         self.frames.list_tests()
     }
 
-    /// Bytes that lists of pairs hold: the reported ones, and those on the way to them.
+    /// Bytes of the lists of pairs: the reported ones and intermediate ones.
     #[must_use]
     pub fn pair_bytes(&self) -> usize {
         self.pairs.bytes() + self.frames.pair_bytes()
     }
 
-    /// Gives back the memory of lists of pairs beyond what the last frame's reported ones take:
-    /// after a crowd, which would hold it for ever.
+    /// Frees the memory of lists of pairs, except that of the last frame's reported ones. Use it
+    /// after a crowd, whose memory would otherwise be kept.
     pub fn shrink_to_fit(&mut self) {
         self.pairs.shrink_to_fit();
         self.frames.shrink_to_fit();
@@ -250,8 +250,9 @@ mod tests {
     use super::*;
     use crate::boxes::BoxWorld;
 
+    /// A builder keeps each choice and no other.
     #[test]
-    fn a_builder_keeps_each_choice_and_no_other() {
+    fn builder_keeps_choices() {
         let built = BoxCuller::builder();
         assert_eq!(built, BoxCullerBuilder::default());
         let built = built
@@ -273,8 +274,9 @@ mod tests {
         assert_eq!(built.threads(5), other);
     }
 
+    /// Pairs are those of the last frame.
     #[test]
-    fn pairs_are_those_of_the_last_frame() {
+    fn pairs_are_of_last_frame() {
         let at = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
         let mut culler = BoxCuller::new();
         assert_eq!(culler.cull(&[at(0.0), at(5.0), at(0.5)]).unwrap().len(), 1);
@@ -283,9 +285,9 @@ mod tests {
         assert_eq!(culler.pairs().sorted(), [[1, 2]]);
     }
 
-    /// All-pairs tests every pair, as `auto` would not.
+    /// All-pairs tests every pair; `auto` would not.
     #[test]
-    fn cullers_and_worlds_find_as_their_builder_says() {
+    fn builder_sets_finder() {
         let row: Vec<Aabb> = (0..2000)
             .map(|i| [i as f32, i as f32 + 0.5])
             .map(|[lo, hi]| Aabb::new([lo, 0.0, 0.0], [hi, 1.0, 1.0]))

@@ -1,39 +1,39 @@
-//! A frame of given boxes: cubes about them, a finder's candidates, the test, the list.
+//! A frame of given boxes: cubes around them, a finder's candidates, the test, the list.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
-use super::cubes::{AHEAD, Make};
+use super::cubes::{MakeCubes, PREFETCH_DISTANCE};
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, PairFilter, Places, read_ahead};
-use crate::broad_phase::{Balls, Boxes, EndSlots, PairFinder, Population, Reorder, Volume};
+use crate::broad_phase::{Balls, EndSlots, GivenBoxes, PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
-use crate::overlap::boxes::Cubes;
+use crate::overlap::boxes::CubeTest;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
 use crate::simd::{Tier, dispatch, in_default_mode};
 use crate::strategy::{BoxInputs, BoxTest, Output, Tasks, list_boxes};
 use crate::threads::{FrameThreads, FrameWork};
 
-/// Boxes whose cubes one thread makes at once.
-const CUBES: usize = 4096;
+/// Boxes whose cubes one thread computes at a time.
+const BOXES_PER_TASK: usize = 4096;
 
-/// Boxes that are read ahead, up to so many bytes: what the first caches hold. Beyond, prefetching
-/// each by its name is faster: by 3 % at 96 KB and 20 % at 240 KB, where it is 3 % slower at 48 KB
-/// (frames of an AMD, Zen 5, with cold caches).
-const LONGEST: usize = 64 << 10;
+/// Columns of boxes up to this size fit into the first caches and are read ahead in order. For
+/// larger ones, prefetching each box by its name is faster: by 3 % at 96 KB and 20 % at 240 KB, but
+/// 3 % slower at 48 KB (an AMD Zen 5 with cold caches).
+const MOST_READ_AHEAD_BYTES: usize = 64 << 10;
 
-/// Boxes of a frame that are asked which test suits it.
-const ASKED: usize = 64;
+/// Boxes of a frame that are sampled to choose its test.
+const SAMPLE_SIZE: usize = 64;
 
-/// By how much H must exceed the frame's greatest H − h where cubes decide; of those asked, one in
-/// [`FEW`] may fall short.
-const CUBIC: f32 = 32.0;
-const FEW: usize = 16;
+/// Cubes decide if H is at least this multiple of the frame's greatest H − h; at most one in
+/// [`SAMPLES_PER_EXCEPTION`] sampled boxes may be smaller.
+const LEAST_CUBIC_RATIO: f32 = 32.0;
+const SAMPLES_PER_EXCEPTION: usize = 16;
 
-/// The boxes of a set, as a finder has them.
+/// The boxes of a set, in the form that a finder needs.
 #[derive(Clone, Debug)]
-pub(super) struct Frames {
+pub(super) struct BoxFrames {
     tier: Tier,
     threads: FrameThreads,
     choice: Finder,
@@ -45,23 +45,23 @@ pub(super) struct Frames {
     cubes: Balls,
     /// The greatest H − h of the boxes that don't move.
     fixed_gap: f32,
-    news: News,
+    news: SetChange,
     ends: EndSlots,
     tasks: Tasks,
-    /// Of the frame before.
+    /// Candidates of the frame before.
     candidates: u64,
 }
 
-/// What of the set is new since the frame before.
+/// The change of the set since the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum News {
+enum SetChange {
     None,
-    /// Some boxes; the finder knows of the others.
+    /// Some boxes are new; the finder knows the others.
     Some,
     All,
 }
 
-impl Frames {
+impl BoxFrames {
     /// No boxes yet.
     pub fn new(choice: Finder, tier: Tier, threads: FrameThreads) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Frames {
             order: Vec::new(),
             cubes: Balls::new(0),
             fixed_gap: 0.0,
-            news: News::All,
+            news: SetChange::All,
             ends: EndSlots::default(),
             tasks: Tasks::default(),
             candidates: 0,
@@ -85,21 +85,21 @@ impl Frames {
         self.places.len()
     }
 
-    /// From now on those boxes are there that are `present`, and those may move that are `dynamic`.
-    /// What is known of the neighbours of boxes that were there is kept.
+    /// Replaces the set: boxes that are `present` exist from now on, and those that are `dynamic`
+    /// may move. Lists of neighbours of boxes that stay are kept.
     pub fn replace(&mut self, dynamic: &[bool], present: &[bool]) {
         let stays = self.places.replace(dynamic, present);
         let (population, moving) = (population(self.len()), self.places.moving);
         let finder = &mut self.finder;
-        if finder.replace(self.choice, &population, &stays, moving) && self.news != News::All {
-            self.news = News::Some;
+        if finder.replace(self.choice, &population, &stays, moving) && self.news != SetChange::All {
+            self.news = SetChange::Some;
             self.cubes.resize(self.len());
         } else {
             self.start_anew();
         }
     }
 
-    /// Forgets all boxes, and gives back their memory. The next [`Self::replace`] begins anew.
+    /// Removes all boxes and frees their memory. The next [`Self::replace`] starts without lists.
     pub fn forget(&mut self) {
         (self.places, self.order) = Default::default();
         (self.ends, self.tasks) = Default::default();
@@ -111,7 +111,7 @@ impl Frames {
         self.finder = finder(self.choice, self.len());
         self.cubes.resize(self.len());
         self.cubes.fill([0.0; 4]);
-        (self.news, self.candidates) = (News::All, 0);
+        (self.news, self.candidates) = (SetChange::All, 0);
     }
 
     /// Hands the boxes that meet, not both at rest, that pass the filter, to `output`. `boxes` and
@@ -146,7 +146,7 @@ impl Frames {
         let executor = pool.executor(self.tier);
         let names = &self.places.body;
         let are_long = !self.cubes_decide(gap);
-        let given = Some(Boxes {
+        let given = Some(GivenBoxes {
             all: boxes,
             are_long,
         });
@@ -160,7 +160,7 @@ impl Frames {
             BoxTest::Ends(&self.ends)
         } else {
             let less = less_than_sure(gap);
-            BoxTest::Cubes(Cubes { slots, boxes, less })
+            BoxTest::Cubes(CubeTest { slots, boxes, less })
         };
         let inputs = BoxInputs {
             executor,
@@ -175,15 +175,15 @@ impl Frames {
         Ok(counted)
     }
 
-    /// Puts boxes in better places and makes the cubes of those that may have moved; the greatest H
-    /// − h of all, or `None` if some box is none.
+    /// Moves boxes to better places and computes the cubes of those that may have moved. Returns
+    /// the greatest H − h of all, or `None` if a box is invalid.
     fn update(&mut self, boxes: &[Aabb]) -> Option<f32> {
         let (moving, all) = (self.places.moving, self.places.len());
-        let news = std::mem::replace(&mut self.news, News::None);
-        if news != News::None {
+        let news = std::mem::replace(&mut self.news, SetChange::None);
+        if news != SetChange::None {
             self.fixed_gap = self.make_cubes(boxes, moving..all)?;
         }
-        if news == News::All {
+        if news == SetChange::All {
             self.make_cubes(boxes, 0..moving)?; // a new finder orders places by them
         }
         let names = &self.places.body;
@@ -199,16 +199,19 @@ impl Frames {
         Some(gap.max(self.fixed_gap))
     }
 
-    /// Makes the cubes of a range of places; the greatest H − h, or `None` if some box is none.
+    /// Computes the cubes of a range of places. Returns the greatest H − h, or `None` if a box is
+    /// invalid.
     fn make_cubes(&mut self, boxes: &[Aabb], range: Range<usize>) -> Option<f32> {
         let pool = self.threads.get();
-        let are_near = read_ahead(pool, boxes, range.len(), LONGEST, |aabb| aabb.min[0]);
+        let are_near = read_ahead(pool, boxes, range.len(), MOST_READ_AHEAD_BYTES, |aabb| {
+            aabb.min[0]
+        });
         let names = &self.places.body[range.clone()];
-        // Bits of numbers that aren't negative are in their order.
+        // The bits of non-negative numbers sort as the values do.
         let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));
-        pool.pieces(&mut self.cubes[range], CUBES, |start, cubes| {
-            let ahead = names.get(start + AHEAD..).filter(|_| !are_near);
-            let make = Make {
+        pool.pieces(&mut self.cubes[range], BOXES_PER_TASK, |start, cubes| {
+            let ahead = names.get(start + PREFETCH_DISTANCE..).filter(|_| !are_near);
+            let make = MakeCubes {
                 boxes,
                 names: &names[start..start + cubes.len()],
                 ahead: ahead.unwrap_or_default(),
@@ -222,35 +225,37 @@ impl Frames {
         are_sound.into_inner().then_some(gap)
     }
 
-    /// Whether cubes tell most pairs apart: whether most boxes are much larger than the greatest H
-    /// − h. Some are asked, the same ones on every machine.
+    /// Whether cubes decide most pairs, because most boxes are much larger than the greatest H − h.
+    /// Some boxes are sampled, the same ones on every machine.
     fn cubes_decide(&self, gap: f32) -> bool {
-        let step = self.cubes.len().div_ceil(ASKED).max(1);
+        let step = self.cubes.len().div_ceil(SAMPLE_SIZE).max(1);
         let asked = self.cubes.iter().step_by(step);
         let (all, small) = (
             asked.len(),
-            asked.filter(|cube| cube[3] < CUBIC * gap).count(),
+            asked
+                .filter(|cube| cube[3] < LEAST_CUBIC_RATIO * gap)
+                .count(),
         );
-        FEW * small <= all
+        SAMPLES_PER_EXCEPTION * small <= all
     }
 
-    /// Candidates that the last frame tested to make a list of neighbours.
+    /// Candidates that the last frame tested to build a list of neighbours.
     pub fn list_tests(&self) -> u64 {
         self.finder.list_tests()
     }
 
-    /// Gives back the memory of lists of pairs.
+    /// Frees the memory of lists of pairs.
     pub fn shrink_to_fit(&mut self) {
         self.tasks.shrink_to_fit();
     }
 
-    /// Bytes that lists of pairs hold.
+    /// Bytes of the lists of pairs.
     pub fn pair_bytes(&self) -> usize {
         self.tasks.pair_bytes()
     }
 }
 
-/// The finder of that name, or the one that suits so many boxes.
+/// The finder with that name, or for `auto` the one for this number of boxes.
 fn finder(choice: Finder, boxes: usize) -> PairFinder {
     PairFinder::new(choice, &population(boxes))
 }
@@ -272,16 +277,17 @@ mod tests {
     use crate::pairs::PairList;
     use crate::threads::Threads;
 
+    /// Cubes decide if at most one box in sixteen is small compared with the gap.
     #[test]
-    fn cubes_decide_while_one_in_sixteen_is_small_beside_the_gap() {
+    fn cubes_decide_with_few_exceptions() {
         let threads = FrameThreads::new(Threads::default(), 0);
-        let mut frames = Frames::new(Finder::Auto, Tier::SCALAR, threads);
+        let mut frames = BoxFrames::new(Finder::Auto, Tier::SCALAR, threads);
         assert!(frames.cubes_decide(1.0), "without boxes");
         for (small, decide) in [(0, true), (4, true), (5, false), (64, false)] {
-            // One in ten is asked.
-            frames.cubes = Balls::new(10 * ASKED);
+            // One in ten is sampled.
+            frames.cubes = Balls::new(10 * SAMPLE_SIZE);
             for (asked, cube) in frames.cubes.iter_mut().step_by(10).enumerate() {
-                cube[3] = CUBIC * if asked < small { 2.9 } else { 3.0 };
+                cube[3] = LEAST_CUBIC_RATIO * if asked < small { 2.9 } else { 3.0 };
             }
             assert_eq!(frames.cubes_decide(3.0), decide, "{small}");
         }
@@ -294,9 +300,9 @@ mod tests {
             .collect()
     }
 
-    /// Frames of these boxes, all of which may move, before the first cull.
-    fn frames(choice: Finder, boxes: usize) -> Frames {
-        let mut frames = Frames::new(
+    /// The frames of `boxes` boxes, all of which may move, before the first cull.
+    fn frames(choice: Finder, boxes: usize) -> BoxFrames {
+        let mut frames = BoxFrames::new(
             choice,
             Tier::SCALAR,
             FrameThreads::new(Threads::default(), 0),
@@ -305,34 +311,42 @@ mod tests {
         frames
     }
 
+    /// Some boxes are passed on as changed if the finder knows the others.
     #[test]
-    fn some_boxes_are_news_where_the_finder_knows_of_the_others() {
+    fn changed_boxes_are_passed_on() {
         let mut frames = frames(Finder::Grid, 1000);
-        let set = |frames: &mut Frames, boxes: usize| {
+        let set = |frames: &mut BoxFrames, boxes: usize| {
             frames.replace(&vec![true; boxes], &vec![true; boxes]);
             frames.news
         };
-        assert_eq!(set(&mut frames, 1001), News::All, "nothing was culled yet");
+        assert_eq!(
+            set(&mut frames, 1001),
+            SetChange::All,
+            "nothing was culled yet"
+        );
         let mut pairs = PairList::default();
         let boxes = all_in_a_row(2000);
         frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
-        assert_eq!((frames.news, frames.candidates > 0), (News::None, true));
-        assert_eq!(set(&mut frames, 1010), News::Some);
-        assert_eq!(set(&mut frames, 2000), News::All);
+        assert_eq!(
+            (frames.news, frames.candidates > 0),
+            (SetChange::None, true)
+        );
+        assert_eq!(set(&mut frames, 1010), SetChange::Some);
+        assert_eq!(set(&mut frames, 2000), SetChange::All);
         assert_eq!(frames.candidates, 0);
         frames.choice = Finder::Sweep;
-        frames.news = News::None;
+        frames.news = SetChange::None;
         assert_eq!(
             set(&mut frames, 2001),
-            News::All,
+            SetChange::All,
             "another finder knows nothing"
         );
     }
 
-    /// Planned by boxes without an extent, giants and small ones would share cells: two million
-    /// candidates.
+    /// If cells were planned from boxes without extent, giants and small boxes would share them:
+    /// two million candidates.
     #[test]
-    fn the_first_frame_is_planned_by_its_own_boxes() {
+    fn first_frame_plans_itself() {
         let mut boxes = all_in_a_row(2000);
         boxes[1000] = Aabb::new([0.0, 5.0, 0.0], [2000.0, 6.0, 1.0]);
         let mut pairs = PairList::default();
@@ -341,17 +355,17 @@ mod tests {
         assert!((2000..20_000).contains(&tests), "{tests}");
     }
 
-    /// All but the first task's list, which is the caller's, stay for the next frame.
+    /// All lists except the first task's, which is the caller's, stay for the next frame.
     #[test]
-    fn bytes_of_lists_are_counted_until_they_are_given_back() {
+    fn list_bytes_are_counted() {
         let threads = FrameThreads::new(Threads::new(3).unwrap(), 0);
-        let mut frames = Frames::new(Finder::AllPairs, Tier::SCALAR, threads);
+        let mut frames = BoxFrames::new(Finder::AllPairs, Tier::SCALAR, threads);
         let boxes = vec![Aabb::new([0.0; 3], [1.0; 3]); 200];
         frames.replace(&[true; 200], &[true; 200]);
         let mut pairs = PairList::default();
         frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
         assert_eq!(pairs.len(), 200 * 199 / 2);
-        // Two numbers a pair, of half of the pairs at least.
+        // Two numbers per pair, of at least half of the pairs.
         assert!(frames.pair_bytes() > 4 * pairs.len());
         frames.shrink_to_fit();
         assert!(frames.pair_bytes() < pairs.len());

@@ -1,12 +1,12 @@
-//! Boxes on the world's axes, given by whoever has them: which of them meet?
+//! A broad phase for axis-aligned boxes: which of them meet?
 //!
-//! For engines that keep boxes of their own, of any aspect, and want a broad phase and nothing
-//! else. A [`BoxCuller`] takes all boxes anew in each frame; in a [`BoxWorld`] they come and go,
-//! rest or move, with stable ids, groups and events.
+//! For engines that have boxes, of any aspect ratio, and need only a broad phase. A [`BoxCuller`]
+//! gets all boxes anew in each frame; in a [`BoxWorld`] they come and go, rest or move, with stable
+//! ids, groups and events.
 //!
-//! The promise: of boxes given as f32, exactly those pairs are reported that have a point in
-//! common, touching included, in exact real arithmetic. No box is widened, none is missed, and none
-//! is reported that is an ulp away. Ends are any finite numbers. Lists depend on the calls alone,
+//! The promise: for boxes given as f32, exactly those pairs are reported that share a point in
+//! exact real arithmetic, touching included. No box is widened, no pair is missed, and none is
+//! reported that is an ulp apart. Ends are any finite numbers. Lists depend on the calls alone,
 //! never on the CPU or on threads.
 
 mod crowds;

@@ -8,9 +8,9 @@ use crate::broad_phase::{BoxIndex, IndexedBox, tags};
 use crate::simd::in_default_mode;
 
 impl BoxWorld {
-    /// Changes the pairs of the last cull to those of now, by the boxes that have changed. False if
-    /// that would take longer than finding them all, or if these boxes are in more than so many
-    /// pairs: then nothing has happened.
+    /// Updates the pairs of the last cull by the boxes that have changed. Returns false, without a
+    /// change, if finding all pairs would be faster, or if these boxes are in more than `most`
+    /// pairs.
     pub(super) fn cull_changed(&mut self, most: usize) -> bool {
         if !self.movers.are_few() {
             return false;
@@ -25,7 +25,7 @@ impl BoxWorld {
         true
     }
 
-    /// Puts changed boxes where they are now, and lists the partners of each.
+    /// Moves changed boxes in the index, and lists the partners of each.
     fn find_changed(&mut self, most: usize) -> bool {
         let mut movers = std::mem::take(&mut self.movers);
         if movers.need_index() {
@@ -47,7 +47,7 @@ impl BoxWorld {
         work.is_some()
     }
 
-    /// The box in a slot as an index has it.
+    /// The box in a slot, for the index.
     fn indexed(&self, slot: u32) -> IndexedBox {
         let at = slot as usize;
         IndexedBox {

@@ -1,4 +1,4 @@
-//! A world of boxes saved, and restored or rolled back to.
+//! Snapshots of a world of boxes, to save, restore and roll back.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +11,8 @@ use crate::world::{
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
 ///
-/// It has a version, and one of another version isn't read. Equal calls leave equal snapshots.
-/// Numbers are saved as their bits, which no text format rounds.
+/// It has a version, and snapshots of other versions are rejected. Equal calls produce equal
+/// snapshots. Numbers are saved as their bits, which no text format rounds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BoxWorldSnapshot {
     version: Version,
@@ -30,9 +30,9 @@ pub struct BoxWorldSnapshot {
 }
 
 impl BoxWorld {
-    /// The world as it is now, for [`Self::restore`]: boxes with ids and groups, excluded pairs,
-    /// the slots that ids are given from, the pairs of the last cull and those that events were
-    /// last read of. Counters are not in it.
+    /// The present state of the world, for [`Self::restore`]: boxes with ids and groups, excluded
+    /// pairs, free slots, the pairs of the last cull and those of the last events. Counters are not
+    /// in it.
     #[must_use]
     pub fn snapshot(&self) -> BoxWorldSnapshot {
         let bits = |aabb: &Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f32::to_bits));
@@ -48,12 +48,12 @@ impl BoxWorld {
         }
     }
 
-    /// Makes this world the one of a snapshot. From then on the same calls give the same ids, pairs
-    /// and events, in the same order, as they give in the world that it was taken of; finder,
+    /// Replaces this world by that of a snapshot. From then on the same calls give the same ids,
+    /// pairs and events, in the same order, as in the world from which it was taken; finder,
     /// threads and tier may differ.
     ///
     /// # Errors
-    /// A snapshot that isn't as it was taken. The world stays as it was.
+    /// The snapshot is inconsistent. The world stays unchanged.
     pub fn restore(&mut self, snapshot: &BoxWorldSnapshot) -> Result<(), SnapshotError> {
         let ids = snapshot.ids.restored()?;
         for (column, entries) in [

@@ -1,7 +1,7 @@
 //! Boxes that come and go.
 
 use super::BoxCullerBuilder;
-use super::frame::Frames;
+use super::frame::BoxFrames;
 use crate::bodies::contract::check_number;
 use crate::bodies::{Aabb, ExcludedPairs, Groups, Motion, PairFilter};
 use crate::counters::VolumeCounters;
@@ -12,16 +12,16 @@ use crate::world::{BodyId, Events, Ids, LivePairs, Movers, WorldError, WorldPair
 /// A box to be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxBody {
-    /// Where it is.
+    /// Its ends.
     pub bounds: Aabb,
-    /// Whether it moves; pairs of two fixed boxes are never reported.
+    /// Whether it is dynamic, resting or fixed. Pairs of two fixed boxes are never reported.
     pub motion: Motion,
     /// Which boxes it may collide with.
     pub groups: Groups,
 }
 
 impl From<Aabb> for BoxBody {
-    /// A box that moves and collides with all.
+    /// A dynamic box that collides with all.
     fn from(bounds: Aabb) -> Self {
         Self {
             bounds,
@@ -35,15 +35,15 @@ impl From<Aabb> for BoxBody {
 /// events, as [`World`](crate::world::World) has them for meshes.
 ///
 /// A frame costs time for the boxes that were inserted, removed or set to another value since the
-/// last cull, for their neighbours, and for the pairs that change: nothing for all others, however
-/// many there are. Where more than an eighth has changed, all pairs are found anew, as a
-/// [`BoxCuller`](super::BoxCuller) does. The first cull does so too, and the first one after a
-/// world was restored, after [`Self::shrink_to_fit`] and after [`Self::cull_in_portions`]. Whatever
-/// a frame costs, its pairs are exactly those of the boxes as they are.
+/// last cull, for their neighbours, and for the pairs that change, and nothing for all others. If
+/// more than an eighth has changed, all pairs are found anew, as in a
+/// [`BoxCuller`](super::BoxCuller). The same holds for the first cull, and for the first one after
+/// a world was restored, after [`Self::shrink_to_fit`] and after [`Self::cull_in_portions`]. In
+/// every case the pairs are exactly those of the present boxes.
 ///
 /// A box is dynamic, resting or fixed ([`Motion`]). Pairs of two fixed boxes are never reported. A
-/// box at rest keeps its pairs, with others at rest too: putting a box to rest or waking it ends no
-/// pair and begins none.
+/// box at rest keeps its pairs, also with others at rest: putting a box to rest or waking it begins
+/// and ends no pair.
 ///
 /// ```
 /// use sdop::{Aabb, BoxWorld, Motion};
@@ -61,24 +61,24 @@ impl From<Aabb> for BoxBody {
 /// # Ok::<(), sdop::WorldError>(())
 /// ```
 ///
-/// A clone goes on as the original would, on threads that it starts for itself.
+/// A clone continues as the original would, on its own threads.
 #[derive(Clone, Debug)]
 pub struct BoxWorld {
-    /// One entry a slot; empty slots keep their last box's.
+    /// One entry per slot; empty slots keep the ends of their last box.
     pub(super) bounds: Vec<Aabb>,
-    /// Which ones aren't fixed.
+    /// Whether each box is not fixed.
     pub(super) dynamic: Vec<bool>,
     pub(super) resting: Vec<bool>,
     pub(super) groups: Vec<Groups>,
     pub(super) excluded: ExcludedPairs,
     pub(super) ids: Ids,
-    pub(super) frames: Frames,
+    pub(super) frames: BoxFrames,
     pub(super) counters: VolumeCounters,
     pub(super) log: LivePairs,
     pub(super) movers: Movers,
-    /// Slots whose groups don't collide with all.
+    /// Number of slots whose groups don't collide with all.
     pub(super) grouped: usize,
-    /// Whether `frames` have another set of boxes, or another fixed box.
+    /// Whether the set of boxes, or a fixed box, differs from that in `frames`.
     pub(super) replaced: bool,
 }
 
@@ -89,22 +89,21 @@ impl Default for BoxWorld {
 }
 
 impl BoxWorld {
-    /// A world without boxes, culled with every default
-    /// ([`BoxCuller::new`](super::BoxCuller::new)).
+    /// A world without boxes, culled with all defaults ([`BoxCuller::new`](super::BoxCuller::new)).
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A world without boxes, culled as the builder says.
+    /// A world without boxes, culled with the choices of a builder.
     ///
     /// # Errors
-    /// Threads that the system refuses.
+    /// The system cannot start the threads.
     pub fn with(culler: &BoxCullerBuilder) -> Result<Self, WorldError> {
         Ok(Self::of(culler.frames()?))
     }
 
-    fn of(frames: Frames) -> Self {
+    fn of(frames: BoxFrames) -> Self {
         Self {
             bounds: Vec::new(),
             dynamic: Vec::new(),
@@ -124,7 +123,7 @@ impl BoxWorld {
     /// Adds a box.
     ///
     /// # Errors
-    /// A box whose ends are infinite, no numbers or the wrong way round; more boxes than can be
+    /// The box's ends are infinite, NaN or in the wrong order, or there are more boxes than can be
     /// numbered.
     pub fn insert(&mut self, body: impl Into<BoxBody>) -> Result<BodyId, WorldError> {
         let body = body.into();
@@ -143,10 +142,10 @@ impl BoxWorld {
         Ok(self.ids.id(slot as u32))
     }
 
-    /// Removes a box. Pairs of the last cull still name it; the next cull's don't.
+    /// Removes a box. Pairs of the last cull still contain it; those of the next cull don't.
     ///
     /// # Errors
-    /// A box that has been removed before.
+    /// The box has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
         self.ids.remove(id)?;
         self.excluded.remove_all(id.slot() as u32);
@@ -155,15 +154,15 @@ impl BoxWorld {
         Ok(())
     }
 
-    /// The box as it is now.
+    /// The present box.
     ///
     /// # Errors
-    /// A box that has been removed.
+    /// The box has been removed.
     pub fn body(&self, id: BodyId) -> Result<BoxBody, WorldError> {
         self.ids.slot(id).map(|slot| self.body_at(slot))
     }
 
-    /// Whether the box is there.
+    /// Whether the box exists.
     #[must_use]
     pub fn contains(&self, id: BodyId) -> bool {
         self.ids.slot(id).is_ok()
@@ -174,15 +173,15 @@ impl BoxWorld {
         self.ids.iter()
     }
 
-    /// All boxes as they are now, sorted by slot.
+    /// All present boxes, sorted by slot.
     pub fn bodies(&self) -> impl Iterator<Item = (BodyId, BoxBody)> + '_ {
         self.ids().map(|id| (id, self.body_at(id.slot())))
     }
 
-    /// Changes a box in any of its properties. One that has all of them already costs nothing.
+    /// Changes any properties of a box. It costs nothing if they are equal to the present ones.
     ///
     /// # Errors
-    /// A box that has been removed, or as [`Self::insert`].
+    /// The box has been removed, or as [`Self::insert`].
     pub fn set(&mut self, id: BodyId, body: impl Into<BoxBody>) -> Result<(), WorldError> {
         let (slot, body) = (self.ids.slot(id)?, body.into());
         body.bounds.check(slot)?;
@@ -198,8 +197,8 @@ impl BoxWorld {
         Ok(())
     }
 
-    /// Moves a box, or gives it another size. One that is there already costs nothing, and a box at
-    /// rest stays at rest.
+    /// Moves or resizes a box. It costs nothing if the ends are equal, and a box at rest stays at
+    /// rest.
     ///
     /// # Errors
     /// As [`Self::set`].
@@ -217,7 +216,7 @@ impl BoxWorld {
     /// Puts a box to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
     ///
     /// # Errors
-    /// A box that has been removed.
+    /// The box has been removed.
     pub fn set_motion(&mut self, id: BodyId, motion: Motion) -> Result<(), WorldError> {
         let body = self.body(id)?;
         self.set(id, BoxBody { motion, ..body })
@@ -240,19 +239,18 @@ impl BoxWorld {
         self.grouped -= usize::from(former != Groups::ALL);
     }
 
-    /// Counts the boxes of which not all may collide, after the column has been replaced.
+    /// Counts the boxes that don't collide with all, after the column has been replaced.
     pub(super) fn count_groups(&mut self) {
         let groups = self.groups.iter();
         self.grouped = groups.filter(|groups| **groups != Groups::ALL).count();
     }
 
     /// Finds the boxes that meet, not both fixed, whose groups collide and which aren't
-    /// [excluded](Self::exclude), and returns their pairs:
-    /// the lower slot first, sorted by slots, whatever the finder, the threads and the calls
-    /// before.
+    /// [excluded](Self::exclude), and returns their pairs: the lower slot first, sorted by slots,
+    /// independent of the finder, of threads and of earlier calls.
     ///
     /// # Errors
-    /// None: what could be wrong was refused when it came.
+    /// Never: invalid boxes are rejected when they are inserted or set.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         if !self.cull_changed(usize::MAX) {
             let mut list = self.log.take(&self.ids);
@@ -282,9 +280,10 @@ impl BoxWorld {
         self.log.pairs(&self.ids).iter()
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round.
-    /// The events are apart from the world: boxes may be removed while they are read. Drop them
-    /// before the next cull, which otherwise copies the pairs.
+    /// The pairs that the last cull reports and that were not there at the last call of this
+    /// method, and those that have ended since. Events don't borrow the world, so boxes may be
+    /// removed while they are read. Drop them before the next cull, which otherwise copies the
+    /// pairs.
     pub fn events(&mut self) -> Events {
         self.log.events(&self.ids)
     }
@@ -295,13 +294,13 @@ impl BoxWorld {
         self.ids.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no boxes.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Above every [`BodyId::slot`].
+    /// One more than the largest possible [`BodyId::slot`].
     #[must_use]
     pub fn slots(&self) -> usize {
         self.ids.slots()
@@ -331,8 +330,9 @@ mod tests {
         }
     }
 
+    /// The next cull searches changed boxes and no others.
     #[test]
-    fn other_boxes_and_boxes_at_rest_are_news_to_the_next_cull_and_others_are_none() {
+    fn only_changes_are_searched() {
         let mut world = BoxWorld::new();
         assert!(world.is_empty() && !world.replaced);
         let one = world.insert(at(0.0)).unwrap();
@@ -341,7 +341,7 @@ mod tests {
             (world.is_empty(), world.len(), world.slots()),
             (false, 2, 2)
         );
-        // What is done to the world, and whether the next cull must look at boxes that it has seen.
+        // A change of the world, and whether the next cull must test boxes again.
         type Call = fn(&mut BoxWorld, BodyId, BodyId);
         let calls: [(Call, bool); 8] = [
             (|_, _, _| (), false),
@@ -383,8 +383,9 @@ mod tests {
         assert_eq!((world.is_empty(), world.len(), world.slots()), (true, 0, 2));
     }
 
+    /// Groups count where some or none collide with all.
     #[test]
-    fn groups_count_where_some_or_none_collide_with_all() {
+    fn grouped_boxes_are_counted() {
         let only = |group| Groups {
             member: group,
             mask: group,

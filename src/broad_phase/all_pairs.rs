@@ -1,4 +1,4 @@
-//! The paper's finder: every one of the N(N−1)/2 pairs, less the S(S−1)/2 static ones.
+//! `all-pairs`, the paper's finder: all N(N−1)/2 pairs except the S(S−1)/2 static ones.
 
 use std::ops::Range;
 
@@ -6,11 +6,11 @@ use super::{FirstTest, Slots};
 use crate::bodies::Places;
 use crate::simd::{Lanes, MAX_WIDTH};
 
-/// Slots whose pairs make one part of the work.
+/// Slots per part of the work.
 const SLOTS_PER_PART: usize = 16;
 
-/// Slots are places: the moving bodies first, so that every moving slot's run is all slots behind
-/// it.
+/// Slots are places. Moving bodies come first, so that the candidates of every moving slot are all
+/// slots after it.
 #[derive(Clone, Debug, Default)]
 pub struct AllPairs {
     slots: Slots,

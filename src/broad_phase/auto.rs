@@ -1,14 +1,17 @@
-//! `auto`: which finder suits a scene.
+//! `auto`: picks the finder that suits a scene.
 //!
-//! Picked once, before the first frame, by numbers of the scene alone, so that counters depend on
-//! no machine. Measured on one thread at 1.5 sphere partners per body: the grid passes all pairs at
-//! 64 bodies of one size (both 1.2 µs) and, with a level for each size, at about 100 of radii 1
-//! : 1000. The sweep stayed behind the grid at every number of bodies from 16 to 10,000, in cubes,
-//! planes, lines and clusters, with one giant and with radii 1 : 1000 (1.4 to 9 times), so it is
-//! there to be compared with and never picked. Neighbour lists leave the frames in which they don't
-//! pay to the grid, by counts as well: frames of spheres took 0.42 to 0.66 of the grid's time on
-//! 10,000 bodies in a cube, a plane, clusters and with mixed radii, and up to 6 % more where bodies
-//! move too fast (an Intel with AVX-512, runs in turns).
+//! The finder is picked once, before the first frame, from the number and sizes of the bodies, so
+//! that counters do not depend on the machine. Measured on one thread at 1.5 sphere partners per
+//! body:
+//!
+//! - The grid is faster than all pairs from 64 bodies of one size on (both take 1.2 µs there) and,
+//! with a level per size, from about 100 bodies with radii 1 : 1000 on.
+//! - The sweep took 1.4 to 9 times as long as the grid for 16 to 10,000 bodies in cubes, planes,
+//! lines and clusters, with one giant and with radii 1 : 1000. It is never picked.
+//! - Neighbour lists took 0.42 to 0.66 of the grid's time for spheres of 10,000 bodies in a cube, a
+//! plane, clusters and with mixed radii, and up to 6 % more where bodies move too fast (Intel,
+//! AVX-512, runs in turns). They leave frames in which they don't pay to the grid, also decided by
+//! counts.
 
 use super::Volume;
 use crate::settings::Finder;
@@ -16,33 +19,33 @@ use crate::settings::Finder;
 /// The most bodies for all pairs.
 const MOST_FOR_ALL_PAIRS: usize = 64;
 
-/// The same where radii span more than [`MANY_SIZES`].
-const MOST_OF_MANY_SIZES: usize = 96;
+/// The most bodies for all pairs if radii span more than [`LEAST_LEVEL_RATIO`].
+const MOST_MIXED_FOR_ALL_PAIRS: usize = 96;
 
-/// Widest over smallest radius at which the grid has levels.
-const MANY_SIZES: f32 = 16.0;
+/// The ratio of largest to smallest radius from which on the grid has levels.
+const LEAST_LEVEL_RATIO: f32 = 16.0;
 
-/// What of a scene decides which finder suits it.
+/// The facts of a scene by which a finder is picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Population {
     /// Number of bodies.
     pub bodies: usize,
-    /// Smallest and widest ball.
+    /// Smallest and largest radius.
     pub radii: [f32; 2],
-    /// Whether the first volume test is cheaper than looking for candidates: balls and slabs are,
-    /// or-DOPs aren't, and all pairs would hand every pair to them.
+    /// Whether the first volume test is cheaper than finding candidates. It is for balls and slabs,
+    /// but not for or-DOPs, which `all-pairs` would test for every pair.
     pub cheap_test: bool,
-    /// What balls stand for.
+    /// The volume that balls stand for.
     pub volume: Volume,
 }
 
 impl Population {
-    /// The finder that suits it; never [`Finder::Auto`].
+    /// The finder for this scene; never [`Finder::Auto`].
     #[must_use]
     pub fn finder(&self) -> Finder {
         let [smallest, widest] = self.radii;
-        let few = if widest > MANY_SIZES * smallest {
-            MOST_OF_MANY_SIZES
+        let few = if widest > LEAST_LEVEL_RATIO * smallest {
+            MOST_MIXED_FOR_ALL_PAIRS
         } else {
             MOST_FOR_ALL_PAIRS
         };
@@ -60,8 +63,9 @@ impl Population {
 mod tests {
     use super::*;
 
+    /// Few bodies go to all pairs many to lists and dear tests to the grid.
     #[test]
-    fn few_bodies_go_to_all_pairs_many_to_lists_and_dear_tests_to_the_grid() {
+    fn auto_picks_by_count_and_cost() {
         let pick = |bodies, widest, cheap_test| {
             let radii = [2.0, 2.0_f32 * widest];
             Population {

@@ -1,9 +1,9 @@
-//! Scattered candidates: the short runs of sixteen neighbouring slots, gathered so that they fill
+//! [`Block`]: the short candidate runs of sixteen neighbouring slots, packed so that they fill
 //! vectors.
 //!
-//! At 1.5 sphere partners per body a run holds one candidate in the mean. A vector for each run
-//! then leaves 15 of 16 lanes idle (90 cycles per body, measured); written one after the other,
-//! the runs of sixteen bodies fill five vectors (19 cycles).
+//! At 1.5 sphere partners per body a run has one candidate on average. One vector per run would
+//! leave 15 of 16 lanes idle (90 cycles per body, measured). Packed, the runs of sixteen bodies
+//! fill five vectors (19 cycles).
 
 use std::ops::Range;
 
@@ -12,20 +12,20 @@ use crate::simd::{Lanes, MAX_WIDTH};
 /// Slots whose candidates share a block.
 pub const BLOCK_BODIES: usize = MAX_WIDTH;
 
-/// Candidates that are written at once; a run's surplus is overwritten by the next.
-const STRIDE: usize = 8;
+/// Candidates that are written at once. The next run overwrites the surplus.
+const CODES_PER_STORE: usize = 8;
 
 /// The longest run that is copied into a block; longer ones fill vectors by themselves.
-const LONGEST_WRITTEN: usize = 2 * STRIDE;
+const LONGEST_WRITTEN: usize = 2 * CODES_PER_STORE;
 
-/// Runs that a page has room for.
+/// Short runs that fit on a page.
 const RUNS_PER_PAGE: usize = 160;
 
-/// Room for codes.
-const CAPACITY: usize = RUNS_PER_PAGE * LONGEST_WRITTEN;
+/// Codes that fit on a page.
+const CODES_PER_PAGE: usize = RUNS_PER_PAGE * LONGEST_WRITTEN;
 
 /// The most candidates in a block.
-pub const MOST_CANDIDATES: usize = CAPACITY;
+pub const MOST_CANDIDATES: usize = CODES_PER_PAGE;
 
 /// Candidate pairs of up to sixteen neighbouring slots.
 #[derive(Clone, Copy, Debug)]
@@ -36,8 +36,8 @@ pub struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// The candidates `padded[..len]` of the slots from `first` on; a vector of whatever codes
-    /// stands after them.
+    /// A block of the candidates `padded[..len]` of the slots from `first` on. One vector of
+    /// arbitrary codes follows them.
     #[inline(always)]
     pub(crate) fn new(first: usize, padded: &'a [u32], len: usize) -> Self {
         Self {
@@ -47,27 +47,27 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// The slot of lane 0.
+    /// The first slot, that of lane 0.
     #[inline(always)]
     pub fn first(&self) -> usize {
         self.first
     }
 
-    /// Candidates: `slot·16 + lane` stands for the pair (first slot + lane, slot). At most
-    /// [`MOST_CANDIDATES`].
+    /// The candidates as codes: `slot·16 + lane` is the pair (first slot + lane, slot). There are
+    /// at most [`MOST_CANDIDATES`].
     #[inline(always)]
     pub fn codes(&self) -> &'a [u32] {
         self.codes
     }
 
-    /// The same and a vector of whatever codes after them.
+    /// The codes and one vector of arbitrary codes after them.
     #[inline(always)]
     pub fn padded_codes(&self) -> &'a [u32] {
         self.padded
     }
 
-    /// The codes from number `start` on, and the balls of their pairs: those of the block's own
-    /// slots, which `ours` has in columns, and the others'.
+    /// A vector of codes from number `start` on with the balls of their pairs: first those of the
+    /// block's own slots, which `ours` has in columns, then the others.
     #[inline(always)]
     pub fn balls<L: Lanes>(
         &self,
@@ -90,24 +90,24 @@ impl<'a> Block<'a> {
     }
 }
 
-/// What a search writes a block on, and long runs next to it.
+/// The memory in which a search writes a block, and a list of long runs.
 #[derive(Clone, Debug)]
-pub struct Page {
+pub struct BlockPage {
     first: usize,
     len: usize,
-    codes: [u32; CAPACITY + MAX_WIDTH],
+    codes: [u32; CODES_PER_PAGE + MAX_WIDTH],
     long_len: usize,
     long: [(u32, u32, u32); RUNS_PER_PAGE],
 }
 
-impl Page {
+impl BlockPage {
     /// An empty page.
     #[inline(always)]
     pub fn new() -> Self {
         Self {
             first: 0,
             len: 0,
-            codes: [0; CAPACITY + MAX_WIDTH],
+            codes: [0; CODES_PER_PAGE + MAX_WIDTH],
             long_len: 0,
             long: [(0, 0, 0); RUNS_PER_PAGE],
         }
@@ -119,7 +119,7 @@ impl Page {
         Block::new(self.first, &self.codes, self.len)
     }
 
-    /// Long runs, each with the slot that it is for.
+    /// Long runs, each with the slot whose candidates they are.
     #[inline(always)]
     pub fn long_runs(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
         let long = &self.long[..self.long_len];
@@ -127,11 +127,11 @@ impl Page {
             .map(|&(i, start, end)| (i as usize, start as usize..end as usize))
     }
 
-    /// Empties the page, for the slots from `first` on, and lets a pen write its runs.
+    /// Empties the page for the slots from `first` on, and returns a writer for their runs.
     #[inline(always)]
-    pub fn restart(&mut self, first: usize) -> Pen<'_> {
+    pub fn restart(&mut self, first: usize) -> RunWriter<'_> {
         self.first = first;
-        Pen {
+        RunWriter {
             page: self,
             len: 0,
             long_len: 0,
@@ -139,25 +139,26 @@ impl Page {
     }
 }
 
-/// Writes runs on a page. Its place is a pair of local numbers, which registers can hold: kept in
-/// the block, each run waits for the last one's store (25 cycles per body, measured).
-pub struct Pen<'a> {
-    page: &'a mut Page,
+/// Writes runs to a page. Its position is held in local variables, which stay in registers: if it
+/// were in the page, each run would wait for the previous one's store (25 cycles per body,
+/// measured).
+pub struct RunWriter<'a> {
+    page: &'a mut BlockPage,
     len: usize,
     long_len: usize,
 }
 
-impl Pen<'_> {
-    /// Appends the slots of `run` as candidates of the slot in `lane`, one of the sixteen.
+impl RunWriter<'_> {
+    /// Appends the slots of `run` as candidates of the slot in `lane`.
     #[inline(always)]
     pub fn push(&mut self, lane: usize, run: Range<u32>) {
         let length = run.end.wrapping_sub(run.start) as usize;
         let code = run.start << 4 | lane as u32;
         self.write(0, code);
-        if length <= STRIDE {
+        if length <= CODES_PER_STORE {
             self.len += length;
         } else if length <= LONGEST_WRITTEN {
-            self.write(STRIDE, code);
+            self.write(CODES_PER_STORE, code);
             self.len += length;
         } else {
             let slot = self.page.first + lane;
@@ -169,17 +170,17 @@ impl Pen<'_> {
     #[inline(always)]
     fn write(&mut self, skip: usize, code: u32) {
         let at = self.len + skip;
-        if let Some(codes) = self.page.codes.get_mut(at..at + STRIDE) {
+        if let Some(codes) = self.page.codes.get_mut(at..at + CODES_PER_STORE) {
             for (i, to) in codes.iter_mut().enumerate() {
                 *to = code.wrapping_add(((skip + i) << 4) as u32);
             }
         }
     }
 
-    /// Whether `runs` more runs might not find room.
+    /// Whether `runs` more runs might not fit.
     #[inline(always)]
     pub fn is_full(&self, runs: usize) -> bool {
-        self.len + runs * LONGEST_WRITTEN > CAPACITY || self.long_len + runs > RUNS_PER_PAGE
+        self.len + runs * LONGEST_WRITTEN > CODES_PER_PAGE || self.long_len + runs > RUNS_PER_PAGE
     }
 
     /// Closes the page.
@@ -193,9 +194,10 @@ impl Pen<'_> {
 mod tests {
     use super::*;
 
+    /// Runs of any length follow each other without gaps.
     #[test]
-    fn runs_of_any_length_follow_each_other_without_gaps() {
-        let mut page = Page::new();
+    fn runs_are_packed_without_gaps() {
+        let mut page = BlockPage::new();
         let mut pen = page.restart(64);
         let (mut short, mut long) = (Vec::new(), Vec::new());
         for (lane, length) in [0, 1, 7, 8, 9, 16, 0, 17, 15, 300, 2]
@@ -219,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_block_takes_what_it_promises() {
-        let mut page = Page::new();
+        let mut page = BlockPage::new();
         for length in [16, 17] {
             let mut pen = page.restart(0);
             let mut runs = 0;

@@ -1,10 +1,11 @@
-//! The box of ball centres and the widest ball: what a finder sizes its cells by.
+//! [`BallBounds`]: the box of ball centres and the largest radius, from which a finder derives its
+//! cells.
 
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
-/// Extremes over a set of balls. Without any, `lo` is above `hi`.
+/// Extremes over a set of balls. For an empty set, `lo` is above `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct BallBounds {
     /// Lowest centre coordinates.
     pub lo: [f32; 3],
     /// Highest centre coordinates.
@@ -13,21 +14,21 @@ pub struct Bounds {
     pub widest: f32,
 }
 
-impl Bounds {
-    /// Of no ball.
+impl BallBounds {
+    /// The bounds of an empty set.
     pub const EMPTY: Self = Self {
         lo: [f32::INFINITY; 3],
         hi: [f32::NEG_INFINITY; 3],
         widest: 0.0,
     };
 
-    /// Of some balls.
+    /// The bounds of some balls.
     #[must_use]
     pub fn of(tier: Tier, balls: &[[f32; 4]]) -> Self {
         dispatch(tier, FindExtremes(balls))
     }
 
-    /// Of both sets.
+    /// The bounds of both sets together.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -38,16 +39,16 @@ impl Bounds {
     }
 }
 
-/// Four balls' numbers, which any tier's vectors divide: each of the sixteen positions has its own
-/// extremes, so every tier compares the same numbers in the same order.
+/// The numbers of four balls, a multiple of every tier's vectors. Each of the sixteen positions has
+/// separate extremes, so every tier compares the same numbers in the same order.
 const NUMBERS_PER_CHUNK: usize = 16;
 
 struct FindExtremes<'a>(&'a [[f32; 4]]);
 
 impl Kernel for FindExtremes<'_> {
-    type Output = Bounds;
+    type Output = BallBounds;
     #[inline(always)]
-    fn run<L: Lanes>(self, l: L) -> Bounds {
+    fn run<L: Lanes>(self, l: L) -> BallBounds {
         let vectors = NUMBERS_PER_CHUNK / L::WIDTH;
         let mut lo = [l.splat(f32::INFINITY); NUMBERS_PER_CHUNK];
         let mut hi = [l.splat(f32::NEG_INFINITY); NUMBERS_PER_CHUNK];
@@ -73,7 +74,7 @@ impl Kernel for FindExtremes<'_> {
         lows.for_each(|(i, x)| lo[i % 4] = lo[i % 4].min(*x));
         highs.for_each(|(i, x)| hi[i % 4] = hi[i % 4].max(*x));
         let ([x, y, z, _], [to_x, to_y, to_z, widest]) = (lo, hi);
-        Bounds {
+        BallBounds {
             lo: [x, y, z],
             hi: [to_x, to_y, to_z],
             widest: widest.max(0.0),
@@ -92,8 +93,8 @@ mod tests {
                 let mut balls = vec![[0.5, 0.25, -0.5, 1.0]; n];
                 balls[extreme] = [3.0, -4.0, 5.0, 6.0];
                 for tier in Tier::available() {
-                    let bounds = Bounds::of(tier, &balls);
-                    let alone = Bounds::of(tier, &balls[extreme..=extreme]);
+                    let bounds = BallBounds::of(tier, &balls);
+                    let alone = BallBounds::of(tier, &balls[extreme..=extreme]);
                     let [lo, hi] = match n {
                         1 => [[3.0, -4.0, 5.0]; 2],
                         _ => [[0.5, -4.0, -0.5], [3.0, 0.25, 5.0]],
@@ -101,14 +102,14 @@ mod tests {
                     let widest = 6.0;
                     assert_eq!(
                         bounds,
-                        Bounds { lo, hi, widest },
+                        BallBounds { lo, hi, widest },
                         "{tier}, {extreme} of {n}"
                     );
                     assert_eq!(bounds.union(alone), bounds);
-                    assert_eq!(Bounds::EMPTY.union(bounds), bounds);
+                    assert_eq!(BallBounds::EMPTY.union(bounds), bounds);
                 }
             }
         }
-        assert_eq!(Bounds::of(Tier::SCALAR, &[]), Bounds::EMPTY);
+        assert_eq!(BallBounds::of(Tier::SCALAR, &[]), BallBounds::EMPTY);
     }
 }

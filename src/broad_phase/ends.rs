@@ -1,9 +1,10 @@
-//! Long boxes, of which the cubes about them tell little: their ends in slot order, compared as
-//! they are, so that the answer is exact.
+//! The ends of boxes in slot order. Boxes that are much longer than wide are compared by their
+//! ends, because the cubes around them overlap far more often than they do. Comparing ends is
+//! exact.
 //!
-//! A first volume test takes them, and so do lists of neighbours: there boxes are [`grown`] by a
-//! skin, and a list serves while each box is within its grown one. Boxes that meet then have grown
-//! ones that meet, whatever rounding has made of these.
+//! Both the first volume test and lists of neighbours use them. For lists, boxes are [`grown`] by a
+//! skin, and a list is valid while each box is within its grown box. Boxes that meet then have
+//! grown boxes that meet, however these were rounded.
 
 use std::ops::Range;
 
@@ -14,20 +15,22 @@ use crate::rounding::skin::Skin;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch, numbers_of, quads_in_columns};
 use crate::threads::{Executor, Threads};
 
-/// Boxes that one thread brings into slot order, or looks at, at a time.
+/// Boxes that one thread sorts into slots, or checks, at a time.
 const BOXES_PER_TASK: usize = 4096;
 
-/// Boxes of which a finder's balls are the cubes about them, an eighth in size.
+/// The boxes from which a finder's balls were made. A ball represents the cube around its box, at
+/// an eighth of the cube's size.
 #[derive(Clone, Copy, Debug)]
-pub struct Boxes<'a> {
-    /// By name.
+pub struct GivenBoxes<'a> {
+    /// The boxes, indexed by name.
     pub all: &'a [Aabb],
-    /// Whether cubes tell so little that lists of neighbours are made by the boxes themselves.
+    /// Whether the boxes are so long that lists of neighbours are built from the boxes instead of
+    /// their cubes.
     pub are_long: bool,
 }
 
-/// Ends of boxes in the finder's slot order, each padded by [`MAX_WIDTH`] finite entries: as quads
-/// for scattered candidates, whose fourth number is zero, and as columns for runs.
+/// Ends of boxes in the finder's slot order, padded by [`MAX_WIDTH`] finite entries: as quads,
+/// whose fourth number is zero, for scattered candidates, and as columns for runs.
 #[derive(Clone, Debug, Default)]
 pub struct EndSlots {
     lower: Vec<[f32; 4]>,
@@ -37,15 +40,15 @@ pub struct EndSlots {
 }
 
 impl EndSlots {
-    /// Takes the boxes in the order of slots; `runs` says whether slots will be tested against runs
-    /// of others.
+    /// Fills in the boxes in slot order. `runs` says whether slots will be tested against runs of
+    /// others.
     pub fn fill(&mut self, executor: Executor<'_>, order: &[u32], boxes: &[Aabb], runs: bool) {
         self.fill_quads(executor, order, boxes);
         self.fill_columns(executor.pool, runs);
     }
 
-    /// The same, those in the first slots each grown by a skin of the cube about it; the cubes of
-    /// these are given.
+    /// As [`Self::fill`], with the boxes in the first slots grown by a skin of the cube around
+    /// each, which is given.
     pub fn fill_grown(
         &mut self,
         executor: Executor<'_>,
@@ -97,7 +100,7 @@ impl EndSlots {
         });
     }
 
-    /// Whether each of the boxes with these names is within the one in the slot of its place.
+    /// Whether each of the boxes `names` is within the box in the slot with the same index.
     pub fn hold(&self, executor: Executor<'_>, names: &[u32], boxes: &[Aabb]) -> bool {
         let Executor { tier, pool } = executor;
         pool.all(names.len(), BOXES_PER_TASK, |range| {
@@ -111,16 +114,16 @@ impl EndSlots {
         })
     }
 
-    /// Bytes that the columns have taken, used or not.
+    /// Bytes that the columns have allocated, used or not.
     pub fn bytes(&self) -> usize {
         let columns = self.columns.iter().map(bytes).sum::<usize>();
         bytes(&self.lower) + bytes(&self.upper) + columns
     }
 
-    /// The ends in the slots from `start` on, a vector of them.
+    /// A vector of ends, from the slot `start` on.
     #[inline(always)]
     fn vector<L: Lanes>(&self, l: L, start: usize) -> [[L::F; 3]; 2] {
-        // Written out: closures would be compiled apart, without the tier's features.
+        // Written out, because closures would be compiled without the tier's features.
         let [x, y, z, to_x, to_y, to_z] = &self.columns;
         let lower = [
             l.load(&x[start..]),
@@ -146,7 +149,7 @@ impl EndSlots {
     }
 }
 
-/// Bits of the lanes below `count` whose boxes, each as its lower and upper ends, meet.
+/// Bits of the lanes below `count` in which the two boxes, given by lower and upper ends, meet.
 #[inline(always)]
 fn with_common_points<L: Lanes>(
     l: L,
@@ -199,18 +202,17 @@ impl SlotTest for EndSlots {
     }
 }
 
-/// The box grown by a length to all sides, rounded inward so that it is no larger than that, but no
-/// smaller than it was.
+/// The box grown by a length on all sides, rounded inward: it is at most that large, and at least
+/// as large as before.
 pub(super) fn grown(Aabb { min, max }: Aabb, by: f32) -> Aabb {
-    // What is below the number nearest to a sum is no greater than the sum.
+    // The number before the one nearest to a sum is at most the sum.
     Aabb {
         min: min.map(|end| end.min((end - by).next_up())),
         max: max.map(|end| end.max((end + by).next_down())),
     }
 }
 
-/// Brings boxes, each of which is six numbers, into the order of their names: lower and upper ends
-/// as quads.
+/// Gathers boxes, six numbers each, in the order of `names`: lower and upper ends as quads.
 struct FillBoxes<'a> {
     names: &'a [u32],
     boxes: &'a [[f32; 6]],
@@ -237,7 +239,7 @@ impl Kernel for FillBoxes<'_> {
     }
 }
 
-/// Whether boxes are within those in the slots from `first` on.
+/// Tests whether boxes are within those in the slots from `first` on.
 struct BoxesWithin<'a> {
     ends: &'a EndSlots,
     first: usize,

@@ -1,21 +1,22 @@
-//! What debug builds, and so tests, check of every finder in every small frame: each pair is a
-//! candidate at most once, and each pair whose cubes meet once, unless both bodies are static.
+//! Checks of every finder in debug builds, and therefore in tests, in every small frame: each pair
+//! is a candidate at most once, and each pair whose cubes meet exactly once, unless both bodies are
+//! static.
 //!
-//! Cubes, since some first tests compare world-aligned volumes: there balls stand for the cubes
-//! about them. A list of neighbours knows whether they do, and whether it was made by the boxes
-//! themselves.
+//! It uses cubes because some first tests compare world-aligned volumes, for which balls stand for
+//! the cubes around them. A list of neighbours knows whether they do, and whether it was built from
+//! the boxes themselves.
 
 use std::ops::Range;
 
-use super::{Block, Boxes, FirstTest, PairFinder, Volume};
+use super::{Block, FirstTest, GivenBoxes, PairFinder, Volume};
 use crate::bodies::Places;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
-/// The most bodies of a frame that is checked: it takes the time of all pairs.
+/// The most bodies of a frame that is checked, because the check compares all pairs.
 const MOST_BODIES: usize = 64;
 
-/// 1 + 4u: how far beyond the sum of their radii balls may be reported.
-const REPORTED: f64 = 1.0 + 4.0 * crate::rounding::U;
+/// 1 + 4u: the ratio of distance to the sum of radii up to which balls may be reported.
+const MOST_REPORTED_RATIO: f64 = 1.0 + 4.0 * crate::rounding::U;
 
 impl PairFinder {
     /// Checks the candidates of a frame that has just been arranged, without allocating.
@@ -24,7 +25,7 @@ impl PairFinder {
         tier: Tier,
         places: &Places,
         balls: &[[f32; 4]],
-        boxes: Option<Boxes<'_>>,
+        boxes: Option<GivenBoxes<'_>>,
     ) {
         let n = places.len();
         if n > MOST_BODIES {
@@ -46,7 +47,7 @@ impl PairFinder {
         let of_boxes = boxes.filter(|_| self.is_by_boxes());
         let meet = |i, j| match of_boxes {
             None => self.meet(ball(i), ball(j)),
-            Some(Boxes { all, .. }) => {
+            Some(GivenBoxes { all, .. }) => {
                 let [a, b] = [i, j].map(|slot| &all[slots.names[slot] as usize]);
                 a.meets(b)
             }
@@ -72,11 +73,11 @@ impl PairFinder {
         matches!(self, Self::Neighbours(finder) if finder.is_by_boxes())
     }
 
-    /// Whether the cubes about two balls meet, or the balls where these alone are reported.
+    /// Whether the cubes around two balls meet, or the balls if only those are reported.
     fn meet(&self, a: [f32; 4], b: [f32; 4]) -> bool {
         let [a, b] = [a, b].map(|ball| ball.map(f64::from));
         let apart: [f64; 3] = std::array::from_fn(|axis| (a[axis] - b[axis]).abs());
-        let reach = (a[3] + b[3]) * REPORTED;
+        let reach = (a[3] + b[3]) * MOST_REPORTED_RATIO;
         match self {
             Self::Neighbours(finder) if finder.volume() == Volume::Ball => {
                 reach >= 0.0 && apart.iter().map(|d| d * d).sum::<f64>() <= reach * reach

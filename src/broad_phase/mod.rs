@@ -1,10 +1,10 @@
 //! Pair finders: which pairs are candidates for the strategy's first volume test.
 //!
-//! A finder arranges bodies in slots and hands out candidates in two forms: a slot against a
-//! contiguous run of slots, and a [`Block`] of scattered pairs where runs are too short to fill a
-//! vector. Each pair of bodies that are not both static and that the first test would report is a
-//! candidate exactly once; two static bodies never are. Slots, candidates and their order depend on
-//! the bodies alone, never on the tier or on threads.
+//! A finder arranges bodies in slots and produces candidates in two forms: a slot with a contiguous
+//! run of slots, and a [`Block`] of scattered pairs if runs are too short to fill a vector. Each
+//! pair that the first test would report is a candidate exactly once; two static bodies are never a
+//! candidate. Slots, candidates and their order depend only on the bodies, never on the tier or on
+//! threads.
 
 use std::ops::Range;
 
@@ -31,13 +31,13 @@ pub mod whole_vectors;
 
 pub use all_pairs::AllPairs;
 pub use auto::Population;
-use block::{BLOCK_BODIES, Page, Pen};
+use block::{BLOCK_BODIES, BlockPage, RunWriter};
 pub use block::{Block, MOST_CANDIDATES};
-pub use bounds::Bounds;
+pub use bounds::BallBounds;
 pub(crate) use box_index::{BoxIndex, IndexedBox, Search, tags};
-pub use ends::{Boxes, EndSlots};
+pub use ends::{EndSlots, GivenBoxes};
 pub use grid::{Cells, Grid, TableLayout};
-use neighbours::List;
+use neighbours::NeighbourList;
 pub use neighbours::{Neighbours, Volume};
 pub use slot_test::{BallTest, SlotTest, list_slots};
 pub use slots::{Balls, SlotBodies, Slots};
@@ -51,7 +51,7 @@ pub trait FirstTest {
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>);
 }
 
-/// Bytes that a column has taken, used or not.
+/// Bytes that a column has allocated, used or not.
 fn bytes<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()
 }
@@ -65,19 +65,19 @@ pub enum PairFinder {
     Grid(Grid),
     /// Sorted ends along an axis.
     Sweep(Sweep),
-    /// Candidates that are kept.
+    /// Lists of neighbours, kept over frames.
     Neighbours(Box<Neighbours>),
 }
 
-/// Where a frame's candidates come from.
+/// The source of a frame's candidates.
 enum CandidateSource<'a> {
     AllPairs(&'a AllPairs),
     Grid(&'a Grid),
     Sweep(&'a Sweep),
-    List(&'a List),
+    List(&'a NeighbourList),
 }
 
-/// Which places take other bodies.
+/// Which places get other bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reorder {
     /// None.
@@ -89,7 +89,7 @@ pub enum Reorder {
 }
 
 impl PairFinder {
-    /// The finder of that name, or the one that suits the population.
+    /// Makes the finder of that name, or for `auto` the one that suits the population.
     #[must_use]
     pub fn new(finder: Finder, population: &Population) -> Self {
         match finder {
@@ -101,8 +101,9 @@ impl PairFinder {
         }
     }
 
-    /// Takes up another set of bodies, in the order that [`Places::replace`] leaves: `stays` is of
-    /// each former place. False if it knows nothing of the bodies that stay, and begins anew.
+    /// Changes the set of bodies, in the order after [`Places::replace`]; `stays` says which former
+    /// places keep their body. Returns false if the finder keeps no knowledge of bodies and starts
+    /// again.
     pub fn replace(
         &mut self,
         finder: Finder,
@@ -138,7 +139,7 @@ impl PairFinder {
         }
     }
 
-    /// Bytes that it holds, those of its slots included.
+    /// Bytes that it holds, including its slots.
     #[must_use]
     pub fn bytes(&self) -> usize {
         match self {
@@ -149,8 +150,8 @@ impl PairFinder {
         }
     }
 
-    /// Candidates that the last frame tested in search of a list of neighbours, which it doesn't
-    /// hand out. A search that was abandoned counts as its limit.
+    /// Candidates that the last frame tested to build a list of neighbours. An abandoned search
+    /// counts as its limit.
     #[must_use]
     pub fn list_tests(&self) -> u64 {
         match self {
@@ -159,9 +160,8 @@ impl PairFinder {
         }
     }
 
-    /// Looks for a better order of places and writes it to `order`, as the names that take the
-    /// places one after the other. Moving bodies stay in front. `balls` and `names` are those of
-    /// the last frame.
+    /// Finds a better order of places and writes it to `order`, as the names for the places. Moving
+    /// bodies stay first. `balls` and `names` are those of the last frame.
     pub fn reorder(
         &mut self,
         places: &Places,
@@ -177,7 +177,8 @@ impl PairFinder {
         }
     }
 
-    /// Notes how many candidates the last frame had; the grid may plan its levels anew by it.
+    /// Records how many candidates the last frame had. The grid decides by it whether to plan its
+    /// levels again.
     pub fn observe(&mut self, candidates: u64) {
         match self {
             Self::AllPairs(_) | Self::Sweep(_) => {}
@@ -186,16 +187,16 @@ impl PairFinder {
         }
     }
 
-    /// Arranges the bodies for a frame. `balls` and `names` are in the order of places, and nothing
-    /// that the first test reports lies outside two cubes, about these balls, which meet. `boxes`
-    /// are those in such cubes, if they are what is reported.
+    /// Arranges the bodies for a frame. `balls` and `names` are in the order of places. For every
+    /// pair that the first test reports, the cubes around the two balls meet. `boxes` are the boxes
+    /// inside these cubes, if boxes are reported.
     pub fn arrange(
         &mut self,
         executor: Executor<'_>,
         places: &Places,
         balls: &[[f32; 4]],
         names: &[u32],
-        boxes: Option<Boxes<'_>>,
+        boxes: Option<GivenBoxes<'_>>,
     ) {
         match self {
             Self::AllPairs(finder) => finder.arrange(places, balls, names),
@@ -209,8 +210,8 @@ impl PairFinder {
         self.check(executor.tier, places, balls, boxes);
     }
 
-    /// The arranged bodies. `balls` are those that were arranged: where places have the order of
-    /// slots, they are read as they stand.
+    /// The arranged bodies. `balls` are those that were arranged; if places have the order of
+    /// slots, they are read directly.
     #[must_use]
     pub fn slots<'a>(&'a self, balls: &'a Balls) -> SlotBodies<'a> {
         let slots = self.own_slots();
@@ -221,13 +222,13 @@ impl PairFinder {
         }
     }
 
-    /// Whether places have the order of slots, so that what is known by place can be read by slot.
+    /// Whether places have the order of slots, so that columns by place can be read by slot.
     #[must_use]
     pub fn slots_are_places(&self) -> bool {
         matches!(self, Self::Neighbours(finder) if finder.slots_are_places())
     }
 
-    /// The name of each slot's body, and a vector of names after them.
+    /// The name of each slot's body, followed by a vector of arbitrary names.
     #[must_use]
     pub fn names(&self) -> &[u32] {
         &self.own_slots().names
@@ -242,8 +243,8 @@ impl PairFinder {
         }
     }
 
-    /// Where this frame's candidates come from. Neighbour lists leave frames in which they don't
-    /// pay to the grid: one copy of its search, compiled once, serves both finders.
+    /// The source of this frame's candidates. Neighbour lists leave frames in which they don't pay
+    /// to the grid; one compiled copy of its search serves both finders.
     #[inline(always)]
     fn search(&self) -> CandidateSource<'_> {
         match self {
@@ -257,13 +258,13 @@ impl PairFinder {
         }
     }
 
-    /// Whether slots are handed out with runs of others in this frame, or scattered pairs alone.
+    /// Whether this frame's candidates include runs, or only scattered pairs.
     #[must_use]
     pub fn hands_out_runs(&self) -> bool {
         !matches!(self.search(), CandidateSource::List(_))
     }
 
-    /// Into how many parts the work is cut.
+    /// The number of parts of the work.
     #[must_use]
     pub fn parts(&self) -> usize {
         match self.search() {
@@ -274,7 +275,7 @@ impl PairFinder {
         }
     }
 
-    /// Hands the candidates of the given parts to `test`, in order.
+    /// Passes the candidates of the given parts to `test`, in order.
     #[inline(always)]
     pub fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
         match self.search() {
@@ -325,8 +326,9 @@ mod tests {
         finder
     }
 
+    /// Every finder has a vector of entries after its slots.
     #[test]
-    fn every_finder_has_a_vector_of_entries_behind_its_slots() {
+    fn every_finder_pads_its_slots() {
         for &finder in Finder::ALL {
             for bodies in [1, 2, 70] {
                 let (finder, padded) = (arranged(finder, bodies), bodies + MAX_WIDTH);
@@ -342,15 +344,17 @@ mod tests {
         }
     }
 
+    /// A finder holds a ball and a name for each body.
     #[test]
-    fn a_finder_holds_a_ball_and_a_name_for_each_body() {
+    fn finder_bytes_cover_balls_and_names() {
         for &finder in Finder::ALL {
             assert!(arranged(finder, 1000).bytes() >= 20 * 1000, "{finder}");
         }
     }
 
+    /// Cells are kept for bodies that stay as long as the same finder suits.
     #[test]
-    fn cells_are_kept_for_bodies_that_stay_as_long_as_the_same_finder_suits() {
+    fn staying_bodies_keep_their_cells() {
         for (finder, next, name, kept) in [
             (Finder::Grid, Finder::Grid, Finder::Grid, true),
             (

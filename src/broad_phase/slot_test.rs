@@ -1,4 +1,5 @@
-//! Volume tests of slots: candidates in the two forms that pair finders hand out, hits as a list.
+//! Traits for volume tests of slots: candidates come in the two forms of pair finders, and hits are
+//! written to a list.
 
 use std::ops::Range;
 
@@ -7,18 +8,19 @@ use crate::simd::{LANES, Lanes, MAX_WIDTH, quads_in_columns};
 
 /// A volume test of slots.
 pub trait SlotTest {
-    /// Lists the slots of `run` that may touch slot `i` at the front of `hits`, which has room for
-    /// the run and a vector more. Returns their number.
+    /// Writes the slots of `run` that may touch slot `i` to the front of `hits`, which has room for
+    /// the run and one vector. Returns their number.
     fn run<L: Lanes>(&self, l: L, i: usize, run: Range<usize>, hits: &mut [u32]) -> usize;
 
-    /// Lists the codes of the block's pairs that may touch at the front of `hits`, which has room
-    /// for the block and a vector more. Returns their number.
+    /// Writes the codes of the block's pairs that may touch to the front of `hits`, which has room
+    /// for the block and one vector. Returns their number.
     fn block<L: Lanes>(&self, l: L, block: &Block<'_>, hits: &mut [u32]) -> usize;
 }
 
-/// Writes the slots from `start` on whose bits are set; how many.
+/// Writes the slots from `start` on whose bits are set. Returns their number.
 ///
-/// No branch upon them: it would be foreseen badly, and cost the more the more pairs touch.
+/// It has no branch on the bits, which would be predicted badly, at a cost that grows with the
+/// number of touching pairs.
 #[inline(always)]
 pub fn list_slots<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> usize {
     let slot = l.add_u32(l.splat_u32(start as u32), l.load_u32(&LANES));
@@ -26,18 +28,18 @@ pub fn list_slots<L: Lanes>(l: L, hit: u32, start: usize, hits: &mut [u32]) -> u
     hit.count_ones() as usize
 }
 
-/// A volume test of the finder's own balls, a vector of pairs at a time.
+/// A volume test of the finder's balls, a vector of pairs at a time.
 pub trait BallTest {
     /// The balls.
     fn slots(&self) -> SlotBodies<'_>;
 
-    /// Whether two balls, or what they stand for, surely lie apart, lane by lane: `between` is the
-    /// way from one centre to the other, `radii` are the two radii.
+    /// Lanes in which two balls, or the volumes they stand for, are certainly apart. `between` is
+    /// the vector from one centre to the other, `radii` are the two radii.
     fn apart<L: Lanes>(&self, l: L, between: [L::F; 3], radii: [L::F; 2]) -> L::M;
 
-    /// Of the lanes `near`, which [`apart`](Self::apart) hasn't parted, those that may touch;
-    /// `pair` says in which slots a lane's balls are. All of them, unless a test knows more than
-    /// its balls tell.
+    /// The lanes that may touch among `near`, which [`apart`](Self::apart) did not reject; `pair`
+    /// gives the slots of a lane. By default these are all lanes in `near`; a test that knows more
+    /// than balls can reject some.
     #[inline(always)]
     fn touching<L: Lanes>(
         &self,
@@ -51,7 +53,8 @@ pub trait BallTest {
     }
 }
 
-/// Bits of the lanes below `count` whose two balls, or what they stand for, may touch.
+/// Bits of the lanes below `count` in which the two balls, or the volumes they stand for, may
+/// touch.
 #[inline(always)]
 fn hits_of<L: Lanes>(
     test: &impl BallTest,
@@ -82,7 +85,7 @@ impl<T: BallTest> SlotTest for T {
             }
             return found;
         }
-        // Equally long, they need one check of bounds a vector.
+        // With equal lengths they need one bounds check per vector.
         let [y, z, r] = [y, z, r].map(|column| &column[..x.len()]);
         while start < run.end {
             let vector = start..start + L::WIDTH;

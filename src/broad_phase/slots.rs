@@ -1,12 +1,12 @@
-//! Balls in slot order, and the same of a frame, wherever they stand.
+//! Balls by place and in slot order.
 
 use std::ops::{Deref, DerefMut};
 
 use super::bytes;
 use crate::simd::MAX_WIDTH;
 
-/// World balls (x, y, z, R) by place. After them comes a vector of finite entries, so that tests
-/// may read them where they are.
+/// World balls (x, y, z, R) by place, followed by a vector of finite entries, so that tests can
+/// read whole vectors.
 #[derive(Clone, Debug)]
 pub struct Balls {
     padded: Vec<[f32; 4]>,
@@ -19,14 +19,14 @@ impl Default for Balls {
 }
 
 impl Balls {
-    /// That many, without a size at the origin.
+    /// `len` balls of radius 0 at the origin.
     #[must_use]
     pub fn new(len: usize) -> Self {
         let padded = vec![[0.0; 4]; len + MAX_WIDTH];
         Self { padded }
     }
 
-    /// Room for `len` balls; new ones are without a size at the origin.
+    /// Resizes to `len` balls. New ones have radius 0 at the origin.
     pub fn resize(&mut self, len: usize) {
         resize(&mut self.padded, len, [0.0; 4]);
     }
@@ -70,7 +70,7 @@ impl Slots {
         bytes(&self.balls) + columns + bytes(&self.names)
     }
 
-    /// A frame whose balls these are.
+    /// The bodies of a frame that has these balls.
     pub(crate) fn arranged(&self) -> SlotBodies<'_> {
         SlotBodies {
             balls: &self.balls,
@@ -79,8 +79,8 @@ impl Slots {
         }
     }
 
-    /// A frame in which places have the order of slots, so that `balls` by place are those in slot
-    /// order.
+    /// The bodies of a frame in which places have the order of slots, so that `balls` by place are
+    /// those in slot order.
     pub(super) fn followed<'a>(&'a self, balls: &'a Balls) -> SlotBodies<'a> {
         let balls = &balls.padded;
         SlotBodies {
@@ -90,7 +90,7 @@ impl Slots {
     }
 }
 
-/// The bodies of a frame in slot order, as [`Slots`] has them.
+/// The bodies of a frame in slot order: [`Slots`], or the balls by place.
 #[derive(Clone, Copy, Debug)]
 pub struct SlotBodies<'a> {
     /// The balls as the first test takes them.
@@ -118,7 +118,7 @@ impl SlotBodies<'_> {
 /// Room for `len` entries and [`MAX_WIDTH`] empty ones.
 fn resize<T: Copy>(column: &mut Vec<T>, len: usize, empty: T) {
     column.resize(len + MAX_WIDTH, empty);
-    // What was an entry may be padding now.
+    // Former entries may be padding now.
     column[len..].fill(empty);
 }
 
@@ -126,8 +126,9 @@ fn resize<T: Copy>(column: &mut Vec<T>, len: usize, empty: T) {
 mod tests {
     use super::*;
 
+    /// Behind the slots is a vector of finite entries.
     #[test]
-    fn behind_the_slots_is_a_vector_of_finite_entries() {
+    fn slots_are_padded_with_finite_entries() {
         let (mut slots, mut balls) = (Slots::default(), Balls::new(7));
         assert_eq!((balls.len(), balls.padded.len()), (7, 7 + MAX_WIDTH));
         for len in [0, 1, 5, 40, 3] {

@@ -1,11 +1,11 @@
-//! Sweep and prune along one axis ("box pruning"): balls sorted by their lower end, each tested
-//! against those that begin before it ends.
+//! `sweep`: sweep and prune along one axis ("box pruning"). Balls are sorted by their lower ends,
+//! and each is tested against those that begin before it ends.
 //!
-//! Candidates of a ball are one contiguous run in the sorted order, so vectors are full, but there
-//! are N^(5/3) of them in a cube: the grid is ahead at every number of bodies and in every shape of
-//! space that was tried, and `auto` never picks the sweep. Ends are widened and rounded outward:
-//! the sphere test rounds too, and with plain fl(x ± R) a sweep loses one in twenty of the unequal
-//! balls that touch to the last bit (`tests/finders/`).
+//! The candidates of a ball are one contiguous run in the sorted order, so vectors are full. But
+//! there are N^(5/3) of them in a cube: the grid was faster at every number of bodies and in every
+//! arrangement that was tried, and `auto` never picks the sweep. Ends are widened and rounded
+//! outward, because the sphere test rounds too: with plain fl(x ± R), a sweep misses one in twenty
+//! pairs of unequal balls that touch to the last bit (`tests/finders/`).
 
 use std::ops::Range;
 
@@ -14,20 +14,20 @@ use crate::bodies::Places;
 use crate::rounding::{down, up, widen};
 use crate::simd::{Lanes, MAX_WIDTH};
 
-/// Frames after which places take the order of slots.
+/// Frames between reorderings of the places.
 const FRAMES_PER_REORDER: u32 = 32;
 
-/// Slots in one part of the work.
+/// Slots per part of the work.
 const SLOTS_PER_PART: usize = 64;
 
-/// Another axis must promise this much more spread before static bodies are sorted anew.
-const WORTH_TURNING: f64 = 1.5;
+/// The factor by which another axis must have more spread before static bodies are sorted again.
+const LEAST_SPREAD_RATIO: f64 = 1.5;
 
 /// Moving bodies sorted along an axis, then static ones.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
     slots: Slots,
-    /// Ends along the axis, by slot.
+    /// The ends along the axis, by slot.
     lo: Vec<f32>,
     hi: Vec<f32>,
     moving: usize,
@@ -75,7 +75,7 @@ impl Sweep {
         }
     }
 
-    /// Picks the axis along which centres spread most.
+    /// Picks the axis with the largest spread of centres.
     fn turn(&mut self, balls: &[[f32; 4]]) {
         let n = balls.len().max(1) as f64;
         let spread: [f64; 3] = std::array::from_fn(|axis| {
@@ -84,14 +84,14 @@ impl Sweep {
             column().map(|x| (x - mean) * (x - mean)).sum()
         });
         for axis in 0..3 {
-            if spread[axis] > WORTH_TURNING * spread[self.axis] {
+            if spread[axis] > LEAST_SPREAD_RATIO * spread[self.axis] {
                 (self.axis, self.fixed_sorted) = (axis, false);
             }
         }
     }
 
-    /// Sorts the bodies in a range of places by their lower ends; bodies with the same end stay in
-    /// the order of places.
+    /// Sorts the bodies in a range of places by their lower ends. Bodies with the same end keep the
+    /// order of places.
     fn sort(&mut self, range: Range<usize>, balls: &[[f32; 4]], names: &[u32]) {
         let ends = |ball: &[f32; 4]| {
             let (x, reach) = (f64::from(ball[self.axis]), f64::from(widen(ball[3])));
@@ -146,7 +146,7 @@ impl Sweep {
         }
     }
 
-    /// Where in a sorted range the balls begin after the end of slot `i`.
+    /// The index in a sorted range from which on balls begin after the end of slot `i`.
     #[inline(always)]
     fn end<L: Lanes>(&self, l: L, i: usize, range: Range<usize>) -> usize {
         let hi = l.splat(self.hi[i]);
@@ -162,18 +162,19 @@ impl Sweep {
     }
 }
 
-/// A radix sort whose buffers stay.
+/// A radix sort that keeps its buffers.
 #[derive(Clone, Debug, Default)]
 struct Sorter {
-    /// (key, place), and where they are moved to.
+    /// Buffers of (key, place), source and target of each pass.
     pairs: [Vec<(u32, u32)>; 2],
 }
 
 impl Sorter {
-    /// Bits a pass: three passes make 33, and the counts of each fit the first-level cache.
+    /// Bits per pass. Three passes cover 33 bits, and the counts of each fit into the first-level
+    /// cache.
     const BITS_PER_PASS: u32 = 11;
 
-    /// The order of the keys by value, then by position. None is NaN.
+    /// The order of the keys by value, then by position. Keys must not be NaN.
     fn sort(&mut self, keys: impl Iterator<Item = f32>) -> impl Iterator<Item = &u32> {
         const BUCKETS: usize = 1 << Sorter::BITS_PER_PASS;
         let [from, to] = &mut self.pairs;
@@ -201,7 +202,7 @@ impl Sorter {
     }
 }
 
-/// An integer that orders as the number does, −0 before +0.
+/// An integer with the order of the numbers, −0 before +0.
 fn ordered(x: f32) -> u32 {
     let bits = x.to_bits();
     bits ^ if bits >> 31 == 1 { u32::MAX } else { 1 << 31 }
@@ -211,8 +212,9 @@ fn ordered(x: f32) -> u32 {
 mod tests {
     use super::*;
 
+    /// Keys sort by value and stay in order when equal.
     #[test]
-    fn keys_sort_by_value_and_stay_in_order_when_equal() {
+    fn radix_sort_is_stable() {
         let keys = [
             3.0,
             -1e-40,
@@ -234,8 +236,9 @@ mod tests {
         }
     }
 
+    /// Bytes are those of all columns used or not.
     #[test]
-    fn bytes_are_those_of_all_columns_used_or_not() {
+    fn bytes_count_all_columns() {
         let mut sweep = Sweep::default();
         assert_eq!(sweep.bytes(), 0);
         sweep.slots.names = Vec::with_capacity(1);
@@ -247,8 +250,9 @@ mod tests {
         assert_eq!(sweep.bytes(), 88_444);
     }
 
+    /// Places follow the slots of moving bodies now and then.
     #[test]
-    fn places_follow_the_slots_of_moving_bodies_now_and_then() {
+    fn places_are_reordered_periodically() {
         let mut sweep = Sweep::default();
         let mut order = vec![9];
         for age in 1..=3 * FRAMES_PER_REORDER {
@@ -269,8 +273,9 @@ mod tests {
         }
     }
 
+    /// Moving and static bodies have parts of their own.
     #[test]
-    fn moving_and_static_bodies_have_parts_of_their_own() {
+    fn moving_and_static_have_parts() {
         let parts = |moving, len| {
             let sweep = Sweep {
                 moving,
@@ -286,7 +291,7 @@ mod tests {
     /// Spreads are 1.5 times as large at exactly √1.5 times the extent; the mean counts, and the
     /// place does not.
     #[test]
-    fn the_axis_turns_to_where_centres_spread_half_as_much_more() {
+    fn axis_follows_the_spread() {
         let turned = |from: usize, columns: [[i8; 6]; 3]| {
             let ball = |i: usize| {
                 let [x, y, z] = columns.map(|column| f32::from(column[i]));
@@ -314,8 +319,9 @@ mod tests {
         assert_eq!(turned(1, [none; 3]), (1, true));
     }
 
+    /// Behind the ends is a vector of finite ones.
     #[test]
-    fn behind_the_ends_is_a_vector_of_finite_ones() {
+    fn ends_are_padded_with_finite_entries() {
         let mut sweep = Sweep::default();
         for bodies in [1, 3, 2] {
             let places = Places {

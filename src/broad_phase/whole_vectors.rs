@@ -1,31 +1,35 @@
-//! A run or a block that fills its vectors costs no vector more.
+//! Test helper: a run or a block that fills its vectors exactly must not read one vector more.
 
 use super::{Block, SlotTest};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 
-/// Slots of the test: whole vectors in every tier.
-pub const SLOTS: usize = 2 * MAX_WIDTH;
+/// Slots in the check: whole vectors in every tier.
+pub const SLOTS_PER_CHECK: usize = 2 * MAX_WIDTH;
 
-/// Tests slot 0 against all of [`SLOTS`] slots, and as many pairs as a block. All touch. The test's
-/// columns have no padding, and the hits of the block no room after them: what begins a vector
-/// more in vain, panics.
+/// Tests slot 0 against all of [`SLOTS_PER_CHECK`] slots, and as many pairs as a block. All touch.
+/// The test's columns have no padding and the block's hits no room after them, so starting another
+/// vector panics.
 pub fn check(test: &impl SlotTest) {
     struct Touching<'a, T>(&'a T);
     impl<T: SlotTest> Kernel for Touching<'_, T> {
         type Output = [Vec<u32>; 2];
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> Self::Output {
-            let mut slots = vec![0; SLOTS + MAX_WIDTH];
-            let found = self.0.run(l, 0, 0..SLOTS, &mut slots);
+            let mut slots = vec![0; SLOTS_PER_CHECK + MAX_WIDTH];
+            let found = self.0.run(l, 0, 0..SLOTS_PER_CHECK, &mut slots);
             slots.truncate(found);
-            let (padded, mut codes) = (codes(SLOTS + MAX_WIDTH), vec![0; SLOTS]);
-            let block = Block::new(0, &padded, SLOTS);
+            let (padded, mut codes) =
+                (codes(SLOTS_PER_CHECK + MAX_WIDTH), vec![0; SLOTS_PER_CHECK]);
+            let block = Block::new(0, &padded, SLOTS_PER_CHECK);
             let found = self.0.block(l, &block, &mut codes);
             codes.truncate(found);
             [slots, codes]
         }
     }
-    let all = [(0..SLOTS as u32).collect(), codes(SLOTS)];
+    let all = [
+        (0..SLOTS_PER_CHECK as u32).collect(),
+        codes(SLOTS_PER_CHECK),
+    ];
     for tier in Tier::available() {
         assert_eq!(dispatch(tier, Touching(test)), all, "{tier}");
     }

@@ -28,7 +28,7 @@ pub struct SdopShapeSpec {
     /// Whether poses place the centre of the smallest enclosing ball instead of the mesh's own
     /// origin.
     pub about_ball: bool,
-    /// Whether the or-DOP stands on the mesh's own axes instead of the principal axes of its hull.
+    /// Whether the or-DOP uses the mesh's own axes instead of the principal axes of its hull.
     pub on_model_axes: bool,
 }
 
@@ -65,7 +65,7 @@ unsafe fn spec(given: *const SdopShapeSpec) -> Result<ShapeSpec, Refusal> {
 /// indices of triangles. `spec` may be null.
 ///
 /// # Safety
-/// The columns have as many entries as said; `spec` is null or a specification; `out` may be
+/// The columns have the stated numbers of entries; `spec` is null or a specification; `out` may be
 /// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_shape_new(
@@ -128,10 +128,10 @@ pub(super) unsafe fn builder(options: *const SdopOptions) -> Result<CullerBuilde
     Ok(builder.threads(options.threads))
 }
 
-/// Copies of the shapes behind a column of handles.
+/// Copies of the shapes to which a column of handles refers.
 ///
 /// # Safety
-/// The column has so many entries, each a shape or null.
+/// The column has the stated number of entries, each a shape or null.
 pub(super) unsafe fn shapes(
     first: *const *const SdopShape,
     count: usize,
@@ -171,7 +171,8 @@ pub struct SdopBodies {
 /// Makes the culler of these bodies. `options` may be null.
 ///
 /// # Safety
-/// The columns have as many entries as said; `options` is null or options; `out` may be written.
+/// The columns have the stated numbers of entries; `options` is null or options; `out` may be
+/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_culler_new(
     shapes: *const *const SdopShape,

@@ -302,8 +302,8 @@ pub fn pairs(list: &PairList) -> impl ExactSizeIterator<Item = SdopPair> + '_ {
 /// The pointer that a caller wants back in its callback, which may be called on another thread.
 pub struct User(pub *mut c_void);
 
-// SAFETY: it is handed back as it is and never followed; calls come one at a time, and the caller
-// is told that any thread may make them.
+// SAFETY: it is handed back unchanged and never dereferenced; calls come one at a time, and the
+// documentation says that any thread may make them.
 unsafe impl Send for User {}
 
 impl User {

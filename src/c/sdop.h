@@ -62,7 +62,7 @@ typedef struct {
   // Whether poses place the centre of the smallest enclosing ball instead of the mesh's own
   // origin.
   bool about_ball;
-  // Whether the or-DOP stands on the mesh's own axes instead of the principal axes of its hull.
+  // Whether the or-DOP uses the mesh's own axes instead of the principal axes of its hull.
   bool on_model_axes;
 } SdopShapeSpec;
 
@@ -185,7 +185,7 @@ const char *sdop_last_error(void);
 // indices of triangles. `spec` may be null.
 //
 // # Safety
-// The columns have as many entries as said; `spec` is null or a specification; `out` may be
+// The columns have the stated numbers of entries; `spec` is null or a specification; `out` may be
 // written.
 SdopStatus sdop_shape_new(const double (*vertices)[3],
                           size_t vertex_count,
@@ -203,7 +203,8 @@ void sdop_shape_free(SdopShape *shape);
 // Makes the culler of these bodies. `options` may be null.
 //
 // # Safety
-// The columns have as many entries as said; `options` is null or options; `out` may be written.
+// The columns have the stated numbers of entries; `options` is null or options; `out` may be
+// written.
 SdopStatus sdop_culler_new(const SdopShape *const *shapes,
                            size_t shape_count,
                            const SdopBodies *bodies,
@@ -393,7 +394,7 @@ bool sdop_pair_test_may_touch(const SdopPairTest *test,
 // defaults.
 //
 // # Safety
-// The column has as many shapes as said; `options` is null or options; `out` may be written.
+// The column has the stated number of shapes; `options` is null or options; `out` may be written.
 SdopStatus sdop_world_new(const SdopShape *const *shapes,
                           size_t shape_count,
                           const SdopOptions *options,

@@ -50,7 +50,7 @@ impl From<SdopBody> for Body {
 /// defaults.
 ///
 /// # Safety
-/// The column has as many shapes as said; `options` is null or options; `out` may be written.
+/// The column has the stated number of shapes; `options` is null or options; `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_new(
     shapes: *const *const SdopShape,

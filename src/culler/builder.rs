@@ -1,4 +1,4 @@
-//! How a culler is made: settings first, then the shapes and bodies.
+//! [`CullerBuilder`]: settings first, then the shapes and bodies.
 
 use super::{CullError, Culler, check};
 use crate::bodies::Bodies;
@@ -9,8 +9,8 @@ use crate::simd::{Tier, in_default_mode};
 use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 use crate::volume::Shape;
 
-/// Everything about a [`Culler`] that isn't its shapes and bodies. What isn't set has the default
-/// of [`CullSettings`], the caller's thread and the fastest tier of this CPU.
+/// Settings of a [`Culler`], and the function that builds it from shapes and bodies. The defaults
+/// are those of [`CullSettings`], the caller's thread and the fastest tier of this CPU.
 ///
 /// ```
 /// # use sdop::{Bodies, Culler, Finder, ProceduralShape, Shape, ShapeSpec, Strategy};
@@ -32,7 +32,7 @@ pub struct CullerBuilder {
 }
 
 impl CullerBuilder {
-    /// All settings at once, in place of those set so far.
+    /// Replaces all settings at once.
     pub fn settings(self, settings: &CullSettings) -> Self {
         let settings = settings.clone();
         Self { settings, ..self }
@@ -44,7 +44,7 @@ impl CullerBuilder {
         self
     }
 
-    /// Who finds the candidates; the reported set doesn't depend on it.
+    /// Which pair finder finds the candidates. The reported set doesn't depend on it.
     pub fn finder(mut self, finder: Finder) -> Self {
         self.settings.pairs = finder;
         self
@@ -63,7 +63,7 @@ impl CullerBuilder {
         self
     }
 
-    /// When or-DOP poses are updated.
+    /// When or-DOPs are updated to the bodies' poses.
     pub fn updates(mut self, updates: Updates) -> Self {
         self.settings.updates = updates;
         self
@@ -75,7 +75,7 @@ impl CullerBuilder {
         self
     }
 
-    /// What a frame of [`Strategy::SDopTimeCritical`] may cost.
+    /// The budget per frame of [`Strategy::SDopTimeCritical`].
     pub fn budget(mut self, budget: Budget) -> Self {
         self.settings.budget = Some(budget);
         self
@@ -87,16 +87,16 @@ impl CullerBuilder {
         self
     }
 
-    /// Number of threads, the caller's included, at most 1,024 or the culler isn't built; 0 is
-    /// taken as 1. Frames of little work stay on the caller's. Lists, counters and hashes don't
-    /// depend on it.
+    /// Number of threads, including the caller's: at most 1,024, otherwise [`Self::build`] fails; 0
+    /// counts as 1. Frames of little work run on the caller's thread alone. Lists, counters and
+    /// hashes don't depend on it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
 
-    /// The least work of a frame, in nanoseconds of one thread as counters tell them, for which
-    /// threads besides the caller's are woken: a millisecond (2²⁰ ns) by default, 0 for always.
-    /// Lists, counters and hashes don't depend on it.
+    /// The least work of a frame for which other threads are woken, in nanoseconds of one thread,
+    /// estimated from the previous frame's counters. The default is a millisecond (2²⁰ ns); 0 wakes
+    /// them always. Lists, counters and hashes don't depend on it.
     pub fn worth_waking(self, nanoseconds: u64) -> Self {
         let worth_waking = Some(nanoseconds);
         Self {
@@ -105,29 +105,29 @@ impl CullerBuilder {
         }
     }
 
-    /// A tier of SIMD in place of the fastest. Lists, counters and hashes don't depend on it.
+    /// The SIMD tier, instead of the fastest. Lists, counters and hashes don't depend on it.
     pub fn tier(self, tier: Tier) -> Self {
         let tier = Some(tier);
         Self { tier, ..self }
     }
 
-    /// The culler of these bodies. Static bodies' volumes are placed here, once.
+    /// Builds the culler of these bodies. The volumes of static bodies are computed here, once.
     ///
-    /// `bodies.shape` counts in `shapes`. For [`Strategy::Obb`] each shape's own box replaces its
-    /// or-DOP.
+    /// `bodies.shape` has indices into `shapes`. For [`Strategy::Obb`] each shape's oriented box
+    /// replaces its or-DOP.
     ///
     /// # Errors
-    /// Bodies or shapes outside of the contract
-    /// ([`check_bodies`](crate::bodies::contract::check_bodies)); settings that can't be carried
-    /// out (a missing interest or budget, a body that doesn't exist); threads that the system
-    /// refuses; a shape far from its origin ([`Shape::pose_offset`]).
+    /// Bodies or shapes that break the contract
+    /// ([`check_bodies`](crate::bodies::contract::check_bodies)); invalid settings (a missing
+    /// interest or budget, a body that doesn't exist); threads that the system refuses to start; a
+    /// shape far from its origin ([`Shape::pose_offset`]).
     pub fn build(&self, shapes: &[Shape], bodies: &Bodies) -> Result<Culler, CullError> {
         check::near(shapes)?;
         self.build_about_vertices(shapes, bodies)
     }
 
-    /// The same of poses that place the origin of each shape's vertices, however far that is from
-    /// the mesh's own.
+    /// As [`Self::build`], for poses that place the origin of each shape's vertices, however far
+    /// that is from the mesh's own.
     pub(crate) fn build_about_vertices(
         &self,
         shapes: &[Shape],
@@ -144,8 +144,9 @@ impl CullerBuilder {
 mod tests {
     use super::*;
 
+    /// A builder keeps each choice and no other.
     #[test]
-    fn a_builder_keeps_each_choice_and_no_other() {
+    fn builder_keeps_each_choice() {
         let built = Culler::builder()
             .threads(3)
             .worth_waking(7)

@@ -1,10 +1,8 @@
-//! What a culler takes as fixed between two frames, and how it finds out that something has changed
-//! all the same.
+//! What must not change between two frames of a culler, and the checks that it has not changed.
 //!
-//! Numbers of bodies and `dynamic` flags are compared in every frame. Shapes, and poses of static
-//! bodies, are kept from construction on, so that a change of theirs has no effect before
-//! [`Culler::refresh`], whatever the pair finder does meanwhile. Translations are judged where they
-//! are read for the volumes.
+//! The number of bodies and the `dynamic` flags are compared in every frame. Shapes and the poses
+//! of static bodies are copied at construction, so that changing them has no effect before
+//! [`Culler::refresh`]. Translations are checked where they are read for the volumes.
 
 use super::{CullError, Culler};
 use crate::bodies::Bodies;
@@ -13,8 +11,8 @@ use crate::settings::{CullSettings, DirectionSet};
 use crate::simd::in_default_mode;
 use crate::volume::Shape;
 
-/// What a culler keeps of the bodies: their shapes, which of them may move, and all poses where
-/// some may not.
+/// The copy of the bodies that a culler keeps: their shapes, which of them may move, and all poses
+/// if some may not.
 pub(super) fn fixed(bodies: &Bodies) -> Bodies {
     if bodies.dynamic.contains(&false) {
         return bodies.clone();
@@ -30,7 +28,7 @@ pub(super) fn fixed(bodies: &Bodies) -> Bodies {
 pub(crate) const FAR_SHAPE_HELP: &str = "keep its bodies in a `World`, whose translations are f64; or move the mesh's vertices near its \
                               origin; or build it with `Origin::Ball` and pose it by the centre of its ball, `Shape::offset`";
 
-/// Refuses shapes that f32 poses can't place: those far from the origin that the poses refer to.
+/// Rejects shapes that f32 poses can't place: those far from the origin that the poses refer to.
 pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
     match shapes.iter().find(|shape| shape.is_far()) {
         None => Ok(()),
@@ -46,7 +44,7 @@ pub(super) fn near(shapes: &[Shape]) -> Result<(), CullError> {
     }
 }
 
-/// Checks that all shapes have the slab directions of the first, where or-DOPs are tested.
+/// If or-DOPs are tested, checks that all shapes have the slab directions of the first.
 pub(super) fn directions(shapes: &[Shape], settings: &CullSettings) -> Result<(), CullError> {
     let first = shapes.first().map(|shape| shape.ordop.directions);
     let wanted = first.filter(|_| !settings.strategy.scheme().has_boxes());
@@ -54,7 +52,7 @@ pub(super) fn directions(shapes: &[Shape], settings: &CullSettings) -> Result<()
     others.try_for_each(|shape| same_directions(shape, wanted))
 }
 
-/// Checks that a shape is no larger than 2⁶⁰ and has the directions that are wanted.
+/// Checks that a shape is at most 2⁶⁰ in size and has the slab directions `wanted`.
 pub(super) fn shape(shape: &Shape, wanted: Option<DirectionSet>) -> Result<(), CullError> {
     if !has_sound_size(shape) {
         return Err(CullError::Shape {
@@ -79,12 +77,12 @@ fn same_directions(shape: &Shape, wanted: Option<DirectionSet>) -> Result<(), Cu
 }
 
 impl Culler {
-    /// Re-reads what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of
-    /// them may move, and where those stand that may not. Costs about one more frame. Groups are
-    /// forgotten when the number of bodies changes.
+    /// Reads again what [`Self::cull`] takes as fixed: the number of bodies, their shapes, which of
+    /// them may move, and the poses of static bodies. Costs about as much as a frame. Groups are
+    /// dropped if the number of bodies changes.
     ///
     /// # Errors
-    /// Bodies outside of the contract, an interest in a body that is no longer there; the culler
+    /// Bodies that break the contract; an interest in a body that no longer exists. The culler
     /// stays as it was.
     pub fn refresh(&mut self, bodies: &Bodies) -> Result<(), CullError> {
         in_default_mode(|| {
@@ -100,7 +98,7 @@ impl Culler {
         })
     }
 
-    /// Checks that there are as many bodies as there were, and that the same may move.
+    /// Checks that the number of bodies and the `dynamic` flags have not changed.
     pub(super) fn check_set(&self, bodies: &Bodies) -> Result<(), CullError> {
         check_columns(bodies)?;
         let (made_for, given) = (self.set.fixed.len(), bodies.len());
@@ -121,8 +119,7 @@ impl Culler {
         Err(CullError::Changed { what })
     }
 
-    /// Looks for the body whose pose is outside of the contract, and leaves nothing of it for the
-    /// next frame to sort by.
+    /// Finds the body whose pose breaks the contract, and resets what the next frame would sort by.
     #[cold]
     pub(super) fn check_moved(&mut self, bodies: &Bodies) -> Result<(), CullError> {
         let outcome = check_poses(bodies, 0..bodies.len());

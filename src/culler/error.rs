@@ -1,4 +1,4 @@
-//! What a culler refuses.
+//! The errors of a culler.
 
 use thiserror::Error;
 
@@ -7,13 +7,13 @@ use crate::bodies::contract::ContractError;
 use crate::settings::SettingsError;
 use crate::threads::ThreadsError;
 
-/// A culler that can't be made, or a frame that can't be culled.
+/// Why a culler can't be built or a frame can't be culled.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CullError {
-    /// A body or shape outside of the contract.
+    /// A body or shape that breaks the contract.
     #[error(transparent)]
     Contract(#[from] ContractError),
-    /// A shape that can't be culled together with those before it, or at all.
+    /// A shape that can't be culled, or not together with those before it.
     #[error("shape `{shape}` {problem}")]
     Shape {
         /// The shape's name.
@@ -23,7 +23,7 @@ pub enum CullError {
         /// How to mend it.
         hint: &'static str,
     },
-    /// Settings that can't be carried out.
+    /// Invalid settings.
     #[cfg(feature = "shapes")]
     #[error(transparent)]
     Settings(#[from] SettingsError),
@@ -38,7 +38,7 @@ pub enum CullError {
         /// How many it may have.
         limit: usize,
     },
-    /// Another set of bodies than the culler was made for.
+    /// A different set of bodies from the one that the culler was built for.
     #[error("{what}: a culler keeps the set of bodies that it was made for")]
     Changed {
         /// What has changed.

@@ -1,9 +1,9 @@
-//! The pipeline: the one place that calls the stages in order and times them.
+//! [`Culler`]: the only place that calls the stages in order, and times them.
 //!
 //! > update → broad phase → overlap → pairs
 //!
-//! A [`Culler`] is built once for a scene (the paper's Co) and then culls frame after frame. All
-//! buffers stay, so in steady state nothing is allocated.
+//! A [`Culler`] is built once for a set of bodies (the paper's Co) and then culls frame after
+//! frame. Buffers are kept, so in steady state nothing is allocated.
 
 #[cfg(feature = "shapes")]
 mod builder;
@@ -38,7 +38,7 @@ pub(crate) use sample::FoundPairs;
 use std::{ops::Range, time::Instant};
 
 #[cfg(feature = "shapes")]
-use self::{models::Models, needs::Needs, sample::Sample};
+use self::{models::Models, needs::VolumeNeeds, sample::Sample};
 #[cfg(all(feature = "shapes", feature = "serde"))]
 use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
@@ -60,14 +60,15 @@ use crate::{
     volume::Shape,
 };
 
-/// Culls the frames of one scene: a fixed set of bodies whose poses change.
+/// Finds the pairs of bodies that might touch, frame after frame: for a fixed set of bodies whose
+/// poses change.
 ///
-/// A clone culls on as the original would, on threads that it starts for itself.
+/// A clone continues as the original would, on its own threads.
 #[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct Culler {
     setup: Setup,
-    needs: Needs,
+    needs: VolumeNeeds,
     tier: Tier,
     threads: FrameThreads,
     models: Models,
@@ -90,17 +91,18 @@ struct BodySet {
     excluded: ExcludedPairs,
     /// What doesn't change between two frames, as it was at the last [`Culler::refresh`].
     fixed: Bodies,
-    /// 0, 1, 2 …: the names of slots where pairs are refined further.
+    /// 0, 1, 2 …: the slots' names when pairs are refined after the first test.
     numbers: Vec<u32>,
     order: Vec<u32>,
     finder: PairFinder,
 }
 
-/// What each frame updates, by place.
+/// The volumes that each frame updates, by place.
 #[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 struct Volumes {
-    /// What the finder bins: the spheres, or what contains the volumes of a homogeneous strategy.
+    /// The balls that the finder bins: the bounding spheres, or balls around the volumes of a
+    /// strategy without spheres.
     balls: Balls,
     rows: OrDopRows,
     intervals: Option<Intervals>,
@@ -113,8 +115,8 @@ struct Volumes {
 
 #[cfg(feature = "shapes")]
 impl Culler {
-    /// The culler of these bodies with every default: sequential S-DOP with the two-sided test, the
-    /// finder that `auto` picks, the fastest tier of this CPU, the caller's thread.
+    /// Builds a culler with the defaults: sequential S-DOP with the two-sided test, the finder that
+    /// `auto` picks, the fastest tier of this CPU and the caller's thread.
     ///
     /// # Errors
     /// As [`CullerBuilder::build`].
@@ -122,7 +124,7 @@ impl Culler {
         Self::builder().build(shapes, bodies)
     }
 
-    /// The choices that [`Self::new`] makes, to be made otherwise.
+    /// A builder, to change the defaults of [`Self::new`].
     pub fn builder() -> CullerBuilder {
         CullerBuilder::default()
     }
@@ -143,7 +145,7 @@ impl Culler {
         let setup = Setup::new(settings);
         let population = needs::population(setup.scheme, &models, &places);
         let finder = PairFinder::new(settings.pairs, &population);
-        let needs = Needs::of(setup.scheme, settings.k, finder.name());
+        let needs = VolumeNeeds::of(setup.scheme, settings.k, finder.name());
         let directions = needs.intervals;
         threads.expect(needs.work(n as u64, &Totals::default()));
         let mut culler = Self {
@@ -180,14 +182,14 @@ impl Culler {
         Ok(culler)
     }
 
-    /// From now on, only pairs of bodies that may collide are listed; `None`: all may. One entry a
-    /// body.
+    /// Sets the collision groups, one entry per body: from now on, only pairs whose groups may
+    /// collide are listed. `None` removes the groups.
     ///
-    /// Pairs are filtered after the first test, whose hits are few, and before anything else is
-    /// done with them.
+    /// Groups are compared after the first test, when few pairs are left, and before any other
+    /// test.
     ///
     /// # Errors
-    /// A column that is shorter or longer than there are bodies; the groups stay as they were.
+    /// The column's length is not the number of bodies; the groups stay as they were.
     pub fn set_groups(&mut self, groups: Option<Vec<Groups>>) -> Result<(), CullError> {
         if let Some(groups) = &groups {
             check_column("groups", groups.len(), self.set.fixed.len())?;
@@ -212,32 +214,33 @@ impl Culler {
         self.setup.is_canonical = true;
     }
 
-    /// Exchanges the list of the last frame, whose memory serves for the next one.
+    /// Exchanges the list of the last frame with `pairs`, whose memory is reused for the next
+    /// frame.
     pub(crate) fn swap_pairs(&mut self, pairs: &mut PairList) {
         std::mem::swap(&mut self.pairs, pairs);
     }
 
-    /// When the pairs of the last frame were refined, for strategies that take the oldest answers
-    /// first.
+    /// When each pair of the last frame was last refined, for the order
+    /// [`Order::OldestAnswer`](crate::Order::OldestAnswer).
     #[cfg(feature = "serde")]
     pub(crate) fn answers(&self) -> RefinementRanks {
         self.scratch.answers()
     }
 
-    /// Takes over the answers of another culler, in place of its own.
+    /// Replaces the refinement history by that of another culler.
     #[cfg(feature = "serde")]
     pub(crate) fn set_answers(&mut self, answers: &RefinementRanks) {
         self.volumes.stamp = self.volumes.stamp.max(answers.latest());
         self.scratch.set_answers(answers);
     }
 
-    /// From now on, these bodies are of interest.
+    /// Sets the bodies of interest from now on.
     #[doc(hidden)]
     pub fn set_interest(&mut self, interest: Interest) {
         self.setup.settings.interest = Some(interest);
     }
 
-    /// A body's ball centre, and how far from it the body can matter to any pair
+    /// A body's ball centre, and the distance from it within which the body can be part of a pair
     /// ([`border`](crate::rounding::border)).
     #[cfg(feature = "internals")]
     #[doc(hidden)]
@@ -252,7 +255,7 @@ impl Culler {
         ([x, y, z], reach)
     }
 
-    /// The pair finder in use: the one of the settings, or what `auto` has picked.
+    /// The pair finder in use: that of the settings, or the one that `auto` has picked.
     #[must_use]
     pub fn finder(&self) -> Finder {
         self.set.finder.name()
@@ -264,26 +267,28 @@ impl Culler {
         self.set.finder.bytes()
     }
 
-    /// Candidates that the last frame tested to make a list of neighbours, in addition to the tests
-    /// that [`Self::counters`] count. At most three times the candidates that the grid would test,
-    /// and 48 per body; a search that reaches this limit is abandoned and counts as the limit.
+    /// Candidates that the last frame tested to build a list of neighbours, in addition to the
+    /// tests in [`Self::counters`]. There are at most three times as many as the grid would test,
+    /// plus 48 per body; a search that reaches this limit is abandoned and counts as the limit.
     #[must_use]
     pub fn list_tests(&self) -> u64 {
         self.set.finder.list_tests()
     }
 
-    /// Culls one frame: the pairs i < j, not both static, that the strategy reports, in an order
-    /// that depends on the finder and on the frames so far alone.
+    /// Culls one frame and returns the reported pairs: i < j, not both static, each once. Their
+    /// order depends only on the finder and on earlier frames.
     ///
-    /// Shapes and the poses of static bodies are not read here: they stay as they were at
-    /// construction or at the last [`Self::refresh`].
+    /// Shapes and the poses of static bodies are not read here: they are those of the construction
+    /// or the last [`Self::refresh`].
     ///
     /// # Errors
-    /// Fewer or more bodies than the culler was made for, a `dynamic` flag that has changed, a pose
-    /// outside of the contract. [`Self::pairs`] is empty then, and the next frame is culled as if
-    /// this one hadn't been. One thing is not looked for: the rotation of a body whose ball is
-    /// centred in its origin, where a ball comes first. If it is zero or not finite, no or-DOP is
-    /// separated from this body's, so that whatever its ball meets is reported.
+    /// A number of bodies other than the culler was built for; a changed `dynamic` flag; a pose
+    /// that breaks the contract. [`Self::pairs`] is then empty, and the next frame is culled as if
+    /// this one had not happened.
+    ///
+    /// One thing is not checked: the rotation of a body whose ball is centred at its origin, in
+    /// strategies that test balls first. If it is zero or not finite, the or-DOP test rejects no
+    /// pair of this body, so every pair whose balls meet is reported.
     pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
@@ -296,7 +301,7 @@ impl Culler {
         Ok(&self.pairs)
     }
 
-    /// Culls one frame, which began at `start`, and hands its pairs to `output`.
+    /// Culls one frame, which began at `start`, and writes its pairs to `output`.
     fn cull_into(
         &mut self,
         bodies: &Bodies,
@@ -343,8 +348,8 @@ impl Culler {
         &self.pairs
     }
 
-    /// For strategies that list it, the potentially colliding set of the last frame in the order of
-    /// refinement.
+    /// The potentially colliding set of the last frame in the order of refinement, for strategies
+    /// that list it.
     pub fn potentially_colliding(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
         self.scratch.candidates.iter().map(|pair| {
             let [a, b] = pair.map(|place| self.set.places.body[place as usize]);
@@ -358,14 +363,14 @@ impl Culler {
         &self.counters
     }
 
-    /// Seconds summed over all frames so far; `effects` is left to the caller.
+    /// Seconds summed over all frames so far. `effects` is 0 here; the caller may fill it in.
     #[must_use]
     pub fn seconds(&self) -> &Seconds {
         &self.seconds
     }
 
-    /// Updates all but the rows in a range of places: what the first test takes. Returns whether
-    /// the poses were found within the contract.
+    /// Updates what the first test needs, in a range of places: all volumes except the rows.
+    /// Returns whether the poses are within the contract.
     fn update_first(&mut self, bodies: &Bodies, range: Range<usize>) -> bool {
         let (frames, places) = (&self.models.frames, &self.set.places);
         let executor = self.threads.get().executor(self.tier);
@@ -387,7 +392,7 @@ impl Culler {
         is_sound
     }
 
-    /// Makes the rows in a range of places, if the strategy takes any.
+    /// Computes the rows in a range of places, if the strategy needs rows.
     fn update_rows(&mut self, bodies: &Bodies, range: Range<usize>) {
         if !self.needs.rows {
             return;
@@ -416,7 +421,7 @@ impl Culler {
         }
     }
 
-    /// Brings the bodies, and the volumes of the first test, into slot order.
+    /// Arranges the bodies and the volumes of the first test in slot order.
     fn arrange(&mut self) {
         if self.setup.scheme.flow == Flow::Nothing {
             return;

@@ -1,7 +1,8 @@
-//! What updates and pair tests know of each shape: its frame and its slab table, by model number.
+//! Models: what updates and pair tests need of each shape, its frame and its slab table, by model
+//! number.
 //!
-//! The first models are the shapes themselves. A shape with a margin is a further model: the ball,
-//! and each slab, moved out by the margin, so that the pair tests need not know of margins.
+//! The first models are the shapes themselves. A shape with a margin is another model, whose ball
+//! and slabs are moved out by the margin. Pair tests therefore need not know of margins.
 
 use crate::overlap::ordop::SlabTables;
 use crate::overlap::ordop::reach::reach;
@@ -10,26 +11,26 @@ use crate::settings::CullSettings;
 use crate::update::{ShapeFrame, ShapeFrames};
 use crate::volume::{DirectionSet, Hull, OrDop, Shape};
 
-/// Frames and tables of all models. Numbers of models that are gone are given again.
+/// Frames and tables of all models. The numbers of removed models are reused.
 #[derive(Clone, Debug)]
 pub(crate) struct Models {
     pub frames: ShapeFrames,
     pub tables: SlabTables,
     /// The slabs of every model: an or-DOP, or an oriented box.
     ordops: Vec<OrDop>,
-    /// Models that are gone.
+    /// Numbers of removed models.
     free: Vec<u32>,
-    /// How many numbers of hulls there are, one a shape, and those of shapes that are gone.
+    /// How many hull numbers there are: one per shape, including those of removed shapes.
     hulls: u32,
     free_hulls: Vec<u32>,
-    /// Whether an oriented box takes the place of each or-DOP.
+    /// Whether an oriented box replaces each or-DOP.
     boxes: bool,
-    /// Whether the or-DOP decides without a sphere, and is binned by its own ball.
+    /// Whether the strategy has no sphere test, so that or-DOPs are binned by balls of their own.
     alone: bool,
 }
 
 impl Models {
-    /// One model per shape. For oriented boxes a box takes the place of the or-DOP.
+    /// One model per shape.
     pub fn new(shapes: &[Shape], settings: &CullSettings) -> Self {
         let scheme = settings.strategy.scheme();
         let mut models = Self {
@@ -48,13 +49,13 @@ impl Models {
         models
     }
 
-    /// The slab directions that a further shape must have: those of the others, unless its own box
-    /// is taken.
+    /// The slab directions that another shape must have: those of the existing ones, unless
+    /// oriented boxes replace them.
     pub fn directions(&self) -> Option<DirectionSet> {
         (!self.boxes && self.shapes() > 0).then(|| self.tables.directions())
     }
 
-    /// How many models are shapes as they were given.
+    /// How many models are shapes without a margin.
     fn shapes(&self) -> usize {
         self.hulls as usize - self.free_hulls.len()
     }
@@ -64,8 +65,9 @@ impl Models {
         (&self.ordops[model as usize], &self.frames[model as usize])
     }
 
-    /// Adds the model of a shape; returns its number. Its hull has a number of its own
-    /// ([`ShapeFrame::hull`]): from 0 in the order of these calls, as long as no shape is removed.
+    /// Adds the model of a shape and returns its number. Its hull has another number
+    /// ([`ShapeFrame::hull`]), which counts from 0 in the order of these calls as long as no shape
+    /// is removed.
     pub fn add(&mut self, shape: &Shape) -> u32 {
         let ordop = self.ordop_of(shape);
         if self.frames.is_empty() {
@@ -79,15 +81,15 @@ impl Models {
         self.put(frame, ordop)
     }
 
-    /// Adds the model of another grown by `margin`; returns its number.
+    /// Adds a model that is another one grown by `margin`, and returns its number.
     pub fn grow(&mut self, model: u32, margin: f32) -> u32 {
         let ordop = self.ordops[model as usize].grown(margin);
         let frame = self.frames[model as usize].grown(margin);
         self.put(frame, ordop)
     }
 
-    /// Makes the model of a shape that of another one. Those that were grown of it stay as they
-    /// are.
+    /// Replaces a shape's model by that of another shape. Models that were grown from it stay as
+    /// they are.
     pub fn replace(&mut self, model: u32, shape: &Shape) {
         let ordop = self.ordop_of(shape);
         let hull = self.frames[model as usize].hull();
@@ -95,12 +97,12 @@ impl Models {
         self.set(model as usize, frame, ordop);
     }
 
-    /// Removes a model that was grown of another.
+    /// Removes a grown model.
     pub fn remove(&mut self, model: u32) {
         self.free.push(model);
     }
 
-    /// Removes the model of a shape, after all that were grown of it; returns the number of its
+    /// Removes the model of a shape, after all models grown from it. Returns the number of its
     /// hull.
     pub fn remove_shape(&mut self, model: u32) -> u32 {
         let hull = self.frames[model as usize].hull();
@@ -114,8 +116,8 @@ impl Models {
         hull
     }
 
-    /// Gives back the memory of models and hulls that are gone, as far as they are the last ones;
-    /// returns how many hulls are left.
+    /// Frees the memory of removed models and hulls at the end of the columns. Returns how many
+    /// hulls are left.
     pub fn shrink_to_fit(&mut self) -> usize {
         let models = without_last(&mut self.free, self.ordops.len());
         self.ordops.truncate(models);
@@ -135,7 +137,7 @@ impl Models {
         }
     }
 
-    /// Adds a model, in the place of one that is gone if there is any; returns its number.
+    /// Adds a model, under the number of a removed one if there is any, and returns its number.
     fn put(&mut self, frame: ShapeFrame, ordop: OrDop) -> u32 {
         if let Some(number) = self.free.pop() {
             self.set(number as usize, frame, ordop);
@@ -155,7 +157,7 @@ impl Models {
         self.frames.set(number, self.binned(frame, number));
     }
 
-    /// The frame with the radius that a pair finder needs.
+    /// The frame with the radius that a pair finder uses.
     fn binned(&self, frame: ShapeFrame, number: usize) -> ShapeFrame {
         if !self.alone {
             return frame;
@@ -166,8 +168,8 @@ impl Models {
     }
 }
 
-/// How many of `all` numbers are left without those at the end that are free; they are no longer
-/// among the free ones.
+/// How many of `all` numbers remain once the free ones at the end are cut off; those are removed
+/// from `free`.
 fn without_last(free: &mut Vec<u32>, all: usize) -> usize {
     free.sort_unstable();
     let mut left = all;
@@ -186,8 +188,9 @@ fn without_last(free: &mut Vec<u32>, all: usize) -> usize {
 mod tests {
     use super::*;
 
+    /// Free numbers at the end are dropped.
     #[test]
-    fn free_numbers_at_the_end_are_dropped() {
+    fn free_tail_numbers_are_dropped() {
         for (mut free, all, left, kept) in [
             (vec![], 5, 5, vec![]),
             (vec![4, 1, 3], 5, 3, vec![1]),

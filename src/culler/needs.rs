@@ -1,5 +1,4 @@
-//! What a strategy needs of the other rooms: which volumes are updated, and by which finder pairs
-//! are found.
+//! What a strategy needs: which volumes are updated, and which pair finder suits it.
 
 use super::models::Models;
 use crate::bodies::Places;
@@ -9,10 +8,10 @@ use crate::strategy::Totals;
 use crate::threads::FrameWork;
 use crate::volume::DirectionSet;
 
-/// Which volumes are updated.
+/// Which volumes a strategy needs updated.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Needs {
-    /// Balls by place.
+pub(super) struct VolumeNeeds {
+    /// Balls, by place.
     pub balls: bool,
     /// Rows: or-DOPs, or boxes.
     pub rows: bool,
@@ -23,10 +22,10 @@ pub(super) struct Needs {
     pub by_place: bool,
 }
 
-impl Needs {
-    /// Of a row of the table of strategies; `k` are the directions of a k-DOP.
+impl VolumeNeeds {
+    /// The needs of a row of the table of strategies; `k` are the directions of a k-DOP.
     pub fn of(scheme: Scheme, k: DirectionSet, finder: Finder) -> Self {
-        // Oriented volumes are binned by balls, which a finder that doesn't bin can do without.
+        // Oriented volumes are binned by balls; a finder that doesn't bin needs none.
         let binned = scheme.is_oriented_alone() && finder != Finder::AllPairs;
         let (rows, intervals) = (scheme.refining.is_some(), scheme.slabs(k));
         Self {
@@ -37,20 +36,24 @@ impl Needs {
         }
     }
 
-    /// What slots are named by: the numbers of places, or the bodies in them.
+    /// The names of slots: numbers of places, or the bodies in them.
     pub fn names<'a>(&self, numbers: &'a [u32], places: &'a Places) -> &'a [u32] {
         if self.by_place { numbers } else { &places.body }
     }
 
-    /// The balls by place, or none where they are not updated.
+    /// The balls by place, or none if they are not updated.
     pub fn known<'a>(&self, balls: &'a [[f32; 4]]) -> &'a [[f32; 4]] {
         if self.balls { balls } else { &[] }
     }
 
-    /// The work of a frame with so many moving bodies, and with the tests of another.
+    /// The work of a frame with `moving` moving bodies and the tests of the frame `like`.
     pub fn work(&self, moving: u64, like: &Totals) -> FrameWork {
         let volumes = u64::from(self.balls) + u64::from(self.rows);
-        let slabs = if self.intervals.is_some() { SLABS } else { 0 };
+        let slabs = if self.intervals.is_some() {
+            INTERVALS_COST
+        } else {
+            0
+        };
         FrameWork {
             updates: (volumes + slabs) * moving,
             candidates: like.first.tests,
@@ -59,10 +62,10 @@ impl Needs {
     }
 }
 
-/// What a body's world-aligned slabs take, in updates of a ball.
-const SLABS: u64 = 16;
+/// The cost of updating a body's world-aligned slabs, in updates of a ball.
+const INTERVALS_COST: u64 = 16;
 
-/// What `auto` chooses a finder by.
+/// The facts by which `auto` picks a finder.
 pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Population {
     let radii = places
         .shape
@@ -84,8 +87,9 @@ mod tests {
     use super::*;
     use crate::counters::VolumeCounters;
 
+    /// Work is each volume of moving bodies and the tests of the frame before.
     #[test]
-    fn work_is_each_volume_of_moving_bodies_and_the_tests_of_the_frame_before() {
+    fn work_adds_updates_and_tests() {
         let counted = |tests| VolumeCounters {
             tests,
             ..VolumeCounters::default()
@@ -99,10 +103,10 @@ mod tests {
             (false, false, None, 0),
             (true, false, None, 1),
             (true, true, None, 2),
-            (false, false, Some(DirectionSet::K6), SLABS),
-            (true, true, Some(DirectionSet::K18), SLABS + 2),
+            (false, false, Some(DirectionSet::K6), INTERVALS_COST),
+            (true, true, Some(DirectionSet::K18), INTERVALS_COST + 2),
         ] {
-            let needs = Needs {
+            let needs = VolumeNeeds {
                 balls,
                 rows,
                 intervals,

@@ -1,7 +1,7 @@
-//! Crowds: pairs in portions, and a limit to their number.
+//! Culling crowds: pairs in portions, and a limit to their number.
 //!
-//! Fifty thousand bodies in one place are 1.25·10⁹ pairs, ten gigabytes as a list. Taken in
-//! portions, they need the memory of a few portions per thread, whatever their number.
+//! Fifty thousand bodies in one place have 1.25·10⁹ pairs, a list of ten gigabytes. In portions
+//! they need only the memory of a few portions per thread.
 
 use std::time::{Duration, Instant};
 
@@ -11,14 +11,14 @@ use crate::pairs::PairList;
 use crate::strategy::Output;
 
 impl Culler {
-    /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, some 65,000 at a time,
-    /// in the order of that list. Returns their number; [`Self::pairs`] is empty.
+    /// Culls one frame as [`Self::cull`] does, but passes its pairs to `take`, about 65,000 at a
+    /// time and in the same order. Returns the number of pairs; [`Self::pairs`] is empty.
     ///
     /// No list of all pairs is kept, so memory doesn't grow with their number, and
-    /// [`Self::potentially_colliding`] is empty. The exception is `s-dop-time-critical` in another
-    /// order than `as-found`: to sort the potentially colliding set, it keeps some thirty bytes for
-    /// each of its pairs. With several threads, `take` is called from any of them, one call at a
-    /// time; its time is not counted in [`Self::seconds`], but does count against a budget of time.
+    /// [`Self::potentially_colliding`] is empty. The exception is `s-dop-time-critical` in an order
+    /// other than `as-found`, which sorts the potentially colliding set and keeps about thirty
+    /// bytes for each of its pairs. With several threads, `take` is called from any of them, one
+    /// call at a time. Its time is not part of [`Self::seconds`], but counts against a time budget.
     ///
     /// # Errors
     /// As [`Self::cull`].
@@ -45,12 +45,12 @@ impl Culler {
         Ok(reported)
     }
 
-    /// Culls one frame as [`Self::cull`] does, if it has at most `limit` pairs. Memory for more is
-    /// never taken.
+    /// Culls one frame as [`Self::cull`] does, but fails if it has more than `limit` pairs. Memory
+    /// for more is never allocated.
     ///
     /// # Errors
-    /// More pairs than that, with their number: [`Self::pairs`] is empty then, and the frame counts
-    /// as culled. Otherwise as [`Self::cull`].
+    /// More than `limit` pairs; the error has their number, [`Self::pairs`] is empty and the frame
+    /// counts as culled. Otherwise as [`Self::cull`].
     pub fn cull_up_to(&mut self, bodies: &Bodies, limit: usize) -> Result<&PairList, CullError> {
         let mut kept = std::mem::take(&mut self.pairs);
         kept.clear();
@@ -65,14 +65,14 @@ impl Culler {
         Err(CullError::TooManyPairs { pairs, limit })
     }
 
-    /// Bytes that lists of pairs hold: the reported ones, and those on the way to them.
+    /// Bytes that lists of pairs hold, including intermediate lists.
     #[must_use]
     pub fn pair_bytes(&self) -> usize {
         self.pairs.bytes() + self.scratch.pair_bytes()
     }
 
-    /// Gives back the memory of lists of pairs beyond what the last frame's reported ones take:
-    /// after a crowd, which would hold it for ever.
+    /// Frees the memory of lists of pairs beyond what the last frame's list needs. Call it after a
+    /// crowd, whose memory would otherwise stay allocated.
     pub fn shrink_to_fit(&mut self) {
         self.pairs.shrink_to_fit();
         self.scratch.shrink_to_fit();

@@ -1,4 +1,4 @@
-//! Another set of bodies, and other places for the same ones.
+//! Changing a culler's set of bodies, and reordering them.
 
 use super::needs;
 use super::sample::Sample;
@@ -10,14 +10,14 @@ use crate::simd::in_default_mode;
 use crate::update::OrDopRows;
 
 impl Culler {
-    /// Re-reads `bodies.shape` after a change of margin class.
+    /// Reads `bodies.shape` again after a change of margin class.
     pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
         self.set.fixed.shape.clone_from(&bodies.shape);
         self.set.places.reread_shapes(bodies);
     }
 
-    /// Takes up another set of bodies, those that are `present`, as far as it is new: what is known
-    /// of the others' neighbours is kept. Volumes of static bodies are placed anew.
+    /// Changes the set of bodies to those that are `present`, and keeps what is known of the
+    /// neighbours of bodies that stay. Volumes of static bodies are computed again.
     pub(crate) fn exchange(&mut self, bodies: &Bodies, present: &[bool]) {
         in_default_mode(|| {
             let stays = self.take_places(bodies, present);
@@ -31,7 +31,8 @@ impl Culler {
         });
     }
 
-    /// Replaces the set of bodies by those that are `present`, of which nothing is known.
+    /// Replaces the set of bodies by those that are `present`, without using any knowledge of
+    /// earlier frames.
     #[doc(hidden)]
     pub fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.take_places(bodies, present);
@@ -40,8 +41,8 @@ impl Culler {
         self.begin(bodies);
     }
 
-    /// Forgets all bodies, and gives back the memory of them and of models that are gone. What was
-    /// answered of pairs stays. The next [`Self::exchange`] begins anew.
+    /// Drops all bodies and frees their memory and that of removed models. The refinement history
+    /// stays. The next [`Self::exchange`] starts from nothing.
     pub(crate) fn forget(&mut self) {
         let hulls = self.models.shrink_to_fit();
         if let Some(intervals) = &mut self.volumes.intervals {
@@ -58,8 +59,8 @@ impl Culler {
         self.replace(&Bodies::default(), &[]);
     }
 
-    /// Gives places to the bodies that are `present`; whether each former place's body keeps its
-    /// order.
+    /// Assigns places to the bodies that are `present`. Returns, for each former place, whether its
+    /// body kept its order.
     fn take_places(&mut self, bodies: &Bodies, present: &[bool]) -> Vec<bool> {
         let stays = self.set.places.replace(&bodies.dynamic, present);
         self.set.places.reread_shapes(bodies);
@@ -75,7 +76,7 @@ impl Culler {
         stays
     }
 
-    /// Places all volumes but the rows of bodies that move, which each frame makes anew, and lets a
+    /// Computes all volumes except the rows of moving bodies, which each frame computes, and lets a
     /// new finder order and arrange them.
     pub(super) fn begin(&mut self, bodies: &Bodies) {
         let (moving, all) = (self.set.places.moving, self.set.places.len());
@@ -85,18 +86,18 @@ impl Culler {
         self.arrange();
     }
 
-    /// Places all volumes of bodies that don't move.
+    /// Computes all volumes of static bodies.
     fn place_static(&mut self, bodies: &Bodies) {
         let at_rest = self.set.places.moving..self.set.places.len();
         self.update_first(bodies, at_rest.clone());
         self.update_rows(bodies, at_rest);
     }
 
-    /// Lets the finder put bodies in other places. What has moved is updated anyway, unless it is
-    /// static.
+    /// Lets the finder reorder places. Moving bodies are updated afterwards anyway; static ones are
+    /// moved here.
     pub(super) fn reorder(&mut self, bodies: &Bodies) {
         if self.setup.scheme.flow == Flow::Nothing {
-            // Nothing is arranged, so there is no order to follow.
+            // Nothing is arranged yet, so there is no order to follow.
             return;
         }
         let by_place = self.needs.by_place;

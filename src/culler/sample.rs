@@ -1,8 +1,8 @@
-//! Some bodies alone: their boxes, and which of listed pairs a frame would report.
+//! Computes the boxes of some bodies, and tests listed pairs as a frame would.
 //!
-//! A world that knows the pairs of the last frame tests those of changed bodies only. Their volumes
-//! are made by the same kernels as a frame's, in places of their own, and tested by the same
-//! comparisons, so a pair has the same verdict either way.
+//! A world that knows the pairs of the last frame tests only the pairs of changed bodies. Their
+//! volumes are computed by the same kernels as a frame's, in separate places, and tested by the
+//! same comparisons, so a pair has the same verdict either way.
 
 use std::time::Instant;
 
@@ -18,24 +18,24 @@ use crate::simd::{Kernel, Lanes, Tier, dispatch};
 use crate::threads::FrameWork;
 use crate::update::{OrDopRows, RowsByNumber, UpdateInputs, update_spheres};
 
-/// The volumes of some bodies: of those that have changed, then of those that are near each.
+/// The volumes of some bodies: first of those that have changed, then of those near each of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sample {
     places: Places,
     balls: Balls,
-    /// World-aligned slabs, as [`Intervals`](crate::update::Intervals) has them.
+    /// World-aligned slabs, in the order of [`Intervals`](crate::update::Intervals).
     ends: Vec<[f32; 2]>,
     rows: OrDopRows,
-    /// Places of pairs, that of the lower body first.
+    /// Pairs of places, the one of the lower body first.
     pairs: PairList,
     survivors: PairList,
 }
 
-/// Pairs to be tested: those of each of some bodies with others.
+/// Pairs to be tested: each of some bodies with its list of others.
 pub(crate) struct FoundPairs<'a> {
-    /// Bodies, each of which may come with others.
+    /// The bodies, each of which may have others.
     pub bodies: &'a [u32],
-    /// These others, one after the other, and where those of each body end.
+    /// The others of all bodies in one list, and the end of each body's part.
     pub others: &'a mut Vec<u32>,
     pub ends: &'a mut [usize],
     /// Whether each body is of interest.
@@ -43,8 +43,8 @@ pub(crate) struct FoundPairs<'a> {
 }
 
 impl Culler {
-    /// Whether a pair's verdict is a function of its two bodies: under every strategy that has no
-    /// budget and looks at pairs at all.
+    /// Whether a pair's verdict is a function of its two bodies. It is in every strategy that tests
+    /// pairs and has no budget.
     pub(crate) fn judges_pairs_alone(&self) -> bool {
         match self.setup.scheme.flow {
             Flow::FirstTest | Flow::Sequential | Flow::Batch | Flow::OfInterest => true,
@@ -52,7 +52,7 @@ impl Culler {
         }
     }
 
-    /// The box about each of these bodies: no pair is reported of two whose boxes don't meet.
+    /// The box around each of these bodies. Two bodies whose boxes don't meet are never reported.
     pub(crate) fn boxes_of(&mut self, bodies: &Bodies, some: &[u32]) -> Vec<Aabb> {
         let start = Instant::now();
         self.sample.places.body.clear();
@@ -69,8 +69,8 @@ impl Culler {
         boxes
     }
 
-    /// Keeps of pairs whose boxes meet those that are reported. The bodies are those of the last
-    /// call of [`Self::boxes_of`].
+    /// Keeps the reported pairs among those whose boxes meet. The bodies are those of the last call
+    /// of [`Self::boxes_of`].
     pub(crate) fn test_found(&mut self, bodies: &Bodies, found: FoundPairs<'_>) {
         let FoundPairs {
             bodies: some,
@@ -102,14 +102,14 @@ impl Culler {
         });
     }
 
-    /// Counts a frame whose pairs were found by its changed bodies alone, in so many seconds.
+    /// Counts a frame whose pairs were found from its changed bodies alone, and its seconds.
     pub(crate) fn count_sampled(&mut self, pairs: usize, seconds: f64) {
         self.counters.reported += pairs as u64;
         self.seconds.total += seconds;
     }
 
-    /// Gives places to more bodies after those of the sample, and makes what the first test takes
-    /// of them.
+    /// Gives places to more bodies after those of the sample, and computes their volumes for the
+    /// first test.
     fn place_sample(&mut self, bodies: &Bodies, more: &[u32]) {
         let Sample {
             places,
@@ -145,7 +145,7 @@ impl Culler {
         }
     }
 
-    /// Keeps the pairs that pass the first test, of bodies in the first so many places with those
+    /// Keeps the pairs that pass the first test, of bodies in the first `count` places with those
     /// in the places after them.
     fn keep_near(&self, count: usize, others: &mut Vec<u32>, ends: &mut [usize]) -> VolumeCounters {
         let Sample {
@@ -179,7 +179,7 @@ impl Culler {
         }
     }
 
-    /// Keeps the pairs that pass the refining test, and those that aren't to be refined.
+    /// Keeps the pairs that pass the refining test, and those that need no refinement.
     fn refine_found(
         &mut self,
         bodies: &Bodies,
@@ -246,14 +246,14 @@ impl Culler {
     }
 }
 
-/// Where the others of each body are.
+/// The range of each body's others.
 fn ranges(ends: &[usize]) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> {
     let starts = [0].into_iter().chain(ends.iter().copied());
     starts.zip(ends).map(|(start, &end)| start..end).enumerate()
 }
 
-/// Keeps those others of each body that are to be kept, in their order: `is_kept` gets the body's
-/// number, where the other one was in the list, and the other one.
+/// Filters the others of each body in their order. `is_kept` gets the body's number, the other
+/// one's index in the list, and the other one.
 fn keep(
     others: &mut Vec<u32>,
     ends: &mut [usize],
@@ -275,7 +275,7 @@ fn keep(
 /// The sphere test of listed pairs.
 struct KeepNear<'a> {
     balls: &'a [[f32; 4]],
-    /// Of bodies: those before the others' balls.
+    /// The number of bodies, whose balls come before those of the others.
     count: usize,
     others: &'a mut Vec<u32>,
     ends: &'a mut [usize],
@@ -300,7 +300,7 @@ fn meet(a: &[[f32; 2]], b: &[[f32; 2]]) -> bool {
     slabs.all(|(&[lo, hi], &[other_lo, other_hi])| !(lo > other_hi || other_lo > hi))
 }
 
-/// The box of world-aligned slabs, whose first three are along the axes.
+/// The box of world-aligned slabs, of which the first three are along the axes.
 fn box_of_slabs(slabs: &[[f32; 2]]) -> Aabb {
     Aabb::new(
         std::array::from_fn(|axis| slabs[axis][0]),
@@ -308,8 +308,8 @@ fn box_of_slabs(slabs: &[[f32; 2]]) -> Aabb {
     )
 }
 
-/// A box about a ball. Of balls that aren't apart, these boxes meet: they are as wide along every
-/// axis as a sweep's ends, which hold what the sphere test rounds.
+/// A box around a ball. If balls are not apart, these boxes meet: along every axis they are as wide
+/// as a sweep's ends, which include the rounding of the sphere test.
 fn box_about(&[x, y, z, radius]: &[f32; 4]) -> Aabb {
     let reach = f64::from(widen(radius));
     let centre = [x, y, z].map(f64::from);

@@ -1,4 +1,4 @@
-//! Shapes and their grown models, from the first body that takes them to the last.
+//! Adding and removing a culler's shapes and their grown models.
 
 use super::{CullError, Culler, check};
 use crate::simd::in_default_mode;
@@ -6,18 +6,18 @@ use crate::update::ShapeFrame;
 use crate::volume::{OrDop, Shape};
 
 impl Culler {
-    /// Adds a shape. Bodies take it by the returned number in `bodies.shape`, from the next
-    /// [`Self::refresh`] on.
+    /// Adds a shape and returns its number. Bodies have it by that number in `bodies.shape`, from
+    /// the next [`Self::refresh`] on.
     ///
     /// # Errors
-    /// A shape beyond the contract, far from its origin, or with other slab directions than those
-    /// before; nothing is added.
+    /// A shape that breaks the contract, that is far from its origin, or that has slab directions
+    /// other than those before. Nothing is added.
     pub fn add_shape(&mut self, shape: &Shape) -> Result<u32, CullError> {
         check::near(std::slice::from_ref(shape))?;
         self.add_shape_about_vertices(shape)
     }
 
-    /// The same of poses that place the origin of the shape's vertices.
+    /// As [`Self::add_shape`], for poses that place the origin of the shape's vertices.
     pub(crate) fn add_shape_about_vertices(&mut self, shape: &Shape) -> Result<u32, CullError> {
         in_default_mode(|| {
             check::shape(shape, self.models.directions())?;
@@ -27,9 +27,8 @@ impl Culler {
         })
     }
 
-    /// Puts a shape in the place of another, whose number it takes. Models that were grown of the
-    /// other one stay as they are, and so do the volumes of bodies that don't move, until bodies
-    /// are exchanged.
+    /// Replaces a shape by another under the same number. Models that were grown from the former
+    /// one stay as they are, and so do the volumes of static bodies until bodies are exchanged.
     ///
     /// # Errors
     /// As [`Self::add_shape`]; nothing is replaced.
@@ -42,8 +41,7 @@ impl Culler {
         })
     }
 
-    /// Removes a shape that no body takes, and of which no model is grown any more. Its number is
-    /// given again.
+    /// Removes a shape that no body has and no model is grown from. Its number will be reused.
     pub(crate) fn remove_shape(&mut self, model: u32) {
         let hull = self.models.remove_shape(model);
         if let Some(intervals) = &mut self.volumes.intervals {
@@ -51,13 +49,13 @@ impl Culler {
         }
     }
 
-    /// Adds a model: another grown by `margin` ≥ 0. A body takes it when `bodies.shape` has the
-    /// returned number.
+    /// Adds a model that is another one grown by `margin` ≥ 0, and returns its number for
+    /// `bodies.shape`.
     pub(crate) fn grow(&mut self, model: u32, margin: f32) -> u32 {
         self.models.grow(model, margin)
     }
 
-    /// Removes a grown model that no body takes. Its number is given again.
+    /// Removes a grown model that no body has. Its number will be reused.
     pub(crate) fn remove_grown(&mut self, model: u32) {
         self.models.remove(model);
     }
@@ -67,7 +65,7 @@ impl Culler {
         self.models.volumes(model)
     }
 
-    /// One above the number of every model.
+    /// The number of models: one more than the largest model number.
     pub(crate) fn models(&self) -> usize {
         self.models.frames.len()
     }

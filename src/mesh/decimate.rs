@@ -1,14 +1,14 @@
-//! Fewer triangles: edge collapse in the order of the quadric error.
+//! Decimation: edge collapse in the order of the quadric error.
 //!
 //! M. Garland, P. Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997. A
 //! plane with unit normal n and offset d has the squared distance (n·x + d)²; a vertex's quadric is
 //! the area-weighted sum over its triangles' planes, and collapsing the edge ab to x costs (Q_a +
-//! Q_b)(x). The cheapest edge goes first. An open boundary keeps its place through planes that
-//! stand on its edges.
+//! Q_b)(x). The cheapest edge goes first. Additional planes, perpendicular to the triangles at
+//! boundary edges, keep an open boundary in place.
 //!
-//! Own code, since a kept pure-Rust crate that promises the same bits on every platform was not to
-//! be found, and the shipped meshes must be the same wherever their command runs: plain f64
-//! operations, ties broken by index.
+//! This is our own code because no maintained Rust crate promises the same bits on every platform,
+//! and the shipped meshes must not depend on the machine. It uses plain f64 operations and breaks
+//! ties by index.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -17,16 +17,16 @@ use glam::{DMat3, DVec3};
 
 use super::{TriangleMesh, in_f64};
 
-/// Collapses edges until at most `target` triangles are left, or until no edge can go without
-/// changing the surface's topology or turning a triangle over. Closed components stay closed.
-/// Unused vertices and triangles with a repeated index go too, but a mesh that has nothing else, or
-/// is small enough already, is returned as it is.
+/// Collapses edges until at most `target` triangles are left, or until every further collapse would
+/// change the surface's topology or turn a triangle over. Closed components stay closed. Unused
+/// vertices and triangles with a repeated index are removed too. A mesh that consists only of
+/// those, or is small enough already, is returned unchanged.
 pub fn decimate(mesh: &TriangleMesh, target: usize) -> TriangleMesh {
     let mut surface = Surface::new(mesh);
     if surface.alive == 0 || mesh.triangles.len() <= target {
         return mesh.clone();
     }
-    let mut queue: BinaryHeap<Candidate> = surface
+    let mut queue: BinaryHeap<EdgeCollapse> = surface
         .edges()
         .map(|edge| surface.candidate(edge))
         .collect();
@@ -96,26 +96,28 @@ impl Quadric {
     }
 }
 
-/// Below this share of trace³ (1/27 at best) the three planes are too close to parallel to fix a
+/// Below this share of trace³ (1/27 at best), the planes are too close to parallel to determine a
 /// point.
 const LEAST_DETERMINANT: f64 = 1e-7;
 
-/// A boundary's standing planes weigh this much more than a triangle of the edge's size.
+/// Weight of a boundary edge's perpendicular plane, relative to a triangle of the edge's size.
 const BOUNDARY_WEIGHT: f64 = 100.0;
 
 /// Least cosine between a triangle's normals before and after a collapse.
 const LEAST_TURN: f64 = 0.2;
 
-/// An edge that may be collapsed, and to where; stale once either end has moved.
-struct Candidate {
+/// An edge that may be collapsed, and the resulting position. It is stale once either end has
+/// moved.
+struct EdgeCollapse {
     cost: f64,
     edge: (u32, u32),
     versions: (u32, u32),
     position: DVec3,
 }
 
-impl Ord for Candidate {
-    /// The heap gives the greatest first: the cheapest edge, then the one with the lowest indices.
+impl Ord for EdgeCollapse {
+    /// Reversed, because the heap returns the greatest first: the cheapest edge, then the one with
+    /// the lowest indices.
     fn cmp(&self, other: &Self) -> Ordering {
         other
             .cost
@@ -124,30 +126,30 @@ impl Ord for Candidate {
     }
 }
 
-impl PartialOrd for Candidate {
+impl PartialOrd for EdgeCollapse {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Candidate {
+impl PartialEq for EdgeCollapse {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Candidate {}
+impl Eq for EdgeCollapse {}
 
 struct Surface {
-    /// What `positions` count from: quadrics about a far origin would lose their digits.
+    /// The origin of `positions`. Quadrics about a far origin would lose their digits.
     origin: DVec3,
     positions: Vec<DVec3>,
     quadrics: Vec<Quadric>,
-    /// Counts a vertex's moves.
+    /// How often each vertex has moved.
     versions: Vec<u32>,
-    /// The living triangles at each vertex.
+    /// The remaining triangles at each vertex.
     around: Vec<Vec<u32>>,
-    /// A dead triangle is none.
+    /// `None` for removed triangles.
     triangles: Vec<Option<[u32; 3]>>,
     alive: usize,
 }
@@ -244,7 +246,7 @@ impl Surface {
         })
     }
 
-    fn candidate(&self, edge: (u32, u32)) -> Candidate {
+    fn candidate(&self, edge: (u32, u32)) -> EdgeCollapse {
         let (a, b) = (self.position(edge.0), self.position(edge.1));
         let quadric = self.quadrics[edge.0 as usize].plus(&self.quadrics[edge.1 as usize]);
         let choices = [quadric.minimum(), Some((a + b) * 0.5), Some(a), Some(b)];
@@ -259,7 +261,7 @@ impl Surface {
             self.versions[edge.0 as usize],
             self.versions[edge.1 as usize],
         );
-        Candidate {
+        EdgeCollapse {
             cost: best.0,
             edge,
             versions,
@@ -267,12 +269,12 @@ impl Surface {
         }
     }
 
-    fn is_current(&self, candidate: &Candidate) -> bool {
+    fn is_current(&self, candidate: &EdgeCollapse) -> bool {
         let (a, b) = candidate.edge;
         candidate.versions == (self.versions[a as usize], self.versions[b as usize])
     }
 
-    fn may_collapse(&self, candidate: &Candidate) -> bool {
+    fn may_collapse(&self, candidate: &EdgeCollapse) -> bool {
         let (a, b) = candidate.edge;
         let touched = |triangle: &[u32; 3]| !(triangle.contains(&a) && triangle.contains(&b));
         let at_a: Vec<[u32; 3]> = self.triangles_at(a).filter(touched).collect();
@@ -284,9 +286,9 @@ impl Surface {
                 .any(|&triangle| self.turns_over(triangle, candidate))
     }
 
-    /// The link condition: the ends share no neighbour but those across the edge's one or two
-    /// faces. Besides, no boundary is bridged, no component vanishes and no triangle falls onto
-    /// another (a tetrahedron's would).
+    /// The link condition: the ends share no neighbour except those across the edge's one or two
+    /// faces. In addition, no boundary is bridged, no component vanishes and no triangle coincides
+    /// with another (a tetrahedron's would).
     fn keeps_topology(&self, a: u32, b: u32, at_a: &[[u32; 3]], at_b: &[[u32; 3]]) -> bool {
         let faces = self.shared(a, b).count();
         let common = self.neighbours(a).intersection(&self.neighbours(b)).count();
@@ -305,8 +307,8 @@ impl Surface {
         (1..=2).contains(&faces) && common == faces && !bridge && !vanishes && !folds
     }
 
-    /// A triangle at one of the ends would lose its area or its side.
-    fn turns_over(&self, triangle: [u32; 3], candidate: &Candidate) -> bool {
+    /// Whether a triangle at one of the ends would lose its area or turn over.
+    fn turns_over(&self, triangle: [u32; 3], candidate: &EdgeCollapse) -> bool {
         let (a, b) = candidate.edge;
         let before = self.cross(triangle);
         let [p, q, r] = triangle.map(|v| {
@@ -320,7 +322,7 @@ impl Surface {
         after == DVec3::ZERO || before.dot(after) < LEAST_TURN * before.length() * after.length()
     }
 
-    /// Some edge at the vertex has one face only.
+    /// Whether some edge at the vertex has only one face.
     fn on_boundary(&self, vertex: u32) -> bool {
         self.neighbours(vertex)
             .into_iter()
@@ -328,7 +330,7 @@ impl Surface {
     }
 
     /// Moves both ends to the candidate's position and keeps the first.
-    fn collapse(&mut self, candidate: &Candidate) {
+    fn collapse(&mut self, candidate: &EdgeCollapse) {
         let (a, b) = candidate.edge;
         for t in std::mem::take(&mut self.around[b as usize]) {
             let Some(triangle) = self.triangles[t as usize] else {
@@ -354,7 +356,7 @@ impl Surface {
         }
     }
 
-    /// The living triangles with the vertices that they use, in their old order.
+    /// The remaining triangles with the vertices that they use, in their original order.
     fn into_mesh(self, mesh: &TriangleMesh) -> TriangleMesh {
         let mut new_index = vec![None; self.positions.len()];
         let mut vertices = Vec::new();

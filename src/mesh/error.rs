@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh: where (file and line), what, and how to mend it.
+//! The errors of meshes: where (file and line), what, and how to mend it.
 
 use super::MAX_COORDINATE;
 
@@ -8,9 +8,10 @@ use super::MAX_COORDINATE;
 pub struct MeshError {
     /// The file as the caller named it, or the mesh's name when it came from no file.
     pub file: String,
-    /// 1-based line of a text file; in a binary file or for a whole-file problem there is none.
+    /// 1-based line of a text file; `None` for binary files and problems of the whole file.
     pub line: Option<usize>,
-    /// What is wrong. Not the error's `source`, since its text is part of this one's.
+    /// What is wrong. It is not the error's `source`, because its text is part of this error's
+    /// text.
     pub problem: Problem,
 }
 
@@ -29,21 +30,21 @@ fn place(file: &str, line: Option<usize>) -> String {
 /// One way in which a mesh or a mesh file can be wrong.
 #[derive(Debug, thiserror::Error)]
 pub enum Problem {
-    /// The operating system refused to read or write.
+    /// The operating system failed to read or write the file.
     #[error("cannot {action} the file: {source}")]
     Io {
         /// "read" or "write".
         action: &'static str,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// More bytes than the caller allows.
+    /// The file has more bytes than the caller allows.
     #[error("the file has more than {most} bytes")]
     TooLong {
-        /// How many are allowed.
+        /// The allowed number of bytes.
         most: u64,
     },
-    /// The file name's extension names no known format.
+    /// The file name's extension is not that of a known format.
     #[error("the extension {found:?} names no mesh format that can be {action}")]
     UnknownFormat {
         /// The extension as found, without the dot.
@@ -51,7 +52,7 @@ pub enum Problem {
         /// "read" or "written".
         action: &'static str,
     },
-    /// There is nothing in the file, or no vertex in the mesh.
+    /// The file is empty, or the mesh has no vertices.
     #[error("the mesh has no vertices")]
     NoVertices,
     /// Vertices without a triangle.
@@ -81,7 +82,7 @@ pub enum Problem {
         /// The offending coordinate.
         value: f32,
     },
-    /// A scale that leaves nothing of the mesh, or no numbers.
+    /// A scale with a factor that is zero or not finite.
     #[error("the scale {scale:?} has a factor that is zero or not finite")]
     Scale {
         /// The factors of x, y and z.
@@ -107,12 +108,12 @@ pub enum Problem {
         /// How to mend it.
         help: String,
     },
-    /// Two or more dialects of `.tri` fit the file.
+    /// Two or more `.tri` dialects fit the file.
     #[error("the file can be read as {}", .readings.join(" or as "))]
     Ambiguous {
-        /// Each fitting reading in words.
+        /// A description of each dialect that fits.
         readings: Vec<&'static str>,
-        /// The names that select them.
+        /// The names that select these dialects.
         names: Vec<&'static str>,
     },
 }
@@ -160,7 +161,7 @@ impl Problem {
         }
     }
 
-    /// Puts the problem into a file, with a line where one is known.
+    /// The problem as an error of a file, with a line if it is known.
     pub(super) fn at(self, file: &str, line: impl Into<Option<usize>>) -> MeshError {
         MeshError {
             file: file.to_owned(),

@@ -1,10 +1,10 @@
 //! Meshes far from their origin: coordinates in f64 are kept as f32 about a point near the mesh.
 //!
-//! Rounded to f32 as they are, the coordinates of a wall on a map would move by a good part of its
-//! size. Where some would move by more than 2⁻²⁰ of it, the mesh is re-centred in f64 first. The
-//! offset has few bits, so that offset + vertex is an f64 exactly: a mesh that is written and read
-//! again is the same. To that end an offset is settled on the coordinates that come out with it,
-//! and the choice between both ways is made on them, a sixteenth early.
+//! Rounding the coordinates of a wall on a map to f32 would move them by a large part of the wall's
+//! size. If it would move a vertex by more than 2⁻²⁰ of the mesh's size, the mesh is re-centred in
+//! f64 first. The offset has few bits, so that offset + vertex is exact in f64: a mesh that is
+//! written and read again is the same. For that reason the offset, and the decision whether to use
+//! one, are computed from the coordinates that result, with a margin of a sixteenth.
 
 use crate::rounding::{exp2, up};
 
@@ -12,24 +12,24 @@ use crate::rounding::{exp2, up};
 /// of the mesh's largest extent. The sixteenth is what re-centring moves at most.
 const MOST_ROUNDING: f64 = 15.0 * exp2(-24);
 
-/// The least step of an offset: what f32 loses below is not won by another origin.
+/// The least step of an offset. Below it, another origin does not help f32.
 const LEAST_STEP: f64 = exp2(-126);
 
-/// Coordinates in f64 as f32 about an offset.
-pub(super) struct Placed {
+/// Points stored as f32 vertices about an offset.
+pub(super) struct PlacedPoints {
     pub vertices: Vec<[f32; 3]>,
     pub offset: [f64; 3],
-    /// No point is farther than this from its offset + vertex.
+    /// An upper bound on the distance of each point from offset + vertex.
     pub rounding: f32,
 }
 
-/// Rounds points to f32 where they are, or about an offset where that moves them too far.
-pub(super) fn place(points: &[[f64; 3]]) -> Placed {
+/// Rounds points to f32; about an offset if rounding would otherwise move them too far.
+pub(super) fn place(points: &[[f64; 3]]) -> PlacedPoints {
     let round = |offset: [f64; 3]| points.iter().map(|&p| vertex(p, offset)).collect();
-    let bounds = Bounds::of(points.iter().copied());
+    let bounds = PointBounds::of(points.iter().copied());
     let moved = moved(points.iter().copied());
     if moved <= 0.5 * MOST_ROUNDING * bounds.size() {
-        return Placed {
+        return PlacedPoints {
             vertices: round([0.0; 3]),
             offset: [0.0; 3],
             rounding: 0.0,
@@ -37,10 +37,10 @@ pub(super) fn place(points: &[[f64; 3]]) -> Placed {
     }
     let offset = bounds.settled_offset();
     let kept = || points.iter().map(|&p| kept(p, offset));
-    let far = self::moved(kept()) > MOST_ROUNDING * Bounds::of(kept()).size();
+    let far = self::moved(kept()) > MOST_ROUNDING * PointBounds::of(kept()).size();
     let offset = if far { offset } else { [0.0; 3] };
     let tiny = bounds.size() < LEAST_STEP; // no offset mends what f32 can't hold of it
-    Placed {
+    PlacedPoints {
         vertices: round(offset),
         offset,
         rounding: if far || tiny {
@@ -51,18 +51,18 @@ pub(super) fn place(points: &[[f64; 3]]) -> Placed {
     }
 }
 
-/// A point about an offset, in f32.
+/// A point relative to an offset, in f32.
 fn vertex(point: [f64; 3], offset: [f64; 3]) -> [f32; 3] {
     std::array::from_fn(|i| (point[i] - offset[i]) as f32)
 }
 
-/// Where a point lies once it is a vertex about an offset.
+/// The position that a point gets as a vertex about an offset.
 fn kept(point: [f64; 3], offset: [f64; 3]) -> [f64; 3] {
     let vertex = vertex(point, offset);
     std::array::from_fn(|i| offset[i] + f64::from(vertex[i]))
 }
 
-/// How far rounding to f32 moves a point at most.
+/// The largest distance by which rounding to f32 moves one of the points.
 fn moved(points: impl Iterator<Item = [f64; 3]>) -> f64 {
     let squared = |point: [f64; 3]| {
         let moved = point.map(|x| (f64::from(x as f32) - x).powi(2));
@@ -98,12 +98,12 @@ fn difference(a: f64, b: f64) -> (f64, f64) {
 
 /// A box about points.
 #[derive(Clone, Copy)]
-struct Bounds {
+struct PointBounds {
     lo: [f64; 3],
     hi: [f64; 3],
 }
 
-impl Bounds {
+impl PointBounds {
     fn of(points: impl Iterator<Item = [f64; 3]>) -> Self {
         let none = Self {
             lo: [f64::INFINITY; 3],
@@ -120,7 +120,8 @@ impl Bounds {
         (0..3).fold(0.0, |most, i| most.max(self.hi[i] - self.lo[i]))
     }
 
-    /// The middle as a multiple of some eighth of the size: a power of two, so that nothing rounds.
+    /// The middle, as a multiple of a power of two near an eighth of the size, so that nothing
+    /// rounds.
     fn offset(&self) -> [f64; 3] {
         let size = self.size();
         let power = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
@@ -131,7 +132,7 @@ impl Bounds {
         })
     }
 
-    /// The offset that what is kept about it would have again.
+    /// An offset that the points, once stored about it, would get again.
     fn settled_offset(mut self) -> [f64; 3] {
         let mut offset = self.offset();
         for _ in 0..8 {

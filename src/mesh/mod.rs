@@ -1,11 +1,11 @@
 //! Triangle meshes: validation, readers, writers, topology and procedural shapes.
 //!
-//! A [`TriangleMesh`] made here keeps the contract that all later stages build on: every coordinate
-//! finite and at most 2⁶⁰ in size, every index in range, at least one vertex and one triangle.
-//! Degenerate triangles (zero area, repeated indices, a single point as 0 0 0) are legal: they
-//! bound, collide and are culled like any other. A mesh without triangles is refused, since no
-//! surface of it could intersect anything. Vertices that no triangle uses are kept: they only widen
-//! the volumes.
+//! A [`TriangleMesh`] satisfies the contract of all later stages: every coordinate is finite and at
+//! most 2⁶⁰ in size, every index is in range, and there are at least one vertex and one triangle.
+//! Degenerate triangles (zero area, repeated indices, a single point as 0 0 0) are valid and are
+//! culled like any other. A mesh without triangles is an error, because it has no surface that
+//! could intersect anything. Vertices that no triangle uses are kept; they only enlarge the
+//! volumes.
 
 pub mod decimate;
 mod error;
@@ -27,36 +27,36 @@ use glam::DVec3;
 /// The largest coordinate size a mesh may have: 2⁶⁰ (the culler's contract).
 pub const MAX_COORDINATE: f32 = (1_u64 << 60) as f32;
 
-/// An indexed triangle mesh, in the file's own units and axes (right-handed): a point of the file
+/// An indexed triangle mesh, in the file's own units and axes (right-handed). A point of the file
 /// is offset + vertex.
 ///
-/// Vertices are f32 and, within their `rounding`, what the promise is about. The offset is zero,
-/// and coordinates are rounded to f32 where they are, unless that would move one by more than 2⁻²⁰
-/// of the mesh's largest extent: such a mesh is far from its origin, and kept about a point near
-/// it.
+/// The promise of this library is about these f32 vertices, within their `rounding`. Usually the
+/// offset is zero and coordinates are rounded to f32. If that would move a vertex by more than 2⁻²⁰
+/// of the mesh's largest extent, the mesh is far from its origin, and its vertices are stored
+/// relative to a point near it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
-    /// What messages and tables call the mesh: the file's stem or the procedural shape's name.
+    /// The mesh's name in messages and tables: the file's stem or the procedural shape's name.
     pub name: String,
-    /// Vertex positions about `offset`, all finite.
+    /// Vertex positions relative to `offset`, all finite.
     pub vertices: Vec<[f32; 3]>,
     /// Vertex indices of each triangle, all in range.
     pub triangles: Vec<[u32; 3]>,
-    /// Where the origin of `vertices` lies in the file's coordinates: zero unless the mesh is far
-    /// from its origin.
+    /// The origin of `vertices` in the file's coordinates: zero unless the mesh is far from its
+    /// origin.
     pub offset: [f64; 3],
-    /// How far any vertex of a far mesh is at most from the f64 point that it stands for; volumes
-    /// are grown by it.
+    /// An upper bound on the distance of a far mesh's vertices from their f64 points. Volumes are
+    /// grown by it.
     pub rounding: f32,
 }
 
 impl TriangleMesh {
-    /// A mesh of these vertices, which are arrays or turn into arrays as those of any version of
-    /// glam do, and of the three vertices of each triangle.
+    /// Makes a mesh from vertices and the three vertex indices of each triangle. Vertices are
+    /// arrays or convert into arrays, as those of every version of glam do.
     ///
     /// # Errors
-    /// No vertex, no triangle, too many of either, a coordinate that is not finite or larger than
-    /// 2⁶⁰, or an index out of range; the error names the mesh, the vertex or triangle, and the
+    /// No vertices or triangles, too many of either, a coordinate that is not finite or larger than
+    /// 2⁶⁰, or an index out of range. The error names the mesh, the vertex or triangle, and the
     /// remedy.
     pub fn new(
         name: impl Into<String>,
@@ -77,7 +77,7 @@ impl TriangleMesh {
         }
     }
 
-    /// A mesh of borrowed vertices and triangles, without a name.
+    /// Makes a mesh, without a name, from borrowed vertices and triangles.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -86,8 +86,8 @@ impl TriangleMesh {
         Ok(mesh.named(""))
     }
 
-    /// A mesh of borrowed vertices in f64, without a name: rounded to f32, or kept about an offset
-    /// where it is far from its origin.
+    /// Makes a mesh, without a name, from borrowed vertices in f64. They are rounded to f32, about
+    /// an offset if the mesh is far from its origin.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -98,7 +98,7 @@ impl TriangleMesh {
         }
     }
 
-    /// The same of three points a triangle, of which those at equal positions become one vertex.
+    /// Makes a mesh from three points per triangle. Points at equal positions become one vertex.
     #[cfg(feature = "readers")]
     fn from_soup(points: &[[f64; 3]]) -> Result<Self, Problem> {
         let corners: Vec<[u32; 3]> = (0..points.len() as u32 / 3)
@@ -110,7 +110,7 @@ impl TriangleMesh {
         Ok(Self::placed(placed, triangles))
     }
 
-    fn placed(placed: far::Placed, triangles: Vec<[u32; 3]>) -> Self {
+    fn placed(placed: far::PlacedPoints, triangles: Vec<[u32; 3]>) -> Self {
         Self {
             name: String::new(),
             vertices: placed.vertices,
@@ -120,14 +120,14 @@ impl TriangleMesh {
         }
     }
 
-    /// The same under a name.
+    /// The mesh with a name.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
     }
 
-    /// The vertices in the file's coordinates. Exact: an offset has few enough bits.
+    /// The vertices in the file's coordinates. This is exact, because an offset has few bits.
     pub fn points(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + '_ {
         let coordinate = |offset: f64, x: f32| match offset {
             0.0 => f64::from(x), // 0 + −0 would be 0
@@ -137,7 +137,7 @@ impl TriangleMesh {
         self.vertices.iter().map(point)
     }
 
-    /// Whether the mesh is kept about a point other than its origin.
+    /// Whether the vertices are relative to a point other than the file's origin.
     #[must_use]
     pub fn is_far(&self) -> bool {
         self.offset != [0.0; 3]
@@ -185,7 +185,8 @@ fn check_vertex(vertex: usize, position: [f64; 3]) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Checks one triangle whose indices count from `first`; `vertices` is their number (not zero).
+/// Checks one triangle whose indices count from `first`; `vertices` is the number of vertices (not
+/// zero).
 fn check_triangle(
     triangle: usize,
     indices: [i64; 3],

@@ -20,12 +20,12 @@ impl From<[f64; 3]> for Scale {
 }
 
 impl TriangleMesh {
-    /// The mesh with each coordinate of the file multiplied by its factor in f64, and then kept as
-    /// [`Self::from_f64`] keeps coordinates. Faces that were counter-clockwise from outside stay
-    /// so: where the scale mirrors, each triangle's last two corners are exchanged.
+    /// The mesh with each coordinate of the file multiplied by its factor in f64 and then stored as
+    /// by [`Self::from_f64`]. Faces stay counter-clockwise from outside: if the scale mirrors, each
+    /// triangle's last two corners are exchanged.
     ///
     /// # Errors
-    /// A factor that is zero or not finite, or a mesh that is beyond 2⁶⁰ with it.
+    /// A factor that is zero or not finite, or a scaled coordinate beyond 2⁶⁰.
     pub fn scaled(&self, scale: impl Into<Scale>) -> Result<Self, MeshError> {
         let Scale(scale) = scale.into();
         if !scale
@@ -43,7 +43,7 @@ impl TriangleMesh {
             .map_err(|error| error.problem.at(&self.name, None))?
             .named(&self.name);
         if self.rounding > 0.0 {
-            // What reading has moved is scaled as well.
+            // The rounding of the original vertices is scaled too.
             let largest = scale.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
             let moved = f64::from(self.rounding) * largest + f64::from(scaled.rounding);
             scaled.rounding = up(moved);

@@ -1,10 +1,10 @@
 //! Connected components, and which of them are closed.
 //!
-//! A component is a set of triangles joined by shared vertex indices. It is closed when each of its
-//! edges is shared by exactly two faces: only then has it an inside, which exact intersection asks
-//! for (odd ray parity). Triangles with a repeated index have no area and no inside: they join
-//! components but are no faces here, and a component of nothing else is open. Indices decide, not
-//! positions: a mesh whose seams are written twice (the teapot) is open along them.
+//! A component is a set of triangles joined by shared vertex indices. It is closed if each of its
+//! edges is shared by exactly two faces. Only a closed component has an inside, which exact
+//! intersection needs (odd ray parity). Triangles with a repeated index join components but do not
+//! count as faces, so a component without other triangles is open. Indices decide, not positions: a
+//! mesh whose seam vertices are duplicated (the teapot) is open along its seams.
 
 use std::collections::HashMap;
 
@@ -41,12 +41,12 @@ impl Component {
     }
 }
 
-/// A mesh's components and what they sum up to.
+/// A mesh's components and their sums.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Topology {
     /// The components, in the order of their lowest vertex index.
     pub components: Vec<Component>,
-    /// For each triangle its component's index.
+    /// The component's index of each triangle.
     pub component_of: Vec<usize>,
     /// Vertices that no triangle uses.
     pub unused_vertices: usize,
@@ -112,15 +112,15 @@ impl Topology {
     }
 }
 
-/// How many triangles have no area, exactly: a repeated index, two equal corners, or three on a
-/// line.
+/// How many triangles have no area, decided exactly: a repeated index, two equal corners, or three
+/// corners on a line.
 ///
-/// Those with three indices still count as faces above: a mesh is closed by them as by any other.
+/// Those with three different indices still count as faces of their component.
 #[must_use]
 pub fn without_area(mesh: &TriangleMesh) -> usize {
     let flat = |triangle: &&[u32; 3]| {
         let corners = triangle.map(|i| mesh.vertices[i as usize]);
-        // On a line exactly if the projections to all three coordinate planes are.
+        // Points are on a line exactly if their projections onto all three coordinate planes are.
         [(0, 1), (1, 2), (2, 0)].iter().all(|&(x, y)| {
             let [a, b, c] = corners.map(|v| Coord {
                 x: f64::from(v[x]),

@@ -1,29 +1,29 @@
-//! Given boxes: apart iff on some axis one begins after the other's end. Ends are compared as they
-//! are, so the answer is exact, in either of two ways.
+//! [`CubeTest`]: the test of given boxes, which are apart iff on some axis one begins after the
+//! other's end. Ends are compared without rounding, so the answer is exact.
 //!
-//! Nearly cubic boxes leave little between the cube about them and the one within
-//! ([`cube`](crate::rounding::cube)): one quad a box answers nearly all pairs, and the few others
-//! are looked up. Of long boxes the cubes know nothing; their ends stand in slots as two quads, and
-//! are compared straight away ([`EndSlots`](crate::broad_phase::EndSlots)).
+//! For nearly cubic boxes, the cube around a box and the largest cube inside it
+//! ([`cube`](crate::rounding::cube)) differ little: one quad per box decides nearly all pairs, and
+//! the boxes of the others are looked up. For long boxes cubes decide little, so their ends are
+//! compared directly ([`EndSlots`](crate::broad_phase::EndSlots)).
 
 use crate::bodies::Aabb;
 use crate::broad_phase::{BallTest, SlotBodies};
 use crate::rounding::cube;
 use crate::simd::Lanes;
 
-/// Boxes by their cubes, which the finder has in its slots.
+/// The test of boxes by their cubes, which the finder has in its slots.
 #[derive(Clone, Copy, Debug)]
-pub struct Cubes<'a> {
+pub struct CubeTest<'a> {
     /// The cubes; slots are named by box.
     pub slots: SlotBodies<'a>,
-    /// All boxes by name.
+    /// All boxes, indexed by name.
     pub boxes: &'a [Aabb],
     /// See [`less_than_sure`](crate::rounding::cube::less_than_sure).
     pub less: f32,
 }
 
-impl Cubes<'_> {
-    /// Whether two boxes meet, by their ends: exact. Few pairs need it, so that it stays out of the
+impl CubeTest<'_> {
+    /// Whether two boxes meet, exactly, by their ends. Few pairs need it, so it is kept out of the
     /// vector loop.
     #[cold]
     fn boxes_meet(&self, pair: [usize; 2]) -> bool {
@@ -32,7 +32,7 @@ impl Cubes<'_> {
     }
 }
 
-impl BallTest for Cubes<'_> {
+impl BallTest for CubeTest<'_> {
     #[inline(always)]
     fn slots(&self) -> SlotBodies<'_> {
         self.slots
@@ -69,25 +69,26 @@ impl BallTest for Cubes<'_> {
 mod tests {
     use super::*;
     use crate::broad_phase::Slots;
-    use crate::broad_phase::whole_vectors::{SLOTS, check};
+    use crate::broad_phase::whole_vectors::{SLOTS_PER_CHECK, check};
 
+    /// Boxes that fill their vectors cost no vector more.
     #[test]
-    fn boxes_that_fill_their_vectors_cost_no_vector_more() {
+    fn full_vectors_cost_no_more() {
         let mut slots = Slots {
-            balls: vec![[1.5, 1.5, 1.5, 0.5]; SLOTS],
-            names: (0..SLOTS as u32).collect(),
+            balls: vec![[1.5, 1.5, 1.5, 0.5]; SLOTS_PER_CHECK],
+            names: (0..SLOTS_PER_CHECK as u32).collect(),
             ..Slots::default()
         };
-        let boxes = [Aabb::new([1.0; 3], [2.0; 3]); SLOTS];
+        let boxes = [Aabb::new([1.0; 3], [2.0; 3]); SLOTS_PER_CHECK];
         let cubes = |slots: &Slots| {
-            check(&Cubes {
+            check(&CubeTest {
                 slots: slots.arranged(),
                 boxes: &boxes,
                 less: 0.0,
             });
         };
         cubes(&slots);
-        let [x, y, z, half] = [1.5, 1.5, 1.5, 0.5].map(|number| vec![number; SLOTS]);
+        let [x, y, z, half] = [1.5, 1.5, 1.5, 0.5].map(|number| vec![number; SLOTS_PER_CHECK]);
         slots.columns = [x, y, z, half];
         cubes(&slots);
     }

@@ -1,6 +1,7 @@
-//! World-aligned volumes (AABB, k-DOP): cull iff on some direction lo_i > hi_j or lo_j > hi_i.
+//! The test of world-aligned volumes (AABB, k-DOP): two are apart iff on some direction lo_i > hi_j
+//! or lo_j > hi_i.
 //!
-//! The ends were rounded outward when they were re-fitted, so the comparison itself is exact.
+//! The ends were rounded outward when they were updated, so the comparison is exact.
 
 use std::ops::Range;
 
@@ -8,8 +9,8 @@ use crate::broad_phase::{Block, SlotTest, list_slots};
 use crate::simd::{Lanes, MAX_WIDTH};
 use crate::threads::Threads;
 
-/// Bodies for whose columns waking another thread pays.
-const WORTH_SHARING: usize = 1 << 14;
+/// The fewest bodies for whose columns it pays to wake another thread.
+const FEWEST_SHARED_BODIES: usize = 1 << 14;
 
 /// World-aligned slabs in the pair finder's slot order: one column per direction, each padded by
 /// [`MAX_WIDTH`] finite entries.
@@ -22,8 +23,8 @@ pub struct IntervalSlots {
 }
 
 impl IntervalSlots {
-    /// Gathers the slabs of all bodies into slot order: `ends[place·slabs + slab]` = [lo, hi], and
-    /// the place in each slot.
+    /// Gathers the slabs of all bodies into slot order. `ends[place·slabs + slab]` = [lo, hi], and
+    /// `order` has the place in each slot.
     pub fn fill(&mut self, pool: &Threads, order: &[u32], ends: &[[f32; 2]]) {
         let slabs = ends.len().checked_div(order.len()).unwrap_or(0);
         self.lo.resize(slabs, Vec::new());
@@ -35,7 +36,7 @@ impl IntervalSlots {
                 column.extend(order.iter().map(end));
                 column.resize(order.len() + MAX_WIDTH, 0.0);
             };
-            if order.len() >= WORTH_SHARING {
+            if order.len() >= FEWEST_SHARED_BODIES {
                 pool.each(columns, fill);
             } else {
                 let columns = columns.iter_mut().enumerate();
@@ -96,16 +97,18 @@ impl SlotTest for IntervalSlots {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::broad_phase::whole_vectors::{SLOTS, check};
+    use crate::broad_phase::whole_vectors::{SLOTS_PER_CHECK, check};
 
+    /// Slabs that fill their vectors cost no vector more.
     #[test]
-    fn slabs_that_fill_their_vectors_cost_no_vector_more() {
-        let [lo, hi] = [1.0, 2.0].map(|end| vec![vec![end; SLOTS]; 3]);
+    fn full_slab_vectors_cost_no_more() {
+        let [lo, hi] = [1.0, 2.0].map(|end| vec![vec![end; SLOTS_PER_CHECK]; 3]);
         check(&IntervalSlots { lo, hi });
     }
 
+    /// Columns have the order of slots, followed by a vector of finite ends.
     #[test]
-    fn columns_have_the_order_of_slots_and_a_vector_of_finite_ends_behind_it() {
+    fn columns_follow_slot_order() {
         let mut slots = IntervalSlots::default();
         for bodies in [1, 3, 2] {
             // Of each place and slab, ends that are like no others.

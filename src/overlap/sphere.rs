@@ -1,6 +1,7 @@
-//! Sphere against spheres: cull iff d² > s², s = R_i + R_j, with R from [`inflate_radius`].
+//! The sphere test: a pair is rejected iff d² > s², where s = R_i + R_j with R from
+//! [`inflate_radius`].
 //!
-//! d² sums the squares of coordinate differences: expanding the square instead would cancel far
+//! d² is the sum of the squares of coordinate differences. Expanding the square would cancel far
 //! from the origin.
 //!
 //! [`inflate_radius`]: crate::rounding::sphere::inflate_radius
@@ -9,7 +10,7 @@ use crate::broad_phase::{BallTest, SlotBodies};
 use crate::rounding::sphere;
 use crate::simd::Lanes;
 
-/// The finder's balls as they are.
+/// The sphere test on the finder's balls.
 #[derive(Clone, Copy, Debug)]
 pub struct Spheres<'a>(pub SlotBodies<'a>);
 
@@ -29,16 +30,17 @@ impl BallTest for Spheres<'_> {
 mod tests {
     use super::Spheres;
     use crate::broad_phase::Slots;
-    use crate::broad_phase::whole_vectors::{SLOTS, check};
+    use crate::broad_phase::whole_vectors::{SLOTS_PER_CHECK, check};
 
+    /// Balls that fill their vectors cost no vector more.
     #[test]
-    fn balls_that_fill_their_vectors_cost_no_vector_more() {
+    fn full_ball_vectors_cost_no_more() {
         let mut slots = Slots {
-            balls: vec![[1.0; 4]; SLOTS],
+            balls: vec![[1.0; 4]; SLOTS_PER_CHECK],
             ..Slots::default()
         };
         check(&Spheres(slots.arranged()));
-        slots.columns = [(); 4].map(|()| vec![1.0; SLOTS]);
+        slots.columns = [(); 4].map(|()| vec![1.0; SLOTS_PER_CHECK]);
         check(&Spheres(slots.arranged()));
     }
 }

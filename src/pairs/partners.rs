@@ -1,25 +1,25 @@
-//! Pairs as lists of partners: who is in a pair with a given number is read, and a pair comes or
-//! goes, without a look at others.
+//! Pairs stored as a list of partners per number: finding the partners of a number, adding a pair
+//! and removing one does not touch other lists.
 
 use super::runs::{Run, Runs};
 use super::{PairList, bytes};
 use crate::simd::prefetch;
 
-/// A set of pairs of numbers. Each number has the sorted list of those that it is in a pair with.
+/// A set of pairs of numbers. Each number has a sorted list of its partners.
 ///
-/// A pair is in the lists of both of its numbers; between the changes of one frame it may be in one
-/// of them alone.
+/// A pair is in the lists of both of its numbers. While a frame's changes are applied it may be in
+/// only one of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Partners {
     lists: Runs<u32>,
     by_number: Vec<Run>,
-    /// Entries of all lists: two of each pair.
+    /// Entries in all lists, two per pair.
     entries: usize,
 }
 
 impl Partners {
-    /// The pairs of a list, which is sorted and has the lower number first. All numbers are below
-    /// `numbers`.
+    /// The set of the pairs in a sorted list, each with its lower number first. All numbers are
+    /// below `numbers`.
     pub fn of(pairs: &PairList, numbers: usize) -> Self {
         let mut partners = Self::default();
         let mut counts = vec![0_u32; numbers];
@@ -32,7 +32,7 @@ impl Partners {
                 partners.lists.reserve(run, count as usize);
             }
         }
-        // Of each number, the pairs with lower ones come before those with higher ones.
+        // In each list, lower partners come before higher ones.
         for [i, j] in pairs.iter() {
             partners.lists.push(&mut partners.by_number[j as usize], i);
             partners.lists.push(&mut partners.by_number[i as usize], j);
@@ -53,13 +53,13 @@ impl Partners {
         }
     }
 
-    /// The numbers that this one is in a pair with, sorted.
+    /// The partners of a number, sorted.
     #[inline(always)]
     pub fn of_number(&self, number: u32) -> &[u32] {
         self.lists.get(self.by_number[number as usize])
     }
 
-    /// Brings near where a number's list is, and then the list, before it is read.
+    /// Prefetches first the location of a number's list, then the list itself.
     #[inline(always)]
     pub fn prefetch(&self, [soon, next]: [Option<&u32>; 2]) {
         if let Some(&number) = soon {
@@ -77,7 +77,7 @@ impl Partners {
         self.lists.replace(run, partners);
     }
 
-    /// Adds a partner to a number's list, if it isn't in it.
+    /// Adds a partner to a number's list unless it is in it already.
     pub fn insert(&mut self, number: u32, partner: u32) {
         let run = &mut self.by_number[number as usize];
         if let Err(at) = self.lists.get(*run).binary_search(&partner) {
@@ -86,7 +86,7 @@ impl Partners {
         }
     }
 
-    /// Takes a partner out of a number's list, if it is in it.
+    /// Removes a partner from a number's list if it is in it.
     pub fn remove(&mut self, number: u32, partner: u32) {
         let run = &mut self.by_number[number as usize];
         if let Ok(at) = self.lists.get(*run).binary_search(&partner) {
@@ -116,13 +116,13 @@ impl Partners {
     }
 }
 
-/// The pairs of [`Partners`], one after the other.
+/// Iterator over the pairs of [`Partners`].
 #[derive(Clone, Debug)]
 pub(crate) struct PartnerPairs<'a> {
     partners: &'a Partners,
     /// The number whose list comes next.
     next: u32,
-    /// Those in the list of the number before that are above it.
+    /// The rest of the previous number's list, from its higher partners on.
     higher: std::slice::Iter<'a, u32>,
     left: usize,
 }
@@ -189,8 +189,9 @@ mod tests {
         }
     }
 
+    /// A list is replaced apart from its partners.
     #[test]
-    fn a_list_is_replaced_apart_from_its_partners() {
+    fn replacing_leaves_partner_lists() {
         let list: PairList = [[0, 3], [1, 3], [2, 4]].into_iter().collect();
         let mut partners = Partners::of(&list, 5);
         partners.extend_to(6);

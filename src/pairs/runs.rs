@@ -1,31 +1,32 @@
-//! Many short lists in one piece of memory.
+//! Many short lists in one allocation.
 //!
-//! Each list is a run of entries with room for a power of two of them. A list that outgrows its
-//! room moves to a larger one, and the room that it leaves is given to the next list of that size.
-//! So a list costs no call of the allocator, and changing one costs what it holds.
+//! Each list is a run of entries, with room for a power of two of them. A list that outgrows its
+//! room moves to a larger one, and the next list of that size reuses the old room. Lists are
+//! therefore created and changed without calls to the allocator, and changing a list costs time in
+//! proportion to its length.
 
 use super::bytes;
 use crate::simd::prefetch;
 
-/// The least room of a list that has any.
-const SMALLEST_ROOM: u32 = 4;
+/// The smallest room of a list that is not empty, in entries.
+const LEAST_ROOM: u32 = 4;
 
-/// A list shrinks to half of its room when it fills no more than this share of it.
-const SPARSE: u32 = 4;
+/// A list shrinks to half of its room when it fills at most one in this many entries of it.
+const SHRINK_DIVISOR: u32 = 4;
 
 /// Where a list's entries are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Run {
-    /// In units of [`SMALLEST_ROOM`].
+    /// In units of [`LEAST_ROOM`].
     start: u32,
     len: u32,
-    /// Zero, or a power of two no less than [`SMALLEST_ROOM`].
+    /// Zero, or a power of two no less than [`LEAST_ROOM`].
     room: u32,
 }
 
 impl Run {
     fn first(self) -> usize {
-        self.start as usize * SMALLEST_ROOM as usize
+        self.start as usize * LEAST_ROOM as usize
     }
 
     /// Whether the list is empty.
@@ -45,7 +46,7 @@ impl Run {
 #[derive(Clone, Debug)]
 pub(crate) struct Runs<T> {
     items: Vec<T>,
-    /// Starts of free rooms, by the logarithm of their size.
+    /// Starts of the free rooms, indexed by the logarithm of their size.
     free: Vec<Vec<u32>>,
 }
 
@@ -66,7 +67,7 @@ impl<T: Copy + Default> Runs<T> {
         &self.items[first..first + run.len()]
     }
 
-    /// Brings the first entries of a list that isn't empty near.
+    /// Prefetches the first entries of a list, unless it is empty.
     #[inline(always)]
     pub fn prefetch(&self, run: Run) {
         let list = self.get(run);
@@ -74,7 +75,7 @@ impl<T: Copy + Default> Runs<T> {
         list.last().map(prefetch);
     }
 
-    /// The same, to be changed.
+    /// The entries of a list, to be changed.
     #[inline(always)]
     pub fn get_mut(&mut self, run: Run) -> &mut [T] {
         let first = run.first();
@@ -83,7 +84,7 @@ impl<T: Copy + Default> Runs<T> {
 
     /// Makes room for at least `len` entries of an empty list.
     pub fn reserve(&mut self, run: &mut Run, len: usize) {
-        let needed = (len as u32).next_power_of_two().max(SMALLEST_ROOM);
+        let needed = (len as u32).next_power_of_two().max(LEAST_ROOM);
         if needed > run.room {
             self.release(run);
             run.start = self.take_room(needed);
@@ -97,11 +98,11 @@ impl<T: Copy + Default> Runs<T> {
         self.insert(run, run.len(), item);
     }
 
-    /// Puts an entry before the one at `at`.
+    /// Inserts an entry at the index `at`.
     #[inline]
     pub fn insert(&mut self, run: &mut Run, at: usize, item: T) {
         if run.len == run.room {
-            self.resize(run, (2 * run.room).max(SMALLEST_ROOM));
+            self.resize(run, (2 * run.room).max(LEAST_ROOM));
         }
         let (first, len) = (run.first(), run.len());
         self.items
@@ -110,7 +111,7 @@ impl<T: Copy + Default> Runs<T> {
         run.len += 1;
     }
 
-    /// Takes out the entry at `at`; the others keep their order.
+    /// Removes the entry at `at`. The others keep their order.
     pub fn remove(&mut self, run: &mut Run, at: usize) {
         let (first, len) = (run.first(), run.len());
         self.items
@@ -118,7 +119,7 @@ impl<T: Copy + Default> Runs<T> {
         self.shorten(run);
     }
 
-    /// Takes out the entry at `at`; the last one takes its place.
+    /// Removes the entry at `at`. The last one takes its place.
     pub fn swap_remove(&mut self, run: &mut Run, at: usize) {
         let (first, last) = (run.first(), run.len() - 1);
         self.items[first + at] = self.items[first + last];
@@ -132,7 +133,7 @@ impl<T: Copy + Default> Runs<T> {
             self.release(run);
             return;
         }
-        if len > run.room || (len * SPARSE <= run.room && run.room > SMALLEST_ROOM) {
+        if len > run.room || (len * SHRINK_DIVISOR <= run.room && run.room > LEAST_ROOM) {
             self.release(run);
             self.reserve(run, items.len());
         }
@@ -144,7 +145,7 @@ impl<T: Copy + Default> Runs<T> {
         run.len -= 1;
         if run.len == 0 {
             self.release(run);
-        } else if run.len * SPARSE <= run.room && run.room > SMALLEST_ROOM {
+        } else if run.len * SHRINK_DIVISOR <= run.room && run.room > LEAST_ROOM {
             self.resize(run, run.room / 2);
         }
     }
@@ -163,7 +164,7 @@ impl<T: Copy + Default> Runs<T> {
         self.release(&mut moved);
     }
 
-    /// Gives the list's room back; it is empty then.
+    /// Empties the list and frees its room.
     fn release(&mut self, run: &mut Run) {
         if run.room > 0 {
             let size = run.room.ilog2() as usize;
@@ -182,10 +183,10 @@ impl<T: Copy + Default> Runs<T> {
         }
         let start = self.items.len();
         self.items.resize(start + room as usize, T::default());
-        (start / SMALLEST_ROOM as usize) as u32
+        (start / LEAST_ROOM as usize) as u32
     }
 
-    /// Bytes that the lists hold, their free rooms included.
+    /// Bytes that the lists hold, including free rooms.
     pub fn bytes(&self) -> usize {
         bytes(&self.items) + self.free.iter().map(bytes).sum::<usize>()
     }

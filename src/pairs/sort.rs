@@ -1,11 +1,11 @@
-//! Lists of pairs in the order of their numbers.
+//! Sorting lists of pairs.
 
 use super::PairList;
 
-/// Up to so many numbers are sorted by insertion.
+/// The longest list of numbers that is sorted by insertion.
 const MOST_BY_INSERTION: usize = 12;
 
-/// Buffers of [`PairList::sort`], kept from list to list.
+/// Buffers of [`PairList::sort`], reused for the next list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairSorter {
     /// Where the pairs of each first number begin, and then where they end.
@@ -22,11 +22,11 @@ impl PairSorter {
 }
 
 impl PairList {
-    /// Sorts the pairs by their first number, those of one first number by their second. All
-    /// numbers are below `numbers`.
+    /// Sorts the pairs by their first number, then by their second. All numbers are below
+    /// `numbers`.
     ///
-    /// A counting sort by the first number, which takes one pass over the list; the pairs of one
-    /// number are few, and are sorted where they are. A list that is in order is left as it is.
+    /// This is a counting sort by the first number, followed by a sort of the few pairs of each
+    /// first number. A list that is in order already is left as it is.
     pub(crate) fn sort(&mut self, numbers: usize, sorter: &mut PairSorter) {
         if self.iter().is_sorted() {
             return;
@@ -63,7 +63,7 @@ impl PairList {
     }
 }
 
-/// Sorts numbers that are mostly few, without a call for these.
+/// Sorts numbers; short lists without a function call.
 #[inline(always)]
 fn sort_few(numbers: &mut [u32]) {
     if numbers.len() > MOST_BY_INSERTION {

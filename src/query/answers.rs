@@ -1,4 +1,4 @@
-//! Volumes against an index, one by one and in batches.
+//! Finds the bodies of an index that may touch a volume, one query at a time or in batches.
 
 use super::index::{QueryIndex, Solid, TREES};
 use super::shape::PosedShape;
@@ -17,15 +17,15 @@ const QUERIES_PER_TASK: usize = 32;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answers<T> {
     all: Vec<T>,
-    /// Where those of each query end.
+    /// The end of each query's answers.
     ends: Vec<usize>,
 }
 
 impl<T> Answers<T> {
-    /// The answer to the query of this number.
+    /// The answer to query `query`, counted from 0.
     ///
     /// # Panics
-    /// A number that no query had.
+    /// Panics if there was no such query.
     #[must_use]
     pub fn of(&self, query: usize) -> &[T] {
         let start = query.checked_sub(1).map_or(0, |before| self.ends[before]);
@@ -43,14 +43,14 @@ impl<T> Answers<T> {
         self.ends.len()
     }
 
-    /// Whether nothing was asked.
+    /// Whether there were no queries.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 }
 
-/// A volume made ready.
+/// A volume prepared for the tests.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Probe<'a> {
     Box([[f64; 3]; 2]),
@@ -126,7 +126,7 @@ impl QueryIndex {
         Ok(found)
     }
 
-    /// The same for many volumes, on all threads.
+    /// [`Self::touching`] for many volumes, on all threads.
     ///
     /// # Errors
     /// The first volume outside of the contract.
@@ -137,7 +137,7 @@ impl QueryIndex {
         Ok(self.each_of(volumes, |volume, found| self.touch(volume, found)))
     }
 
-    /// Answers many queries, on all threads. `answer` appends the answer to one.
+    /// Answers many queries on all threads. `answer` appends the answer to one query.
     pub(super) fn each_of<Q: Sync, T: Send>(
         &self,
         queries: &[Q],
@@ -184,8 +184,8 @@ impl QueryIndex {
 
 /// [`Tree::each_meeting`] in a tier.
 fn each_meeting(tier: Tier, tree: &Tree, aabb: &Aabb, take: &mut dyn FnMut(usize)) {
-    struct Walk<'a>(&'a Tree, &'a Aabb, &'a mut dyn FnMut(usize));
-    impl Kernel for Walk<'_> {
+    struct SearchMeeting<'a>(&'a Tree, &'a Aabb, &'a mut dyn FnMut(usize));
+    impl Kernel for SearchMeeting<'_> {
         type Output = ();
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) {
@@ -193,5 +193,5 @@ fn each_meeting(tier: Tier, tree: &Tree, aabb: &Aabb, take: &mut dyn FnMut(usize
             tree.each_meeting(l, aabb, take);
         }
     }
-    dispatch(tier, Walk(tree, aabb, take));
+    dispatch(tier, SearchMeeting(tree, aabb, take));
 }

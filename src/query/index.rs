@@ -1,6 +1,6 @@
 //! The bodies of a world by location, changed body by body.
 
-use super::shape::{Posed, PosedShape};
+use super::shape::{PosedBodies, PosedShape};
 use super::source::QuerySource;
 use super::tree::Tree;
 use crate::bodies::Aabb;
@@ -9,37 +9,37 @@ use crate::simd::{Tier, in_default_mode};
 use crate::threads::{Threads, ThreadsError};
 use crate::world::BodyId;
 
-/// The tree of bodies that are fixed, and that of those that move.
+/// One tree for fixed bodies and one for the others.
 pub(super) const TREES: usize = 2;
 
 /// No place in any tree.
 const NOWHERE: u32 = u32::MAX;
 
-/// The bodies of a world, to be asked about. See the [module](super).
+/// The bodies of a world, prepared for queries. See the [module](super).
 #[derive(Clone, Debug)]
 pub struct QueryIndex {
     pub(super) threads: Threads,
     pub(super) tier: Tier,
     pub(super) trees: [Tree; TREES],
-    /// What boxes in the trees are seen from: 0 where bodies are given boxes.
+    /// The origin of the boxes in the trees: 0 if bodies are boxes.
     pub(super) origin: [f64; 3],
     /// By slot.
-    homes: Vec<Home>,
+    homes: Vec<TreePlace>,
     pub(super) ids: Vec<BodyId>,
-    pub(super) posed: Option<Posed>,
+    pub(super) posed: Option<PosedBodies>,
 }
 
-/// Where a slot's box is.
+/// The place of a slot's box.
 #[derive(Clone, Copy, Debug)]
-struct Home {
+struct TreePlace {
     tree: u8,
     place: u32,
 }
 
-/// What a body is to the tests that follow the trees.
+/// A body in the form that is tested after the trees.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Solid<'a> {
-    /// A box, to the bit.
+    /// An exact box.
     Box(Aabb),
     /// A posed shape.
     Shape(PosedShape<'a>),
@@ -58,11 +58,11 @@ impl QueryIndex {
         Self::default()
     }
 
-    /// The same, whose batches run on so many threads, the caller's included. Answers don't depend
-    /// on it.
+    /// An index without bodies, whose batches run on `threads` threads, the caller's included.
+    /// Answers don't depend on the number.
     ///
     /// # Errors
-    /// Threads that the system refuses.
+    /// The system cannot start the threads.
     pub fn with_threads(threads: usize) -> Result<Self, ThreadsError> {
         Ok(Self::on(Threads::new(threads)?))
     }
@@ -79,16 +79,16 @@ impl QueryIndex {
         }
     }
 
-    /// The same on another tier of the CPU. Answers don't depend on it.
+    /// This index with another SIMD tier. Answers don't depend on it.
     #[must_use]
     pub fn on_tier(self, tier: Tier) -> Self {
         Self { tier, ..self }
     }
 
     /// Brings the index up to date with a world, [`World`](crate::World) or
-    /// [`BoxWorld`](crate::BoxWorld): from now on queries are answered about its bodies as they are
-    /// now. Costs a comparison per body, and the work of the trees for those that have changed.
-    /// Another world than before makes all bodies new.
+    /// [`BoxWorld`](crate::BoxWorld): from now on queries are about its bodies as they are now. The
+    /// cost is one comparison per body, plus changes to the trees for those that have changed. If
+    /// the world is not the one of the last update, all bodies are new.
     pub fn update(&mut self, world: &impl QuerySource) {
         in_default_mode(|| {
             world.bring(self);
@@ -110,21 +110,21 @@ impl QueryIndex {
             .count()
     }
 
-    /// Whether there is none.
+    /// Whether there are no bodies.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Forgets all bodies; what is posed is seen from `origin` from now on.
-    pub(super) fn begin(&mut self, origin: [f64; 3], posed: Option<Posed>) {
+    /// Removes all bodies, and sets the origin of the boxes.
+    pub(super) fn begin(&mut self, origin: [f64; 3], posed: Option<PosedBodies>) {
         self.trees = Default::default();
         self.homes.clear();
         self.ids.clear();
         (self.origin, self.posed) = (origin, posed);
     }
 
-    /// The box that the trees have of a body, if they have it.
+    /// The box of a body in the trees, if there is one, and its tree.
     pub(super) fn bounds_of(&self, id: BodyId) -> Option<(usize, Aabb)> {
         let home = self.homes.get(id.slot()).copied()?;
         let is_there = home.place != NOWHERE && self.ids[id.slot()] == id;
@@ -134,11 +134,11 @@ impl QueryIndex {
         })
     }
 
-    /// Puts a body in a tree, with the box that is about it now.
+    /// Puts a body into a tree, with its present box.
     pub(super) fn put(&mut self, id: BodyId, tree: usize, bounds: &Aabb) {
         let slot = id.slot();
         if self.homes.len() <= slot {
-            let nowhere = Home {
+            let nowhere = TreePlace {
                 tree: 0,
                 place: NOWHERE,
             };
@@ -151,13 +151,13 @@ impl QueryIndex {
             return self.trees[tree].set(home.place, bounds);
         }
         self.take_out(slot);
-        self.homes[slot] = Home {
+        self.homes[slot] = TreePlace {
             tree: tree as u8,
             place: self.trees[tree].push(slot as u32, bounds),
         };
     }
 
-    /// Takes out the bodies of these slots.
+    /// Removes the bodies of these slots.
     pub(super) fn take_out_all(&mut self, slots: std::ops::Range<usize>) {
         for slot in slots.start..slots.end.min(self.homes.len()) {
             self.take_out(slot);
@@ -172,7 +172,7 @@ impl QueryIndex {
         }
     }
 
-    /// One above every slot that it has.
+    /// One more than the largest slot.
     pub(super) fn slots(&self) -> usize {
         self.homes.len()
     }
@@ -187,7 +187,7 @@ impl QueryIndex {
         }
     }
 
-    /// What the body in a place is.
+    /// The body in a place, for the tests.
     #[inline(always)]
     pub(super) fn solid(&self, tree: usize, place: usize) -> Solid<'_> {
         let tree = &self.trees[tree];
@@ -205,7 +205,7 @@ impl QueryIndex {
     }
 }
 
-/// A box moved by `by`, and no smaller. One that isn't moved stays to the bit.
+/// A box moved by `by` and rounded outward. If `by` is 0, the box stays the same to the bit.
 pub(super) fn moved(aabb: &Aabb, by: [f64; 3]) -> Aabb {
     if by == [0.0; 3] {
         return *aabb;

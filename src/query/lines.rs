@@ -3,7 +3,7 @@
 use super::Track;
 use super::answers::Answers;
 use super::index::{QueryIndex, Solid, TREES};
-use super::tree::{Below, GROUP, Group, MOST_WAITING, Node, lanes_of};
+use super::tree::{BOXES_PER_GROUP, Group, LaneContent, MOST_WAITING, Node, lanes_of};
 use super::volume::{Line, QueryError};
 use crate::bodies::Aabb;
 use crate::rounding::query::{Course, crossing};
@@ -15,25 +15,26 @@ use crate::world::BodyId;
 pub struct LineHit {
     /// The body.
     pub body: BodyId,
-    /// No greater than the parameter of any point that the line has in common with it.
+    /// A parameter at or before the first point that the line shares with the body.
     pub at: f64,
 }
 
 impl LineHit {
-    /// Before another one along the line; of two at one parameter, the one of the lower slot.
+    /// Whether this one comes before another along the line. At equal parameters the lower slot
+    /// comes first.
     fn is_before(&self, other: &Self) -> bool {
         (self.at, self.body) < (other.at, other.body)
     }
 }
 
-/// How a line moves along each axis.
+/// The direction of a line along each axis.
 #[derive(Clone, Copy, Debug)]
-struct Courses {
+struct LineCourses {
     axes: [Course; 3],
     limit: f64,
 }
 
-impl Courses {
+impl LineCourses {
     fn new(track: &Track, origin: [f64; 3]) -> Self {
         let axes =
             [0, 1, 2].map(|axis| Course::new(track.from[axis] - origin[axis], track.speed[axis]));
@@ -41,13 +42,14 @@ impl Courses {
         Self { axes, limit }
     }
 
-    /// The lanes of a group that the line may meet up to `limit`, and where it enters their boxes.
+    /// The lanes of a group that the line may meet up to `limit`, and the parameters at which it
+    /// enters their boxes.
     #[inline(always)]
-    fn meeting(&self, group: &Group, limit: f64) -> (u32, [f64; GROUP]) {
-        let (mut first, mut last) = ([0.0_f64; GROUP], [limit; GROUP]);
+    fn meeting(&self, group: &Group, limit: f64) -> (u32, [f64; BOXES_PER_GROUP]) {
+        let (mut first, mut last) = ([0.0_f64; BOXES_PER_GROUP], [limit; BOXES_PER_GROUP]);
         for axis in 0..3 {
             let (lo, hi) = (&group.lo[axis], &group.hi[axis]);
-            for lane in 0..GROUP {
+            for lane in 0..BOXES_PER_GROUP {
                 let ends = [lo[lane], hi[lane]].map(f64::from);
                 let [enters, leaves] = crossing(self.axes[axis], ends);
                 first[lane] = if enters > first[lane] {
@@ -63,13 +65,13 @@ impl Courses {
             }
         }
         let mut meeting = 0;
-        for lane in 0..GROUP {
+        for lane in 0..BOXES_PER_GROUP {
             meeting |= u32::from(first[lane] <= last[lane]) << lane;
         }
         (meeting & group.present, first)
     }
 
-    /// Where the line enters a box, if it may meet it.
+    /// The parameter at which the line enters a box, if it may meet it.
     fn enters(&self, aabb: &Aabb) -> Option<f64> {
         let [mut first, mut last] = [0.0, self.limit];
         for axis in 0..3 {
@@ -82,8 +84,7 @@ impl Courses {
 }
 
 impl QueryIndex {
-    /// The bodies that a line may meet, sorted by where it may meet them first, and by slot where
-    /// that is the same.
+    /// The bodies that a line may meet, sorted by parameter, and by slot at equal parameters.
     ///
     /// # Errors
     /// A line outside of the contract ([`Line`]).
@@ -94,7 +95,7 @@ impl QueryIndex {
         Ok(found)
     }
 
-    /// The same for many lines, on all threads.
+    /// [`Self::along`] for many lines, on all threads.
     ///
     /// # Errors
     /// The first line outside of the contract.
@@ -106,7 +107,7 @@ impl QueryIndex {
     }
 
     /// The body whose volume a line may meet first: no body is met at a parameter below its `at`.
-    /// Volumes are larger than meshes; where that matters, use [`Self::first_judged`].
+    /// Volumes are larger than meshes; if that matters, use [`Self::first_judged`].
     ///
     /// # Errors
     /// As [`Self::along`].
@@ -114,7 +115,7 @@ impl QueryIndex {
         self.first_judged(line, |hit| Some(hit.at))
     }
 
-    /// The same for many lines, on all threads. An answer has one entry or none.
+    /// [`Self::first`] for many lines, on all threads. An answer has one entry, or is empty.
     ///
     /// # Errors
     /// As [`Self::along_all`].
@@ -127,11 +128,10 @@ impl QueryIndex {
         }))
     }
 
-    /// The first body along a line by the caller's own judgement: `judge` returns the parameter at
-    /// which the line really meets a body, or none if it misses it. It is called for bodies that
-    /// the line may meet no later than the nearest that is known, nearer ones first as far as boxes
-    /// tell; none is left out that could be the first. Of several at one parameter, the lowest
-    /// slot's.
+    /// The first body along a line, judged exactly by the caller: `judge` returns the parameter at
+    /// which the line meets a body's mesh, or `None` if it misses. It is called for bodies that the
+    /// line may meet before the nearest hit known so far, in about the order of their boxes, and
+    /// for every body that could be first. At equal parameters the lowest slot wins.
     ///
     /// # Errors
     /// As [`Self::along`].
@@ -173,13 +173,13 @@ impl QueryIndex {
         best
     }
 
-    /// Calls `take` with each body that a line may meet up to the limit, which is the last that
-    /// `take` has returned; nearer boxes come first.
+    /// Calls `take` with each body that a line may meet up to the limit, nearer boxes first. `take`
+    /// returns the new limit.
     fn walk(&self, line: &Line, take: impl FnMut(LineHit, f64) -> f64) {
         let track = line.track();
-        let walk = Walk {
+        let walk = LineSearch {
             index: self,
-            courses: Courses::new(&track, self.origin),
+            courses: LineCourses::new(&track, self.origin),
             track,
             take,
         };
@@ -187,26 +187,26 @@ impl QueryIndex {
     }
 }
 
-/// What waits to be looked into.
+/// A group that is still to be searched.
 #[derive(Clone, Copy)]
-struct Waiting {
+struct WaitingGroup {
     enters: f64,
     tree: usize,
     node: Node,
 }
 
-struct Walk<'a, T> {
+struct LineSearch<'a, T> {
     index: &'a QueryIndex,
-    courses: Courses,
+    courses: LineCourses,
     track: Track,
     take: T,
 }
 
-impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
+impl<T: FnMut(LineHit, f64) -> f64> Kernel for LineSearch<'_, T> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self, _: L) {
-        let nothing = Waiting {
+        let nothing = WaitingGroup {
             enters: 0.0,
             tree: 0,
             node: Node::default(),
@@ -215,7 +215,7 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
         let mut count = 0;
         for tree in (0..TREES).rev() {
             if let Some(node) = self.index.trees[tree].top() {
-                waiting[count] = Waiting {
+                waiting[count] = WaitingGroup {
                     enters: 0.0,
                     tree,
                     node,
@@ -226,7 +226,7 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
         let mut limit = self.courses.limit;
         while count > 0 {
             count -= 1;
-            let Waiting { enters, tree, node } = waiting[count];
+            let WaitingGroup { enters, tree, node } = waiting[count];
             if enters > limit {
                 continue;
             }
@@ -236,9 +236,9 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
             let start = count;
             for lane in lanes_of(meeting) {
                 match node.below(lane) {
-                    Below::Place(place) => self.meet(tree, place, first[lane], &mut limit),
-                    Below::Node(node) => {
-                        waiting[count] = Waiting {
+                    LaneContent::Place(place) => self.meet(tree, place, first[lane], &mut limit),
+                    LaneContent::Node(node) => {
+                        waiting[count] = WaitingGroup {
                             enters: first[lane],
                             tree,
                             node,
@@ -252,8 +252,8 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for Walk<'_, T> {
     }
 }
 
-impl<T: FnMut(LineHit, f64) -> f64> Walk<'_, T> {
-    /// Tests the body in a place, whose box is entered at `enters`.
+impl<T: FnMut(LineHit, f64) -> f64> LineSearch<'_, T> {
+    /// Tests the body in a place, whose box the line enters at `enters`.
     #[inline(always)]
     fn meet(&mut self, tree: usize, place: usize, enters: f64, limit: &mut f64) {
         if enters > *limit {

@@ -1,18 +1,18 @@
 //! Queries: which bodies may touch a volume, which does a line meet first, which bodies of one set
 //! meet those of another?
 //!
-//! For what an engine asks in addition to the pairs of a frame: picking, sensors, explosions, lines
-//! of sight, placing a body. A [`QueryIndex`] holds the bodies of a [`World`](crate::World) or a
-//! [`BoxWorld`](crate::BoxWorld) as they were at its last update. An update compares each body with
-//! what the index has of it and changes it body by body: bodies that stay cost a comparison, and no
-//! query builds anything. No cull is needed.
+//! Use them for picking, sensors, explosions, lines of sight and placing a body. A [`QueryIndex`]
+//! holds the bodies of a [`World`](crate::World) or a [`BoxWorld`](crate::BoxWorld) as they were at
+//! its last update. An update compares each body with its copy in the index and changes only those
+//! that differ: an unchanged body costs one comparison, and a query builds nothing. No cull is
+//! needed.
 //!
 //! The promise is that of culling: no body is missed that has a point in common with the volume or
 //! the line in exact arithmetic, touching included. Boxes are reported for a box exactly if they
-//! meet. For balls and lines f64 rounding may report one in addition that is closer than 2⁻⁵⁰ of
-//! the distances involved. Bodies of a `World` are grown by their margins and tested by their
-//! boxes, balls and or-DOPs, as culling does, so that a narrow phase still has to judge what is
-//! reported. Groups, and whether a body moves, are not asked: filter what is returned.
+//! meet. For balls and lines, f64 rounding may report boxes at a distance below 2⁻⁵⁰ of the lengths
+//! involved, too. Bodies of a `World` are grown by their margins and tested by their boxes, balls
+//! and or-DOPs, as in culling, so a narrow phase has to test the reported ones. Queries ignore
+//! groups and whether a body moves: filter the answers.
 //!
 //! ```
 //! use sdop::{Aabb, BoxWorld, Line, QueryIndex, QueryVolume};
@@ -49,7 +49,7 @@ pub use shape::QueryShape;
 pub use source::QuerySource;
 pub use volume::{Line, QueryError, QueryVolume};
 
-/// A line as bodies take it: its points from + s·speed for s from 0 to `limit`.
+/// A line as the tests need it: the points from + s·speed for s from 0 to `limit`.
 #[derive(Clone, Copy, Debug)]
 struct Track {
     from: [f64; 3],

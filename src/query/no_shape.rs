@@ -1,4 +1,5 @@
-//! Without shapes all bodies are boxes: the types of [`shape`](super::shape) without any value.
+//! Without the feature `shapes` all bodies are boxes, and the types of [`shape`](super::shape) have
+//! no values.
 
 use super::Track;
 use crate::bodies::Aabb;
@@ -28,9 +29,9 @@ impl QueryShape {
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum Posed {}
+pub(super) enum PosedBodies {}
 
-impl Posed {
+impl PosedBodies {
     pub fn at(&self, _: usize) -> Option<PosedShape<'_>> {
         match *self {}
     }

@@ -1,18 +1,18 @@
-//! One set of bodies against another.
+//! Finds the pairs of bodies between two sets.
 
 use super::index::{QueryIndex, Solid, TREES, moved};
-use super::tree::{GROUP, Group, lanes_of};
+use super::tree::{BOXES_PER_GROUP, Group, lanes_of};
 use crate::bodies::Aabb;
 use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};
 use crate::world::BodyId;
 
-/// Groups of the first set that one thread takes at a time.
+/// Groups of the first set that one thread tests at a time.
 const GROUPS_PER_TASK: usize = 16;
 
 impl QueryIndex {
     /// The pairs of a body of this set and one of another that may touch, sorted by the slot of the
-    /// first and of the second. On all threads of this index. The two may be of one world, and of
-    /// either kind.
+    /// first and of the second. It uses all threads of this index. Both sets may come from the same
+    /// world, and from worlds of either kind.
     #[must_use]
     pub fn pairs_with(&self, other: &Self) -> Vec<[BodyId; 2]> {
         let mut tasks = Vec::new();
@@ -72,7 +72,7 @@ impl Kernel for GroupPairs<'_> {
                 }
                 let solid = other.solid(tree, place);
                 for lane in lanes_of(meeting) {
-                    let first = self.group * GROUP + lane;
+                    let first = self.group * BOXES_PER_GROUP + lane;
                     if may_touch(one.solid(self.tree, first), solid) {
                         let pair = [one.id_at(self.tree, first), other.id_at(tree, place)];
                         self.found.push(pair);

@@ -15,13 +15,13 @@ use crate::update::ShapeFrame;
 use crate::volume::{DirectionSet, OrDop, Shape};
 use crate::world::{Body, ShapeVolumes, compose};
 
-/// A shape as queries take it: its ball and its or-DOP, made ready once.
+/// A shape prepared for queries: its ball and its or-DOP, computed once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QueryShape {
     ordop: OrDop,
     /// The slabs' directions, and their lengths.
     directions: Vec<([f64; 3], f64)>,
-    /// The end that faces each sum of basis vectors; infinite where no slab does.
+    /// The end that faces each sum of basis vectors; infinite if no slab does.
     ends: [f64; 27],
     /// One over the squared length of a basis vector.
     over_square: f64,
@@ -29,12 +29,12 @@ pub struct QueryShape {
     radius: f64,
     /// No point is farther from the origin of the vertices.
     reach: f64,
-    /// Where that origin lies, seen from the point that poses refer to.
+    /// The position of that origin relative to the point that poses place.
     pose_offset: [f64; 3],
 }
 
 impl QueryShape {
-    /// Of a shape as it is; a query says where it is, and its margin.
+    /// Prepares a shape. Its pose and margin are given in each query.
     #[must_use]
     pub fn new(shape: &Shape) -> Self {
         let frame = ShapeFrame::new(shape, &shape.ordop.basis);
@@ -66,7 +66,7 @@ impl QueryShape {
         }
     }
 
-    /// Whether it is of these volumes.
+    /// Whether it was made from these volumes.
     pub(super) fn is_of(&self, (ordop, frame, pose_offset): ShapeVolumes<'_>) -> bool {
         self.ordop == *ordop
             && self.centre == frame.centre().map(f64::from)
@@ -89,7 +89,7 @@ impl QueryShape {
         check_pose(query, &rotation, &translation)
     }
 
-    /// At a pose, grown by a margin.
+    /// This shape at a pose, grown by a margin.
     pub(super) fn at(
         &self,
         rotation: [f32; 4],
@@ -119,7 +119,7 @@ impl QueryShape {
         order.sort_unstable_by(|&a, &b| size[b].total_cmp(&size[a]));
         let [high, median, low] = order.map(|axis| size[axis]);
         let [a, b, c] = order;
-        // A multiplier of what faces the sum of some axes, each in its sign.
+        // The part of a multiplier of the end that faces the sum of some axes, each with its sign.
         let part = |multiplier: f64, axes: &[usize]| {
             let mut facing = [0; 3];
             axes.iter().for_each(|&axis| facing[axis] = sign[axis]);
@@ -148,7 +148,7 @@ impl QueryShape {
         }
     }
 
-    /// What a multiplier of a sum of basis vectors adds to a support.
+    /// The part that a multiplier of a sum of basis vectors adds to a support.
     fn part(&self, multiplier: f64, facing: [i8; 3]) -> f64 {
         if multiplier == 0.0 {
             return 0.0; // no slab may face there
@@ -157,23 +157,23 @@ impl QueryShape {
     }
 }
 
-/// Where the end that faces a sum of basis vectors is kept.
+/// The index of the end that faces a sum of basis vectors.
 fn index_of(facing: [i8; 3]) -> usize {
     facing
         .iter()
         .fold(0, |index, c| 3 * index + (c + 1) as usize)
 }
 
-/// What an index has of bodies that are more than boxes.
+/// Shapes and poses of bodies that are not boxes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Posed {
-    /// By the number that bodies know them by.
+pub(super) struct PosedBodies {
+    /// By shape number, as bodies use it.
     pub shapes: Vec<Option<QueryShape>>,
     /// By slot.
     pub bodies: Vec<Body>,
 }
 
-impl Posed {
+impl PosedBodies {
     /// The body in a slot.
     #[inline(always)]
     pub fn at(&self, slot: usize) -> Option<PosedShape<'_>> {
@@ -190,12 +190,12 @@ pub(super) struct PosedShape<'a> {
     pub rotation: Rotation,
     /// Of the vertices' origin.
     pub translation: [f64; 3],
-    /// The margin, and how far the translation may be from the exact one.
+    /// The margin, plus the error of the translation.
     pub margin: f64,
 }
 
 impl PosedShape<'_> {
-    /// How far points are from the translation, at most.
+    /// The largest distance of a point from the translation.
     fn size(&self) -> f64 {
         self.shape.reach + self.margin
     }
@@ -290,7 +290,7 @@ impl PosedShape<'_> {
         let [mut first, mut last] = [0.0, track.limit];
         let square = dot(speed, speed);
         if square > STILL {
-            // Where it is nearest to the ball's centre, off by less than the slack leaves.
+            // The point nearest to the ball's centre, with an error below the slack.
             let towards = [0, 1, 2].map(|axis| c[axis] - from[axis]);
             let nearest = (dot(towards, speed) / square).max(0.0).min(track.limit);
             let there = [0, 1, 2].map(|axis| from[axis] + nearest * speed[axis]);

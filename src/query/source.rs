@@ -1,8 +1,8 @@
-//! What an index takes of a world.
+//! The interface by which an index reads a world.
 
 use super::QueryIndex;
 #[cfg(feature = "shapes")]
-use super::shape::{Posed, QueryShape};
+use super::shape::{PosedBodies, QueryShape};
 use crate::bodies::Motion;
 use crate::boxes::BoxWorld;
 #[cfg(feature = "shapes")]
@@ -10,7 +10,7 @@ use crate::rounding::query::largest;
 #[cfg(feature = "shapes")]
 use crate::world::{Body, BodyId, World};
 
-/// A set of bodies that can be asked about: a [`World`](crate::World) or a [`BoxWorld`].
+/// A set of bodies for queries: a [`World`](crate::World) or a [`BoxWorld`].
 pub trait QuerySource: sealed::Sealed {
     #[doc(hidden)]
     fn bring(&self, index: &mut QueryIndex);
@@ -23,8 +23,8 @@ mod sealed {
     impl Sealed for crate::World {}
 }
 
-const FIXED: usize = 0;
-const MOVING: usize = 1;
+const FIXED_TREE: usize = 0;
+const MOVING_TREE: usize = 1;
 
 impl QuerySource for BoxWorld {
     fn bring(&self, index: &mut QueryIndex) {
@@ -36,8 +36,8 @@ impl QuerySource for BoxWorld {
             index.take_out_all(next..id.slot());
             next = id.slot() + 1;
             let tree = match body.motion {
-                Motion::Fixed => FIXED,
-                _ => MOVING,
+                Motion::Fixed => FIXED_TREE,
+                _ => MOVING_TREE,
             };
             let is_there = index
                 .bounds_of(id)
@@ -53,12 +53,12 @@ impl QuerySource for BoxWorld {
 #[cfg(feature = "shapes")]
 impl QuerySource for World {
     fn bring(&self, index: &mut QueryIndex) {
-        let area = Area::of(self.bodies().map(|(_, body)| body.translation));
+        let area = BodyExtent::of(self.bodies().map(|(_, body)| body.translation));
         let mut posed = match index.posed.take() {
             Some(posed) if index.origin == area.origin() => posed,
             _ => {
                 index.begin(area.origin(), None);
-                Posed::default()
+                PosedBodies::default()
             }
         };
         let renewed = renew(&mut posed.shapes, self);
@@ -76,9 +76,9 @@ impl QuerySource for World {
             if let Some(shape) = &posed.shapes[body.shape as usize] {
                 let body_there = shape.at(body.rotation, body.translation, body.margin);
                 let tree = if body.motion.is_dynamic() {
-                    MOVING
+                    MOVING_TREE
                 } else {
-                    FIXED
+                    FIXED_TREE
                 };
                 index.put(id, tree, &body_there.bounds(index.origin));
             }
@@ -88,13 +88,13 @@ impl QuerySource for World {
     }
 }
 
-/// Whether the index has a body as it is.
+/// Whether the index's copy of a body is up to date.
 #[cfg(feature = "shapes")]
 fn is_unchanged(index: &QueryIndex, id: BodyId, former: Body, body: Body) -> bool {
     former == body && index.bounds_of(id).is_some()
 }
 
-/// Makes the shapes those of a world; returns which of them have changed.
+/// Copies the shapes of a world, and returns which have changed.
 #[cfg(feature = "shapes")]
 fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
     let mut renewed = Vec::new();
@@ -117,15 +117,15 @@ fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
     renewed
 }
 
-/// Where bodies are: their middle, and half of the widest side.
+/// The extent of the bodies: its middle, and half of its widest side.
 #[cfg(feature = "shapes")]
-struct Area {
+struct BodyExtent {
     middle: [f64; 3],
     half: f64,
 }
 
 #[cfg(feature = "shapes")]
-impl Area {
+impl BodyExtent {
     fn of(places: impl Iterator<Item = [f64; 3]>) -> Self {
         let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for place in places {
@@ -148,10 +148,10 @@ impl Area {
     /// twice the width, so that it seldom changes while they move.
     fn origin(&self) -> [f64; 3] {
         /// Bodies may be so many times farther from the world's origin than they are apart.
-        const FARTHEST: f64 = 16.0;
+        const MOST_OFFSET_RATIO: f64 = 16.0;
         const MANTISSA: u64 = (1 << 52) - 1;
         let far = largest(self.middle);
-        if far <= FARTHEST * self.half {
+        if far <= MOST_OFFSET_RATIO * self.half {
             return [0.0; 3];
         }
         let step = (4.0 * self.half).max(far / f64::from(1 << 24));

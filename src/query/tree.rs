@@ -1,23 +1,23 @@
-//! A tree of boxes that is built once and then changed box by box: sixteen to a group, groups
-//! sixteen to a group above, up to one.
+//! A tree of boxes that is built once and then changed box by box: sixteen boxes form a group, and
+//! sixteen groups form a group of the level above, up to a single one.
 //!
-//! A build sorts boxes by size and along a Morton curve, so that groups are small. A box that
-//! moves changes the groups above it, in the same place; a new one is appended, one that is gone
-//! leaves its place empty. All of that makes groups wider, never wrong; [`Tree::is_worn`] says when
-//! building anew pays.
+//! A build sorts boxes by size and along a Morton curve, so that groups are small. A box that moves
+//! changes the groups above it, in the same place; a new one is appended, and a removed one leaves
+//! its place empty. All of this makes groups wider, never wrong; [`Tree::is_worn`] returns whether
+//! rebuilding pays.
 
 use crate::bodies::Aabb;
 use crate::simd::{Lanes, MAX_WIDTH};
 
 /// Boxes in a group.
-pub(super) const GROUP: usize = MAX_WIDTH;
+pub(super) const BOXES_PER_GROUP: usize = MAX_WIDTH;
 
-/// More levels than trees of 2³² boxes have.
+/// At least the number of levels of a tree of 2³² boxes.
 const MOST_LEVELS: usize = 8;
 
-/// The most groups that wait to be looked into: all but one of a group in each level, and its
+/// The most groups that are still to be searched: all but one of a group in each level, and its
 /// last.
-pub(super) const MOST_WAITING: usize = MOST_LEVELS * GROUP;
+pub(super) const MOST_WAITING: usize = MOST_LEVELS * BOXES_PER_GROUP;
 
 /// Bits of a coordinate on the Morton curve.
 const CURVE_BITS: u32 = 20;
@@ -25,26 +25,26 @@ const CURVE_BITS: u32 = 20;
 /// Boxes of one class differ in size by no more than this power of two.
 const CLASS_OCTAVES: i32 = 3;
 
-/// A tree is worn when more than one in so many boxes was appended or is gone …
+/// A tree is worn when more than one in this many boxes was appended or removed …
 const BOXES_PER_LATE: usize = 8;
-const FEW_LATE: usize = 64;
+const LEAST_LATE_LIMIT: usize = 64;
 
-/// … or when its groups are so many times as wide as when it was built.
-const WORN: f64 = 2.0;
+/// … or when its groups are this many times as wide as when it was built.
+const WORN_WIDTH_RATIO: f64 = 2.0;
 
 /// Up to sixteen boxes, as columns.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
-    pub lo: [[f32; GROUP]; 3],
-    pub hi: [[f32; GROUP]; 3],
+    pub lo: [[f32; BOXES_PER_GROUP]; 3],
+    pub hi: [[f32; BOXES_PER_GROUP]; 3],
     /// Lanes that hold a box.
     pub present: u32,
 }
 
 impl Group {
     const EMPTY: Self = Self {
-        lo: [[0.0; GROUP]; 3],
-        hi: [[0.0; GROUP]; 3],
+        lo: [[0.0; BOXES_PER_GROUP]; 3],
+        hi: [[0.0; BOXES_PER_GROUP]; 3],
         present: 0,
     };
 
@@ -75,7 +75,7 @@ impl Group {
         f64::from(u8::from(is_present)) * half_sides.iter().copied().map(f64::from).sum::<f64>()
     }
 
-    /// The box about all, if there are any.
+    /// The box around all of them, if there are any.
     pub fn bounds(&self) -> Option<Aabb> {
         self.lanes().map(|lane| self.get(lane)).reduce(|a, b| Aabb {
             min: std::array::from_fn(|axis| a.min[axis].min(b.min[axis])),
@@ -83,11 +83,11 @@ impl Group {
         })
     }
 
-    /// The lanes whose boxes meet one.
+    /// The lanes whose boxes meet `aabb`.
     #[inline(always)]
     pub fn meeting<L: Lanes>(&self, l: L, other: &Aabb) -> u32 {
         let mut apart = 0;
-        for lane in (0..GROUP).step_by(L::WIDTH) {
+        for lane in (0..BOXES_PER_GROUP).step_by(L::WIDTH) {
             let beyond = |axis: usize| {
                 l.gt(l.load(&self.lo[axis][lane..]), l.splat(other.max[axis]))
                     | l.gt(l.splat(other.min[axis]), l.load(&self.hi[axis][lane..]))
@@ -98,7 +98,7 @@ impl Group {
     }
 }
 
-/// The bits that are set.
+/// The numbers of the set bits.
 pub(super) fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let lane = bits.trailing_zeros() as usize;
@@ -114,7 +114,7 @@ pub(super) struct Tree {
     levels: Vec<Vec<Group>>,
     /// The number in each place.
     numbers: Vec<u32>,
-    /// Groups of boxes that have changed since the levels above were last right.
+    /// Groups of boxes that have changed since the levels above were last updated.
     changed: Vec<u32>,
     late: usize,
     /// The half sides of all groups of boxes when the tree was built, and now.
@@ -123,9 +123,9 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Of these boxes; they are in the places of this order from now on.
+    /// Builds a tree and puts the boxes into the order of their places.
     pub fn build(mut boxes: Vec<(u32, Aabb)>) -> Self {
-        let curve = Curve::through(boxes.iter().map(|(_, aabb)| aabb));
+        let curve = CurveOrder::through(boxes.iter().map(|(_, aabb)| aabb));
         boxes.sort_by_cached_key(|(_, aabb)| curve.place_of(aabb));
         let mut tree = Self::default();
         for (number, aabb) in &boxes {
@@ -137,7 +137,7 @@ impl Tree {
         tree
     }
 
-    /// The numbers, by place; those whose boxes are gone are among them.
+    /// The numbers by place, including those of removed boxes.
     pub fn numbers(&self) -> &[u32] {
         &self.numbers
     }
@@ -146,14 +146,14 @@ impl Tree {
     #[inline(always)]
     pub fn bounds(&self, place: u32) -> Aabb {
         let place = place as usize;
-        self.levels[0][place / GROUP].get(place % GROUP)
+        self.levels[0][place / BOXES_PER_GROUP].get(place % BOXES_PER_GROUP)
     }
 
     /// Appends a box, and returns its place.
     pub fn push(&mut self, number: u32, aabb: &Aabb) -> u32 {
         let place = self.numbers.len();
         self.numbers.push(number);
-        let (mut groups, mut level) = (place / GROUP + 1, 0);
+        let (mut groups, mut level) = (place / BOXES_PER_GROUP + 1, 0);
         loop {
             if self.levels.len() == level {
                 self.levels.push(Vec::new());
@@ -163,7 +163,7 @@ impl Tree {
             if groups == 1 && self.levels.len() == level + 1 {
                 break;
             }
-            (groups, level) = (groups.div_ceil(GROUP), level + 1);
+            (groups, level) = (groups.div_ceil(BOXES_PER_GROUP), level + 1);
         }
         self.late += 1;
         self.set(place as u32, aabb);
@@ -173,19 +173,19 @@ impl Tree {
     /// Moves the box in a place.
     pub fn set(&mut self, place: u32, aabb: &Aabb) {
         let place = place as usize;
-        self.levels[0][place / GROUP].set(place % GROUP, aabb);
-        self.changed.push((place / GROUP) as u32);
+        self.levels[0][place / BOXES_PER_GROUP].set(place % BOXES_PER_GROUP, aabb);
+        self.changed.push((place / BOXES_PER_GROUP) as u32);
     }
 
-    /// Takes the box out of a place.
+    /// Removes the box in a place.
     pub fn remove(&mut self, place: u32) {
         let place = place as usize;
-        self.levels[0][place / GROUP].present &= !(1 << (place % GROUP));
-        self.changed.push((place / GROUP) as u32);
+        self.levels[0][place / BOXES_PER_GROUP].present &= !(1 << (place % BOXES_PER_GROUP));
+        self.changed.push((place / BOXES_PER_GROUP) as u32);
         self.late += 1;
     }
 
-    /// Makes the levels above right again.
+    /// Updates the levels above.
     pub fn settle(&mut self) {
         let mut changed = std::mem::take(&mut self.changed);
         if changed.is_empty() {
@@ -199,26 +199,26 @@ impl Tree {
                     *group as usize,
                     self.levels[level][*group as usize].bounds(),
                 );
-                let above = &mut self.levels[level + 1][at / GROUP];
-                let former = above.width_of(at % GROUP);
+                let above = &mut self.levels[level + 1][at / BOXES_PER_GROUP];
+                let former = above.width_of(at % BOXES_PER_GROUP);
                 match bounds {
-                    Some(bounds) => above.set(at % GROUP, &bounds),
-                    None => above.present &= !(1 << (at % GROUP)),
+                    Some(bounds) => above.set(at % BOXES_PER_GROUP, &bounds),
+                    None => above.present &= !(1 << (at % BOXES_PER_GROUP)),
                 }
                 if level == 0 {
-                    self.width += above.width_of(at % GROUP) - former;
+                    self.width += above.width_of(at % BOXES_PER_GROUP) - former;
                 }
-                *group /= GROUP as u32;
+                *group /= BOXES_PER_GROUP as u32;
             }
         }
         changed.clear();
         self.changed = changed;
     }
 
-    /// Whether building anew pays.
+    /// Whether rebuilding pays.
     pub fn is_worn(&self) -> bool {
-        self.late > FEW_LATE + self.numbers.len() / BOXES_PER_LATE
-            || self.width > WORN * self.built_width
+        self.late > LEAST_LATE_LIMIT + self.numbers.len() / BOXES_PER_LATE
+            || self.width > WORN_WIDTH_RATIO * self.built_width
     }
 
     /// The groups of boxes; the first has places 0 to 15.
@@ -226,19 +226,19 @@ impl Tree {
         self.levels.first().map_or(&[], Vec::as_slice)
     }
 
-    /// Where a walk from the top begins, unless there are no boxes.
+    /// The top group, where a search begins, unless there are no boxes.
     pub fn top(&self) -> Option<Node> {
         let level = self.levels.len().checked_sub(1)? as u32;
         Some(Node { level, group: 0 })
     }
 
-    /// A group of some level.
+    /// A group of a level.
     #[inline(always)]
     pub fn group(&self, node: Node) -> &Group {
         &self.levels[node.level as usize][node.group as usize]
     }
 
-    /// Calls `take` with the place of each box that meets one.
+    /// Calls `take` with the place of each box that meets `aabb`.
     #[inline(always)]
     pub fn each_meeting<L: Lanes>(&self, l: L, aabb: &Aabb, mut take: impl FnMut(usize)) {
         let mut waiting = [Node::default(); MOST_WAITING];
@@ -251,8 +251,8 @@ impl Tree {
             let node = waiting[count];
             for lane in lanes_of(self.group(node).meeting(l, aabb)) {
                 match node.below(lane) {
-                    Below::Place(place) => take(place),
-                    Below::Node(node) => {
+                    LaneContent::Place(place) => take(place),
+                    LaneContent::Node(node) => {
                         waiting[count] = node;
                         count += 1;
                     }
@@ -269,19 +269,19 @@ pub(super) struct Node {
     group: u32,
 }
 
-/// What a lane of a group stands for.
-pub(super) enum Below {
+/// The object in a lane of a group.
+pub(super) enum LaneContent {
     Place(usize),
     Node(Node),
 }
 
 impl Node {
     #[inline(always)]
-    pub fn below(self, lane: usize) -> Below {
-        let at = self.group as usize * GROUP + lane;
+    pub fn below(self, lane: usize) -> LaneContent {
+        let at = self.group as usize * BOXES_PER_GROUP + lane;
         match self.level {
-            0 => Below::Place(at),
-            level => Below::Node(Self {
+            0 => LaneContent::Place(at),
+            level => LaneContent::Node(Self {
                 level: level - 1,
                 group: at as u32,
             }),
@@ -289,14 +289,14 @@ impl Node {
     }
 }
 
-/// The order in which boxes are put: those of about one size together, near each other in space.
-struct Curve {
+/// The order of boxes: those of similar size together, and near each other in space.
+struct CurveOrder {
     lowest: [f64; 3],
     per_unit: f64,
     largest: i32,
 }
 
-impl Curve {
+impl CurveOrder {
     fn through<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> Self {
         let (mut lowest, mut highest, mut largest) =
             ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], i32::MIN);
@@ -337,7 +337,7 @@ fn octave_of(aabb: &Aabb) -> i32 {
     (longest.to_bits() >> (f32::MANTISSA_DIGITS - 1)) as i32
 }
 
-/// The bits of a number, each third place.
+/// The bits of a number, moved to every third place.
 fn spread(number: u64) -> u64 {
     let mut bits = number & 0x1f_ffff;
     for (shift, mask) in [
@@ -399,8 +399,9 @@ mod tests {
         }
     }
 
+    /// A tree finds what meets whatever its size.
     #[test]
-    fn a_tree_finds_what_meets_whatever_its_size() {
+    fn tree_finds_meeting_boxes() {
         for count in [0, 1, 15, 16, 17, 256, 257, 4097] {
             let boxes = boxes(count, 5);
             let tree = Tree::build((0..).zip(boxes.iter().copied()).collect());
@@ -410,8 +411,9 @@ mod tests {
         }
     }
 
+    /// Changes are found and wear the tree.
     #[test]
-    fn changes_are_found_and_wear_the_tree() {
+    fn changes_wear_the_tree() {
         let first = boxes(300, 5);
         let mut tree = Tree::build((0..).zip(first.iter().copied()).collect());
         let mut place = vec![0; 300];
@@ -456,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_that_have_spread_wear_the_tree() {
+    fn spreading_wears_the_tree() {
         let near = boxes(256, 5);
         let mut tree = Tree::build((0..).zip(near.iter().copied()).collect());
         for (at, number) in tree.numbers().to_vec().into_iter().enumerate() {
@@ -480,7 +482,7 @@ mod tests {
         );
     }
 
-    /// Small boxes and one that is far larger are in groups of their own.
+    /// Small boxes and a far larger one are in separate groups.
     #[test]
     fn sizes_are_apart() {
         let small = |i: u32| Aabb::new([i as f32; 3], [i as f32 + 0.5; 3]);

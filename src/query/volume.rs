@@ -1,4 +1,4 @@
-//! What is asked: volumes and lines, and whether they are within the contract.
+//! The volumes and lines of queries, and their checks.
 
 use thiserror::Error;
 
@@ -10,25 +10,24 @@ use crate::rounding::{LIMIT, exp2, query::largest};
 /// The least size of a ray's direction.
 const LEAST_DIRECTION: f64 = exp2(-60);
 
-/// A volume in the world frame, of which the bodies that may touch it are asked. Coordinates and
-/// sizes are finite and at most 2⁶⁰.
+/// The volume of a query, in the world frame. Coordinates and sizes are finite and at most 2⁶⁰.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QueryVolume<'a> {
     /// A box on the world's axes, between two corners.
     Box {
         /// The lower ends.
         min: [f64; 3],
-        /// The upper ends, none below the lower one.
+        /// The upper ends, each at least the lower one.
         max: [f64; 3],
     },
-    /// A ball; of radius 0, a point.
+    /// A ball, or a point if the radius is 0.
     Ball {
         /// Its centre.
         centre: [f64; 3],
         /// Its radius, 0 or more.
         radius: f64,
     },
-    /// A shape at a pose, grown by a margin: what is tested is its ball and its or-DOP.
+    /// A shape at a pose, grown by a margin. Its ball and its or-DOP are tested.
     Shape {
         /// The shape.
         shape: &'a QueryShape,
@@ -36,7 +35,7 @@ pub enum QueryVolume<'a> {
         rotation: [f32; 4],
         /// Translation of its origin.
         translation: [f64; 3],
-        /// A length of 0 or more.
+        /// The margin, a length of 0 or more.
         margin: f32,
     },
 }
@@ -63,20 +62,20 @@ pub enum Line {
     Ray {
         /// The point of s = 0.
         origin: [f64; 3],
-        /// What s counts in. The largest coordinate is 2⁻⁶⁰ to 2⁶⁰ in size.
+        /// The unit of s. The largest coordinate is 2⁻⁶⁰ to 2⁶⁰ in size.
         direction: [f64; 3],
     },
 }
 
-/// A query that is refused; nothing has been answered.
+/// The error of a query outside of the contract. No query was answered.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("query {query}: {quantity} {value}")]
 pub struct QueryError {
-    /// Its number among those that were asked together.
+    /// The query's number in its batch, from 0.
     pub query: usize,
-    /// The quantity at fault.
+    /// The invalid quantity.
     pub quantity: &'static str,
-    /// Its impossible value.
+    /// Its value.
     pub value: String,
     hint: &'static str,
 }
@@ -91,10 +90,10 @@ impl QueryError {
 
 const VECTOR_HELP: &str = "coordinates are finite and at most 2^60 in size";
 
-/// Refuses a query unless all is well.
-struct Check(usize);
+/// Checks a query and reports the first problem.
+struct QueryCheck(usize);
 
-impl Check {
+impl QueryCheck {
     fn that(
         &self,
         is_sound: bool,
@@ -132,7 +131,7 @@ impl Check {
 
 impl QueryVolume<'_> {
     pub(super) fn check(&self, query: usize) -> Result<(), QueryError> {
-        let check = Check(query);
+        let check = QueryCheck(query);
         match *self {
             Self::Box { min, max } => {
                 check.vector("min", min)?;
@@ -167,7 +166,7 @@ impl QueryVolume<'_> {
 
 impl Line {
     pub(super) fn check(&self, query: usize) -> Result<(), QueryError> {
-        let check = Check(query);
+        let check = QueryCheck(query);
         match *self {
             Self::Segment { from, to } => {
                 check.vector("from", from)?;
@@ -183,7 +182,7 @@ impl Line {
         }
     }
 
-    /// Where it begins, what s counts in, and the largest s.
+    /// Its start, the unit of s, and the largest s.
     pub(super) fn track(&self) -> Track {
         match *self {
             Self::Segment { from, to } => Track {

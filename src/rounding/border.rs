@@ -1,13 +1,13 @@
-//! Borders between domains: how far from its ball's centre a body can matter, and which bodies a
-//! domain must know of.
+//! Borders between domains: within which distance of its ball's centre a body can be in a pair, and
+//! of which bodies a domain needs copies.
 //!
-//! Many ranks share a world. Each owns the bodies whose ball's f32 centre lies in its cell, a box,
-//! and a pair is reported by the owner of the body with the smaller [`reach`], of two equal ones by
-//! that of the lower number. So the owner of i must know each j with w_j ≥ w_i that may be reported
+//! Many ranks share a world. Each owns the bodies whose ball's f32 centre is in its cell, a box. A
+//! pair is reported by the owner of the body with the smaller [`reach`], or with the lower number
+//! if both are equal. Therefore the owner of i needs every j with w_j ≥ w_i that may be reported
 //! with i. Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j (below), and c_i lies in the cell, so j is no
-//! farther from it than w_i + w_j ≤ w_j + min(w_j, W), W the largest reach of a body that the
-//! cell's rank owns: what [`may_meet`] asks. A giant among small bodies goes to every cell that it
-//! reaches, and nothing comes to it.
+//! farther from it than w_i + w_j ≤ w_j + min(w_j, W), where W is the largest reach of a body that
+//! the cell's rank owns: the condition of [`may_meet`]. A giant among small bodies is sent to every
+//! cell that it reaches, and no body is sent to it.
 //!
 //! Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j: for balls and for oriented volumes, which are binned by
 //! balls of their own, w is [`widen`]'s radius, and `finder.g` proves |Δ| ≤ (R_i + R_j)(1 + 4u) for
@@ -28,13 +28,12 @@ pub const BOX_FLOOR: f64 = exp2(-110);
 /// skin.
 pub const DRIFT_FACTOR: f64 = 1.0 - exp2(-20);
 
-/// How far from its centre a ball of inflated radius R can matter: w.
+/// w: the distance from its centre within which a ball of inflated radius R can be in a pair.
 pub const fn reach(inflated: f32) -> f32 {
     widen(inflated)
 }
 
-/// The same where the body is tested by a world-aligned box around vertices no farther than ρ from
-/// its origin, at t.
+/// w for a body at t that is tested by a world-aligned box around vertices within ρ of its origin.
 pub fn reach_of_box(inflated: f32, t: [f32; 3], reach_of_shape: f32) -> f32 {
     let size =
         t.iter().fold(0.0, |m: f64, x| m.max(f64::from(x.abs()))) + f64::from(reach_of_shape);
@@ -53,7 +52,7 @@ pub fn may_meet(distance: f64, reach: f32, widest: f32, skin: f32) -> bool {
 /// than the skin.
 pub fn stays(now: ([f32; 3], f32), then: ([f32; 3], f32), skin: f32) -> bool {
     let further = |now: f32, then: f32| f64::from(now) - f64::from(then);
-    // NaN is no growth of 0, and stays nowhere.
+    // A NaN is not a growth of 0, and never stays.
     let grown = if now.1 <= then.1 {
         0.0
     } else {
@@ -73,8 +72,9 @@ mod tests {
     use super::*;
     use crate::rounding::sphere::inflate_radius;
 
+    /// Touching balls may meet across a border and balls apart may not.
     #[test]
-    fn touching_balls_may_meet_across_a_border_and_balls_apart_may_not() {
+    fn touching_balls_meet_across_borders() {
         for radius in [0.0, exp2(-80) as f32, 0.3, 1.0, 1.0e9] {
             let w = reach(inflate_radius(radius));
             let touching = 2.0 * f64::from(radius);
@@ -85,8 +85,9 @@ mod tests {
         }
     }
 
+    /// A giant goes to the small and not they to it.
     #[test]
-    fn a_giant_goes_to_the_small_and_not_they_to_it() {
+    fn giants_go_to_small_bodies() {
         let (giant, small) = (reach(100.0), reach(1.0));
         assert!(may_meet(100.5, giant, small, 0.0) && !may_meet(101.5, giant, small, 0.0));
         assert!(may_meet(1.5, small, giant, 0.0) && !may_meet(2.5, small, giant, 0.0));
@@ -96,8 +97,9 @@ mod tests {
         );
     }
 
+    /// Drift is any coordinate's and growth.
     #[test]
-    fn drift_is_any_coordinate_s_and_growth() {
+    fn drift_includes_growth() {
         let then = ([1.0, 2.0, 3.0], 1.0);
         assert!(stays(then, then, 0.0), "who doesn't move needs no skin");
         assert!(stays(([1.2, 1.8, 3.2], 1.0), then, 0.25));
@@ -112,8 +114,9 @@ mod tests {
         assert!(!stays(([1.0e9, 2.0, 3.0], 1.0), then, 0.25));
     }
 
+    /// A box reaches by its error and no farther.
     #[test]
-    fn a_box_reaches_by_its_error_and_no_farther() {
+    fn box_reach_includes_its_error() {
         for (inflated, farthest, shape) in [(2.5_f32, 3.0e6_f32, 7.0e5_f32), (2.5e-6, 3.0, 0.75)] {
             let t = [0.25, -farthest, 1.5];
             let size = f64::from(farthest) + f64::from(shape);
@@ -126,8 +129,9 @@ mod tests {
         }
     }
 
+    /// A skin is its share and no more.
     #[test]
-    fn a_skin_is_its_share_and_no_more() {
+    fn skin_is_its_share() {
         for (reach, share) in [(8.0, 0.25), (0.3, 0.7), (7.0e5, 0.125)] {
             let (skin, exact) = (f64::from(skin(reach, share)), f64::from(reach) * share);
             assert!(exact * (1.0 - exp2(-21)) < skin && skin <= exact, "{skin}");
@@ -135,8 +139,9 @@ mod tests {
         assert_eq!(skin(8.0, 0.0), 0.0);
     }
 
+    /// A box reaches farther where its ends are rounded farther.
     #[test]
-    fn a_box_reaches_farther_where_its_ends_are_rounded_farther() {
+    fn box_reach_grows_with_rounding() {
         let near = reach_of_box(1.0, [0.0; 3], 1.0);
         let far = reach_of_box(1.0, [0.0, -4.0e6, 0.0], 1.0);
         assert!(reach(1.0) < near && near < 1.00001);
@@ -146,8 +151,9 @@ mod tests {
         );
     }
 
+    /// What is just within reach may meet.
     #[test]
-    fn what_is_just_within_reach_may_meet() {
+    fn bodies_just_within_reach_meet() {
         // 2 + min(2, 1) + 2·½.
         assert!(may_meet(4.0, 2.0, 1.0, 0.5) && !may_meet(4.0_f64.next_up(), 2.0, 1.0, 0.5));
     }

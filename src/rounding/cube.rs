@@ -1,35 +1,35 @@
-//! Cubes about boxes and within them: what a pair finder takes in place of a box, and what spares a
-//! look at the box itself.
+//! Cubes around and inside boxes: a pair finder uses them instead of the boxes, and they decide
+//! most pairs without the boxes' ends.
 //!
 //! A box has the centre c, the half side H of the cube about c that contains it, and the half side
-//! h of the one about c that it contains. With δ no less than any H − h, and the Chebyshev distance
-//! d of two centres: d > H₁ + H₂ is apart, and d ≤ H₁ + H₂ − 2δ ≤ h₁ + h₂ meets. What lies between
-//! is decided by the boxes' ends, which needs no arithmetic.
+//! h of the one about c that it contains. Let δ be at least every H − h, and d the Chebyshev
+//! distance of two centres. If d > H₁ + H₂, the boxes are apart; if d ≤ H₁ + H₂ − 2δ ≤ h₁ + h₂,
+//! they meet. Otherwise their ends decide, which needs no arithmetic.
 //!
-//! All of it is an eighth in size, an exact factor, so that no difference or sum of ends overflows.
-//! Each outcome is at most five roundings from what it stands for, each of 2⁻²⁴ of H₁ + H₂, and of
-//! 2⁻¹²⁶ where results underflow, with denormals or without; the factors leave 2⁻²⁰ for them, the
-//! floor 10⁻³⁰. The differences are taken after the factors, so that nothing that cancels makes the
-//! roundings a larger share.
+//! All numbers are scaled by an eighth, an exact factor, so that no difference or sum of ends
+//! overflows. Each result has at most five roundings, each of 2⁻²⁴ of H₁ + H₂, and of 2⁻¹²⁶ where
+//! results underflow, with or without denormals. The factors leave 2⁻²⁰ for them, and the floor
+//! 10⁻³⁰. Differences are computed after the factors, so that cancellation does not increase the
+//! relative error.
 
 use crate::simd::Lanes;
 
-/// What a cube is wider than its box.
+/// The factor by which a cube is wider than its box.
 pub const WIDER: f32 = 1.0 + 1.0 / (1 << 20) as f32;
 
-/// What surely meets is nearer than inner cubes that touch.
+/// The factor by which boxes must be nearer than touching inner cubes, to meet for certain.
 pub const NARROWER: f32 = 1.0 - 1.0 / (1 << 20) as f32;
 
-/// The same for boxes without an extent.
+/// What is added to cubes for boxes without an extent.
 pub const FLOOR: f32 = 1e-30;
 
-/// Boxes are so many times as large as the cubes that stand for them.
+/// The factor by which boxes are larger than the scaled cubes.
 pub const SCALE: f32 = 8.0;
 
-/// So much of each end makes the centre.
+/// The weight of each end in the scaled centre.
 const SIXTEENTH: f32 = 0.5 / SCALE;
 
-/// What stands for boxes, one a lane.
+/// The cubes of boxes, one box per lane.
 #[derive(Clone, Copy)]
 pub struct Cube<L: Lanes> {
     /// The cube about it: centre and half side H.
@@ -181,7 +181,7 @@ mod tests {
         /// The nearest ends that an f32 can tell apart, and those that touch: inner cubes thin
         /// next to the outer ones.
         #[test]
-        fn thin_boxes_side_by_side_are_told_apart(
+        fn thin_neighbouring_boxes_are_apart(
             thin in -30_i32..2, offset in -8.0_f32..8.0, steps in -3_i32..4, axis in 0_usize..3,
         ) {
             let width = 2.0_f32.powi(thin);
@@ -246,7 +246,7 @@ mod tests {
 
     /// What is too wide loses nothing, and has the boxes themselves looked at for no reason.
     #[test]
-    fn cubes_are_no_wider_than_their_boxes_and_know_as_much_as_they_can() {
+    fn cubes_are_as_tight_as_possible() {
         let within = |found: f32, exact: f64| {
             let found = f64::from(found);
             assert!(
@@ -263,8 +263,9 @@ mod tests {
         within(less_than_sure(0.0), 2e-30_f32.into());
     }
 
+    /// A box without an extent has a cube with one.
     #[test]
-    fn a_box_without_an_extent_has_a_cube_with_one() {
+    fn empty_box_has_a_cube() {
         let about = About(&[[1.0; 2], [-8.0; 2], [40.0; 2]]);
         let found = dispatch(Tier::SCALAR, about);
         assert_eq!(found, ([0.125, -1.0, 5.0, FLOOR], FLOOR, true));

@@ -4,8 +4,8 @@
 //! its exact value by a known multiple of the unit roundoff u = 2⁻²⁴. Each volume is inflated
 //! *once*, when it is built or updated, by more than that, and the tests then compare without any
 //! margin: `cull ⇔ d² > s·s` and `cull ⇔ τ > h_A + h_B` never separate two bodies that meet in
-//! exact real arithmetic. A margin in the volume costs nothing in the pair loop, and one written
-//! bound a volume can be proved; an epsilon in each comparison can't.
+//! exact real arithmetic. A margin in the volume costs nothing in the pair loop, and one bound per
+//! volume can be proved; an epsilon in each comparison can't.
 //!
 //! Model of a machine operation, of which every bound here is a consequence: the result is x(1+ε)+φ
 //! with |ε| ≤ u and
@@ -48,7 +48,8 @@ pub const FINDER_FACTOR: f64 = 1.0 + exp2(-20);
 /// 2⁻⁷⁸: the same where squares underflow, R being 2⁻⁷⁰ at least. Proof: `finder.g`.
 pub const FINDER_FLOOR: f64 = exp2(-78);
 
-/// The smallest f32 that surely exceeds the exact value behind `x`, the outcome of f64 arithmetic.
+/// The smallest f32 that certainly exceeds the exact value that `x`, a result of f64 arithmetic,
+/// approximates.
 ///
 /// Always one step above the nearest f32, exact or not: the f64 operation may itself have rounded
 /// down. The step is at least 2⁻²⁵|x| and at least 2⁻¹⁵⁰, so it also covers an f64 error of up to
@@ -57,7 +58,7 @@ pub const fn up(x: f64) -> f32 {
     (x as f32).next_up()
 }
 
-/// The mirror of [`up`]: an f32 surely below the exact value behind `x`.
+/// The mirror of [`up`]: an f32 certainly below the exact value that `x` approximates.
 pub const fn down(x: f64) -> f32 {
     (x as f32).next_down()
 }
@@ -101,8 +102,9 @@ mod tests {
         assert!(up(f64::NAN).is_nan() && down(f64::NAN).is_nan());
     }
 
+    /// Contract limit leaves room for every square.
     #[test]
-    fn contract_limit_leaves_room_for_every_square() {
+    fn squares_at_the_limit_are_finite() {
         // d² of centres at opposite corners, and (R + R)² of the largest radii after every
         // inflation.
         let (d, s) = (
@@ -112,8 +114,9 @@ mod tests {
         assert!((3.0 * d * d).is_finite() && (s * s).is_finite());
     }
 
+    /// Widening exceeds the factor and moves zero.
     #[test]
-    fn widening_exceeds_the_factor_and_moves_zero() {
+    fn widening_exceeds_its_factor() {
         assert!(widen(0.0) > 0.0);
         assert!(f64::from(widen(1.0)) >= FINDER_FACTOR);
         assert!(

@@ -1,11 +1,11 @@
-//! The f64 pose: x ↦ R(q)x + t with R(q) the rotation matrix of q over |q|² (design: exact poses
-//! are rational maps).
+//! The f64 pose: x ↦ R(q)x + t with R(q) the rotation matrix of q over |q|² (poses are rational
+//! maps).
 //!
 //! Products of two f32 are exact in f64, so the numerator of an entry rounds thrice at most, |q|²
 //! thrice, its reciprocal and their product once each: |δr_ij| ≤ (2 + 6|r_ij|)·2⁻⁵³, and
 //! 24·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. One division serves all nine entries:
-//! eighteen of them were a third of an or-DOP's update. f64 here costs one matrix a body and frame;
-//! in f32 the same bound would be larger than all margins together.
+//! eighteen of them were a third of an or-DOP's update. f64 here costs one matrix per body and
+//! frame; in f32 the same bound would be larger than all margins together.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -30,7 +30,7 @@ pub const REFIT_MARGIN: f64 = exp2(-46);
 /// 2⁻¹²⁰: covers subnormal vertices and translations that are read as zero.
 pub const REFIT_FLOOR: f64 = exp2(-120);
 
-/// What the formulas of a pose compute with: an f64, or several at once.
+/// The numbers in the formulas of a pose: an f64, or several at once.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -163,16 +163,18 @@ pub fn refit(lo: f64, hi: f64, reach: f32, t: [f32; 3]) -> (f32, f32) {
 mod tests {
     use super::*;
 
+    /// Any norm and sign of a quaternion is the same rotation.
     #[test]
-    fn any_norm_and_sign_of_a_quaternion_is_the_same_rotation() {
+    fn quaternion_norm_and_sign_are_free() {
         let q = [0.5, -0.25, 0.125, 1.0];
         for scale in [-1.0, 2.0f32.powi(60), -(2.0f32.powi(-100))] {
             assert_eq!(rotation(q.map(|x| x * scale)), rotation(q));
         }
     }
 
+    /// A quarter turn about z takes x to y.
     #[test]
-    fn a_quarter_turn_about_z_takes_x_to_y() {
+    fn quarter_turn_takes_x_to_y() {
         let turn = rotation([0.0, 0.0, 1.0, 1.0]);
         assert_eq!(
             transform(&turn, [1.0, 2.0, 3.0], [10.0, 0.0, 0.0]),
@@ -185,8 +187,9 @@ mod tests {
         );
     }
 
+    /// A refitted extent grows with the distance from the origin.
     #[test]
-    fn a_refitted_extent_grows_with_the_distance_from_the_origin() {
+    fn refit_margin_grows_with_distance() {
         let width = |t: f32| {
             let (lo, hi) = refit(-1.0, 1.0, 1.0, [0.0, t, 0.0]);
             f64::from(hi) - f64::from(lo)
@@ -196,8 +199,9 @@ mod tests {
         assert!(width(-(2.0f32.powi(60))) > 2.0 * exp2(60) * REFIT_MARGIN);
     }
 
+    /// An extent of nothing at the origin grows by the floor.
     #[test]
-    fn an_extent_of_nothing_at_the_origin_grows_by_the_floor() {
+    fn empty_extent_grows_by_floor() {
         let (lo, hi) = refit(0.0, 0.0, 0.0, [0.0; 3]);
         assert!(f64::from(lo) <= -REFIT_FLOOR && REFIT_FLOOR <= f64::from(hi));
     }

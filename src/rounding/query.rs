@@ -1,12 +1,12 @@
-//! Queries: volumes and lines against bodies, in f64, rounded so that no body is lost that has a
-//! point in common with them in exact arithmetic.
+//! Queries: tests of volumes and lines against bodies, in f64, rounded so that every body is found
+//! that shares a point with them in exact arithmetic.
 //!
-//! A query has f64 coordinates in the world frame. Against a box the comparisons round nothing but
-//! a difference, a square or a quotient, each of which is widened by more than its rounding
-//! ([`crossing`], [`is_beyond`]). Against a posed body everything is brought into the body's own
-//! frame ([`into_body`]), where its slabs are exact f32, and each slab is moved out by the
-//! [`slack`] of the sizes involved. Theorem Q of `paper/proofs/LEMMAS.md` counts the errors in
-//! units of 2⁻⁵³ of these sizes; the slack is 256 of them, of which 228 are needed.
+//! A query has f64 coordinates in the world frame. Against a box only a difference, a square and a
+//! quotient are rounded, and each is widened by more than its rounding error ([`crossing`],
+//! [`is_beyond`]). Against a posed body everything is transformed into the body's frame
+//! ([`into_body`]), where its slabs are exact f32, and each slab is moved out by the [`slack`] of
+//! the sizes involved. Theorem Q of `paper/proofs/LEMMAS.md` counts the errors in units of 2⁻⁵³ of
+//! these sizes; the slack is 256 of them, of which 228 are needed.
 
 use super::exp2;
 use super::pose::Rotation;
@@ -15,33 +15,33 @@ use super::pose::Rotation;
 /// `query_point.g`.
 pub const BODY_ERROR: f64 = exp2(-48);
 
-/// 2⁻⁴⁵ = 256·2⁻⁵³: by how much a slab is moved out for what rounding takes, as a multiple of the
-/// distance of the query and the sizes of both, per length of the slab's normal.
+/// 2⁻⁴⁵ = 256·2⁻⁵³: by how much a slab is moved out to compensate for rounding, as a multiple of
+/// the distance of the query plus the sizes of both, per length of the slab's normal.
 pub const QUERY_ERROR: f64 = exp2(-45);
 
-/// 2⁻¹⁰⁰⁰: the same where products underflow.
+/// 2⁻¹⁰⁰⁰: the same for products that underflow.
 pub const QUERY_FLOOR: f64 = exp2(-1000);
 
-/// 2⁻⁵⁰ = 8·2⁻⁵³: by how much parameters and squares are widened; a parameter is the outcome of
-/// five roundings, a sum of three squares of six. Proof: `query_line.g`.
+/// 2⁻⁵⁰ = 8·2⁻⁵³: by how much parameters and squares are widened; a parameter has five roundings, a
+/// sum of three squares has six. Proof: `query_line.g`.
 pub const WIDENING: f64 = exp2(-50);
 
-/// 2⁻⁸⁰⁰: a line that is slower than this along an axis stands still there.
+/// 2⁻⁸⁰⁰: a line that is slower than this along an axis doesn't move along it.
 pub const STILL: f64 = exp2(-800);
 
-/// 2⁻⁶⁰⁰: more than such a line moves while it is among bodies. Their coordinates are below 2¹²⁹,
-/// and a ray is no slower than 2⁻⁶⁰ along some axis.
+/// 2⁻⁶⁰⁰: more than such a line moves along that axis near any body. Their coordinates are below
+/// 2¹²⁹, and a ray is no slower than 2⁻⁶⁰ along some axis.
 pub const STILL_FLOOR: f64 = exp2(-600);
 
-/// By how much slabs are moved out for sizes that sum to `size`, per length of their normals.
+/// The distance by which slabs are moved out if sizes sum to `size`, per length of their normals.
 #[inline(always)]
 #[must_use]
 pub const fn slack(size: f64) -> f64 {
     size * QUERY_ERROR + QUERY_FLOOR
 }
 
-/// Rᵀ(p − t): a point of the world frame seen from a body. Also returns |p − t|∞, of which
-/// [`BODY_ERROR`] is the error of a coordinate.
+/// Rᵀ(p − t): a point of the world frame in a body's frame. Also returns |p − t|∞; the error of a
+/// coordinate is [`BODY_ERROR`] times that.
 #[inline(always)]
 #[must_use]
 pub fn into_body(r: &Rotation, p: [f64; 3], t: [f64; 3]) -> ([f64; 3], f64) {
@@ -60,24 +60,24 @@ pub fn turn_back(r: &Rotation, [x, y, z]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The largest coordinate in size.
+/// The largest absolute value of the coordinates.
 #[inline(always)]
 #[must_use]
 pub fn largest(v: [f64; 3]) -> f64 {
     v.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
-/// How a line moves along one direction: at + s·speed.
+/// The motion of a line along one direction: at + s·speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {
-    /// Where it is at s = 0.
+    /// The position at s = 0.
     pub at: f64,
-    /// One over its speed, or 0 if it stands [`STILL`].
+    /// One over its speed, or 0 if it is slower than [`STILL`].
     pub inverse: f64,
 }
 
 impl Course {
-    /// Of a line with this speed.
+    /// The motion of a line with this speed.
     #[inline(always)]
     #[must_use]
     pub fn new(at: f64, speed: f64) -> Self {
@@ -90,8 +90,8 @@ impl Course {
     }
 }
 
-/// The parameters s, from the first to the last, for which a line is between two ends: no exact one
-/// is left out. Empty, with the first above the last, if there are none.
+/// The parameters s, from the first to the last, for which a line is between two ends, including
+/// all exact ones. If there are none, the first is above the last.
 #[inline(always)]
 #[must_use]
 pub fn crossing(course: Course, [lo, hi]: [f64; 2]) -> [f64; 2] {
@@ -105,21 +105,21 @@ pub fn crossing(course: Course, [lo, hi]: [f64; 2]) -> [f64; 2] {
     [earlier((near - at) * inverse), later((far - at) * inverse)]
 }
 
-/// A parameter that is surely no later.
+/// A parameter that is certainly not later than the exact one.
 #[inline(always)]
 #[must_use]
 pub fn earlier(s: f64) -> f64 {
     s - (s.abs() * WIDENING + QUERY_FLOOR)
 }
 
-/// A parameter that is surely no earlier.
+/// A parameter that is certainly not earlier than the exact one.
 #[inline(always)]
 #[must_use]
 pub fn later(s: f64) -> f64 {
     s + (s.abs() * WIDENING + QUERY_FLOOR)
 }
 
-/// Whether a point is farther than `radius` from a box: surely, if it says so.
+/// Whether a point is farther than `radius` from a box. True only if it is certain.
 #[inline(always)]
 #[must_use]
 pub fn is_beyond(p: [f64; 3], radius: f64, lo: [f64; 3], hi: [f64; 3]) -> bool {
@@ -138,9 +138,10 @@ mod tests {
     use super::*;
     use crate::rounding::pose::rotation;
 
-    /// Beyond by so little that f64 can't show it is not beyond; a little more is.
+    /// A point beyond by less than f64 can show is not reported as beyond; one a little farther
+    /// away is.
     #[test]
-    fn a_point_at_the_radius_is_not_beyond() {
+    fn point_at_radius_is_inside() {
         let (lo, hi) = ([0.0; 3], [1.0; 3]);
         // (2, 3, 6) has the length 7.
         assert!(!is_beyond([3.0, 4.0, 7.0], 7.0, lo, hi));
@@ -151,8 +152,9 @@ mod tests {
         assert!(is_beyond([1.0, 1.0, 1.0f64.next_up()], 0.0, lo, hi));
     }
 
+    /// A still line is where it is.
     #[test]
-    fn a_still_line_is_where_it_is() {
+    fn still_line_has_no_crossing_time() {
         let ends = [0.0, 2.0];
         for speed in [0.0, -0.0, exp2(-801), -exp2(-1014)] {
             let is_in = |at: f64| {
@@ -164,8 +166,9 @@ mod tests {
         }
     }
 
+    /// A line crosses at its ends and a little beyond.
     #[test]
-    fn a_line_crosses_at_its_ends_and_a_little_beyond() {
+    fn crossing_contains_exact_one() {
         for (speed, wanted) in [(0.1, [10.0, 30.0]), (-0.1, [-30.0, -10.0])] {
             let [first, last] = crossing(Course::new(-1.0, speed), [0.0, 2.0]);
             assert!(first < wanted[0] && first > wanted[0] - 1e-13, "{first}");

@@ -1,4 +1,4 @@
-//! Skins: how far a ball may drift before a list of neighbours must be made anew.
+//! Skins: how far a ball may drift before a list of neighbours must be built again.
 //!
 //! A list holds the pairs that come within reach while each ball's drift, the distance that its
 //! centre has moved plus what its radius has grown since, is at most its budget B. The drift is
@@ -145,8 +145,9 @@ mod tests {
         std::iter::repeat_with(move || (random.next_u64() >> 11) as f64 * exp2(-53))
     }
 
+    /// Radii grow by the skin and what rounding needs.
     #[test]
-    fn radii_grow_by_the_skin_and_what_rounding_needs() {
+    fn radii_grow_by_skin_and_rounding() {
         let shares = [0.0, 0.0625, 0.25, 0.375].map(|share| (Skin::share(share), share, 0.0));
         let lengths = [1e-9, 0.5, 40.0].map(|length| (Skin::length(length), 0.0, length));
         for (skin, share, length) in shares.into_iter().chain(lengths) {
@@ -203,8 +204,9 @@ mod tests {
         }
     }
 
+    /// A drift of the skin is too long and one unit less is not.
     #[test]
-    fn a_drift_of_the_skin_is_too_long_and_one_unit_less_is_not() {
+    fn skin_drift_limit_is_exact() {
         let then = [3.0, -2.0, 5.0, 1.0];
         for tier in Tier::available() {
             for skin in [Skin::share(0.25), Skin::length(0.25)] {
@@ -219,8 +221,9 @@ mod tests {
         }
     }
 
+    /// Tiny balls have a skin that underflow cannot take.
     #[test]
-    fn tiny_balls_have_a_skin_that_underflow_cannot_take() {
+    fn tiny_balls_keep_a_skin() {
         let then = [0.0, 0.0, 0.0, exp2(-70) as f32];
         for tier in Tier::available() {
             for skin in [Skin::share(0.25), Skin::length(0.0), Skin::length(f32::NAN)] {

@@ -56,8 +56,9 @@ pub fn inflate_slab(
 mod tests {
     use super::*;
 
+    /// Both ends gain the margin about the centre.
     #[test]
-    fn both_ends_gain_the_margin_about_the_centre() {
+    fn both_slab_ends_gain_margin() {
         let (direction, scale, centre, reach) = ([0.5, 0.5, 0.0], 0.5, [0.25, -0.5, 3.0], 4.0);
         let (lo, hi) = inflate_slab(-1.0, 2.0, direction, scale, centre, reach);
         // d·c = −⅛, so the exact ends are (−1 + ⅛)/½ and (2 + ⅛)/½; ‖d‖/scale = √2.
@@ -71,16 +72,18 @@ mod tests {
         }
     }
 
+    /// A slab that misses its centre is widened to it.
     #[test]
-    fn a_slab_that_misses_its_centre_is_widened_to_it() {
+    fn slab_is_widened_to_its_centre() {
         let (lo, hi) = inflate_slab(1.0, 2.0, [1.0, 0.0, 0.0], 1.0, [3.0, 0.0, 0.0], 2.0);
         assert!(lo < -2.0 && hi > 0.0);
         let (lo, hi) = inflate_slab(1.0, 2.0, [1.0, 0.0, 0.0], 1.0, [0.0; 3], 2.0);
         assert!(lo < 0.0 && hi > 2.0);
     }
 
+    /// A point at the origin keeps the floor.
     #[test]
-    fn a_point_at_the_origin_keeps_the_floor() {
+    fn point_slab_keeps_the_floor() {
         let (lo, hi) = inflate_slab(0.0, 0.0, [1.0, 0.0, 0.0], 1.0, [0.0; 3], 0.0);
         assert!(f64::from(hi) > SLAB_FLOOR && lo == -hi);
     }

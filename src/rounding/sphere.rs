@@ -68,22 +68,25 @@ pub fn apart<L: Lanes>(l: L, [dx, dy, dz]: [L::F; 3], s: L::F) -> L::M {
 mod tests {
     use super::*;
 
+    /// Inflation is eight u and the floor.
     #[test]
-    fn inflation_is_eight_u_and_the_floor() {
+    fn inflation_is_factor_plus_floor() {
         assert_eq!(inflate_radius(0.0), RADIUS_FLOOR);
         assert_eq!(inflate_radius(1.0), 1.0 + 4.0 * f32::EPSILON);
         assert!(inflate_radius(f32::NAN).is_nan());
     }
 
+    /// A ball at the body origin moves as a copy.
     #[test]
-    fn a_ball_at_the_body_origin_moves_as_a_copy() {
+    fn centred_ball_copies_translation() {
         let turn = crate::rounding::pose::rotation([0.3, -0.2, 0.9, 0.1]);
         let t = [1.0e-40, -7.25, 3.0e17];
         assert_eq!(world_ball(&turn, t, [0.0, -0.0, 0.0], 1.5), (t, 1.5));
     }
 
+    /// A ball off the origin includes the rounding of its centre.
     #[test]
-    fn a_ball_beside_the_origin_takes_up_the_rounding_of_its_centre() {
+    fn eccentric_ball_covers_centre_rounding() {
         let turn = crate::rounding::pose::rotation([0.0, 0.0, 0.0, 1.0]);
         let (centre, radius) = world_ball(&turn, [16_777_216.0, 0.0, 0.0], [0.75, 0.0, 0.0], 1.0);
         // 2²⁴ + ¾ rounds to 2²⁴: the ball must reach ¾ farther to stay around the exact one.
@@ -91,8 +94,9 @@ mod tests {
         assert!((1.75..1.751).contains(&radius), "{radius}");
     }
 
+    /// A ball stays around a translation that is read as zero.
     #[test]
-    fn a_ball_stays_around_a_translation_that_is_read_as_zero() {
+    fn ball_covers_flushed_translation() {
         let turn = crate::rounding::pose::rotation([0.0, 0.0, 0.0, 1.0]);
         let subnormal = f32::from_bits(0x007f_ffff);
         let (_, radius) = world_ball(&turn, [subnormal; 3], [1e-45, 0.0, 0.0], 0.0);
@@ -102,8 +106,9 @@ mod tests {
         );
     }
 
+    /// A far small ball includes the f64 rounding of its centre.
     #[test]
-    fn a_far_small_ball_takes_up_what_f64_loses_of_its_centre() {
+    fn far_ball_covers_f64_rounding() {
         let turn = crate::rounding::pose::rotation([0.0, 0.0, 0.0, 1.0]);
         let far = exp2(30) as f32;
         let (centre, radius) = world_ball(&turn, [far, 0.0, 0.0], [0.0, 1.0, 0.0], 0.0);

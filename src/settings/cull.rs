@@ -1,5 +1,5 @@
-//! How a scene is culled: the `[cull]` table, whose keys are also the flags of the command line
-//! (design, section 2).
+//! Settings of a culler: strategy, finder, tests and budget. Scene files have them as the table
+//! `[cull]`, and the command line has them as flags, with the same names.
 
 use thiserror::Error;
 
@@ -20,9 +20,10 @@ choices! {
         SDopSequential = "s-dop-sequential",
         /// Spheres, the potentially colliding set listed, then the or-DOPs of the list.
         SDopBatch = "s-dop-batch",
-        /// As sequential where a body is of interest; elsewhere the spheres decide.
+        /// As sequential for pairs with a body of interest; for other pairs the spheres decide.
         SDopObjectOfInterest = "s-dop-object-of-interest",
-        /// Spheres, then or-DOPs until the budget ends; what is left untested is reported.
+        /// Spheres, then or-DOPs until the budget is spent; pairs that are left untested are
+        /// reported.
         SDopTimeCritical = "s-dop-time-critical",
         /// World-aligned boxes, re-fitted each frame.
         Aabb = "aabb",
@@ -48,11 +49,11 @@ choices! {
 choices! {
     /// When or-DOP poses are updated.
     Updates, "update mode", {
-        /// Every dynamic body's, each frame: before any pair is tested, or, of many bodies in a
-        /// batch, stretch by stretch with the pairs that need them. Each counts as one update
-        /// either way.
+        /// Every frame updates the or-DOP of every dynamic body: before any pair is tested or, for
+        /// many bodies in a batch, together with the pairs that need them. Either way each counts
+        /// as one update.
         Eager = "eager",
-        /// Only those of the potentially colliding set.
+        /// Only the or-DOPs of bodies in the potentially colliding set are updated.
         Lazy = "lazy",
     }
 }
@@ -64,25 +65,25 @@ choices! {
         AsFound = "as-found",
         /// Pairs with a body of interest first.
         InterestFirst = "interest-first",
-        /// Deepest relative sphere overlap first.
+        /// Largest relative sphere overlap first.
         LargestOverlap = "largest-overlap",
-        /// Longest untested first.
+        /// Pairs that were not tested for the longest time first.
         OldestAnswer = "oldest-answer",
     }
 }
 
-/// What the viewer looks at: only pairs with a body of interest are refined.
+/// Which bodies are of interest, for example those in view: only their pairs are refined.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(untagged))]
 pub enum Interest {
-    /// Body indices.
+    /// The bodies with these indices.
     Bodies(Vec<u32>),
-    /// Every body whose sphere centre lies in the cone.
+    /// The bodies whose sphere centre is in the cone.
     Cone(ViewCone),
 }
 
-/// A cone of view over sphere centres. With `body` it moves and turns with that body, with `apex`
-/// it rests.
+/// A view cone: bodies whose sphere centre is in it are of interest. With `body` it moves and turns
+/// with that body; with `apex` it does not move.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -90,21 +91,21 @@ pub enum Interest {
     serde(deny_unknown_fields)
 )]
 pub struct ViewCone {
-    /// The body that looks: the apex is its translation, `direction` is in its frame. It is of
-    /// interest itself when its sphere's centre lies in the cone, as one at its origin does.
+    /// The body that looks. The apex is its translation, and `direction` is in its frame. It is of
+    /// interest itself if its sphere's centre is in the cone, as a centre at its origin is.
     pub body: Option<u32>,
     /// The fixed apex, world frame, instead of `body`.
     pub apex: Option<[f32; 3]>,
     /// The cone's axis, any non-zero length; world frame with `apex`.
     pub direction: [f32; 3],
-    /// Angle between the axis and the rim, degrees, in (0, 180]. What lies on the rim is in the
+    /// Angle between the axis and the rim in degrees, in (0, 180]. Points on the rim are in the
     /// cone.
     pub half_angle: f32,
-    /// How far it reaches from the apex; absent: without end.
+    /// The length of the cone from the apex; `None` is unlimited.
     pub range: Option<f32>,
 }
 
-/// What a frame's refinement may cost in time-critical culling.
+/// The budget per frame of time-critical culling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -112,14 +113,14 @@ pub struct ViewCone {
     serde(rename_all = "kebab-case")
 )]
 pub enum Budget {
-    /// So many or-DOP tests: deterministic.
+    /// A number of or-DOP tests. Results are reproducible.
     Tests(u64),
-    /// So much time by the clock.
+    /// Wall time, in microseconds.
     Microseconds(u64),
 }
 
-/// How a scene is culled: sequential S-DOP with the finder that `auto` picks unless the settings
-/// name others. A scene file's `[cull]` table has the same keys and defaults.
+/// All settings of a culler. The defaults are sequential S-DOP and the finder `auto`. A scene
+/// file's `[cull]` table has the same keys and defaults.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -131,7 +132,7 @@ pub struct CullSettings {
     pub strategy: Strategy,
     /// The pair finder.
     pub pairs: Finder,
-    /// The or-DOP's slab directions; written as k = 6, 14, 18 or 26.
+    /// The or-DOP's slab directions, written as k = 6, 14, 18 or 26.
     #[cfg_attr(
         feature = "serde",
         serde(
@@ -170,20 +171,20 @@ impl Default for CullSettings {
     }
 }
 
-/// Settings that can't be carried out as they stand.
+/// The error for invalid settings.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SettingsError {
-    /// A strategy lacks what it spends or looks at.
+    /// The strategy needs a budget or an interest that is not set.
     #[error("strategy {strategy} needs `{key}`")]
     Missing {
         /// The strategy.
         strategy: &'static str,
-        /// The `[cull]` key that is absent.
+        /// The missing `[cull]` key.
         key: &'static str,
         /// How to mend it.
         hint: &'static str,
     },
-    /// An interest that names no body of the scene, or an invalid cone.
+    /// An interest in a body that doesn't exist, or an invalid cone.
     #[error("interest: {problem}")]
     Interest {
         /// What is wrong.
@@ -204,7 +205,7 @@ impl SettingsError {
 }
 
 impl CullSettings {
-    /// As [`Self::default`], but every pair is a candidate, as in the paper.
+    /// The defaults, but with the finder `all-pairs`, as in the paper.
     #[must_use]
     pub fn all_pairs() -> Self {
         Self {
@@ -213,10 +214,10 @@ impl CullSettings {
         }
     }
 
-    /// Checks the settings against each other and against a scene of `bodies` bodies.
+    /// Checks that the settings fit together and suit a scene of `bodies` bodies.
     ///
     /// # Errors
-    /// A strategy without its interest or budget; an interest outside of the scene.
+    /// A strategy without its interest or budget; an interest in a body that doesn't exist.
     pub fn check(&self, bodies: usize) -> Result<(), SettingsError> {
         let missing = |key, hint| SettingsError::Missing {
             strategy: self.strategy.name(),
@@ -248,8 +249,8 @@ impl Interest {
     /// Checks the interest against a scene of `bodies` bodies.
     ///
     /// # Errors
-    /// A body index out of range; a cone without one apex, a direction or a possible angle or
-    /// range.
+    /// A body index out of range; a cone without exactly one apex, without a direction, or with an
+    /// invalid angle or range.
     pub fn check(&self, bodies: usize) -> Result<(), SettingsError> {
         let wrong = |problem, hint| Err(SettingsError::Interest { problem, hint });
         let named: &[u32] = match self {

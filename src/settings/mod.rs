@@ -1,4 +1,4 @@
-//! Choices by name: pair finders, and how a scene is culled.
+//! Choices by name: pair finders, strategies and the other settings of a culler.
 
 #[cfg(feature = "shapes")]
 mod cull;
@@ -19,18 +19,18 @@ pub use cull::{
 pub use scheme::{Flow, Scheme, TestedVolume};
 
 choices! {
-    /// Who hands candidate pairs to the first volume test. Every finder leads to the same reported
-    /// set.
+    /// Pair finders: how candidate pairs for the first volume test are found. All report the same
+    /// pairs.
     Finder, "pair finder", {
-        /// The paper's N(N−1)/2 loop without the static–static pairs.
+        /// All N(N−1)/2 pairs, as in the paper, except those of two static bodies.
         AllPairs = "all-pairs",
-        /// Uniform cells, counting sort.
+        /// Uniform cells, filled by a counting sort.
         Grid = "grid",
-        /// Sort along an axis, sweep.
+        /// Sweep and prune along one axis.
         Sweep = "sweep",
-        /// Candidates within reach and a skin, kept over frames until a body has moved by its skin.
+        /// Lists of neighbours within a skin, kept over frames until a body has moved by its skin.
         Neighbours = "neighbours",
-        /// Chosen from the scene.
+        /// Picked from the number and sizes of the bodies.
         Auto = "auto",
     }
 }

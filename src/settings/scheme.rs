@@ -1,11 +1,11 @@
-//! The strategies as one table: what each tests, and how pairs flow from test to test. Counters,
+//! The table of strategies: what each one tests, and how pairs flow from test to test. Counters,
 //! updates, the choice of a finder and prices follow from a strategy's row.
 
 use super::{DirectionSet, Overlap, Strategy};
 use crate::choice::choices;
 
 choices! {
-    /// A volume that pairs are tested by; its updates, tests and hits are counted apart.
+    /// A volume that pairs are tested with. Updates, tests and hits are counted per volume.
     TestedVolume, "volume", {
         /// Bounding spheres.
         Sphere = "sphere",
@@ -23,30 +23,30 @@ choices! {
 /// How pairs flow from the first test to the refining one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
-    /// No pair is looked at.
+    /// No pair is tested.
     Nothing,
-    /// What passes the first test is reported.
+    /// Pairs that pass the first test are reported.
     FirstTest,
     /// Blocks of candidates that passed the first test are refined at once; no list is kept (paper,
     /// section 4a).
     Sequential,
-    /// All that passed the first test is listed, then refined (paper, section 4b).
+    /// All candidates that passed the first test are listed, then refined (paper, section 4b).
     Batch,
     /// As `Sequential`, but only pairs with a body of interest are refined (paper, section 4c).
     OfInterest,
-    /// As `Batch`, until a budget ends.
+    /// As `Batch`, until a budget is spent.
     TimeCritical,
 }
 
-/// A row of the table.
+/// A row of the table of strategies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scheme {
     /// The first test, of every candidate: spheres or world-aligned volumes.
     pub first: Option<TestedVolume>,
-    /// The refining test, of what passed the first one, or of every candidate where there is none:
-    /// oriented volumes.
+    /// The refining test, of oriented volumes: for pairs that passed the first test, or for every
+    /// candidate if there is no first test.
     pub refining: Option<TestedVolume>,
-    /// How pairs get from one to the other.
+    /// How pairs get from the first test to the refining one.
     pub flow: Flow,
 }
 
@@ -81,7 +81,7 @@ impl Scheme {
         self.first.into_iter().chain(self.refining)
     }
 
-    /// Whether pairs are looked at: by all but the control.
+    /// Whether any pairs are tested: true for all strategies but the control.
     #[must_use]
     pub fn culls(self) -> bool {
         self.flow != Flow::Nothing
@@ -94,26 +94,27 @@ impl Scheme {
         self.flow == Flow::TimeCritical
     }
 
-    /// Whether there is a choice of overlap tests: two oriented boxes have one alone.
+    /// Whether the overlap test can be chosen. Oriented boxes have only one.
     #[must_use]
     pub fn has_overlap_test(self) -> bool {
         self.refining == Some(TestedVolume::OrDop)
     }
 
-    /// Whether candidates go to the oriented volumes untested: these are then binned by balls of
-    /// their own, and hardly cheaper to test than candidates are to find.
+    /// Whether the strategy has no first test. Oriented volumes are then binned by balls of their
+    /// own, and testing a pair costs hardly less than finding a candidate.
     #[must_use]
     pub fn is_oriented_alone(self) -> bool {
         self.first.is_none() && self.refining.is_some()
     }
 
-    /// Whether each shape's oriented box takes the place of its or-DOP.
+    /// Whether each shape's oriented box replaces its or-DOP.
     #[must_use]
     pub fn has_boxes(self) -> bool {
         self.refining == Some(TestedVolume::Obb)
     }
 
-    /// The directions of the world-aligned slabs, if there are any; `k` are those of a k-DOP.
+    /// The directions of the world-aligned slabs, if the strategy has any; `k` are those of a
+    /// k-DOP.
     #[must_use]
     pub fn slabs(self, k: DirectionSet) -> Option<DirectionSet> {
         match self.first {
@@ -123,7 +124,7 @@ impl Scheme {
         }
     }
 
-    /// The axes of the refining test: `given`, but all 15 of two boxes.
+    /// The separating axes of the refining test: `given`, but for oriented boxes all 15.
     #[must_use]
     pub fn overlap(self, given: Overlap) -> Overlap {
         if self.has_boxes() {
@@ -138,8 +139,9 @@ impl Scheme {
 mod tests {
     use super::*;
 
+    /// Every row has tests that its stages and flow can carry out.
     #[test]
-    fn every_row_has_tests_that_its_stages_and_flow_can_carry_out() {
+    fn scheme_rows_are_consistent() {
         for strategy in Strategy::ALL {
             let Scheme {
                 first,

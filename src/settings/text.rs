@@ -1,4 +1,4 @@
-//! Culling settings as serde reads and writes them.
+//! The text form of culling settings, for serde.
 
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serializer};

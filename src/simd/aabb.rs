@@ -1,8 +1,7 @@
-//! Boxes on the world's axes as columns of numbers: their layout is what the vectors' loads rely
-//! on.
+//! World-aligned boxes with the memory layout that vector loads rely on.
 
-/// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one
-/// is above the upper one; sides of no length are fine.
+/// A closed, world-aligned box: boxes that touch meet. Its ends are finite, and each lower end is
+/// at most the upper one; sides may have no length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Aabb {

@@ -175,8 +175,9 @@ mod tests {
         }
     }
 
+    /// The former mode returns after a panic.
     #[test]
-    fn the_former_mode_returns_after_a_panic() {
+    fn panic_restores_the_mode() {
         for mode in FpMode::OTHERS {
             mode.run(|| {
                 assert_eq!(in_default_mode(FpMode::current), FpMode::DEFAULT);

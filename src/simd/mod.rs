@@ -1,14 +1,14 @@
-//! The one room with `unsafe`: vectors of f32 in every tier of the CPU behind one sealed trait, and
+//! The only room with `unsafe`: vectors of f32 for every tier of the CPU with one sealed trait, and
 //! the floating-point mode that they run in.
 //!
 //! A kernel is written once, generic over [`Lanes`], with plain `+ − ×`, comparisons and table
-//! look-ups and never a fused multiply-add, so that every tier computes the same bits (design,
-//! section 4). [`Tier`] says which tiers this CPU has; holding one proves it. [`dispatch`] compiles
-//! the kernel once a tier, inside a function with that tier's target features, and calls the one
-//! that the level names.
+//! look-ups and never a fused multiply-add, so that every tier computes the same bits. [`Tier`]
+//! lists the tiers of this CPU; a value of it proves that the CPU has it. [`dispatch`] compiles the
+//! kernel once a tier, inside a function with that tier's target features, and calls the one that
+//! the level names.
 //!
-//! Why `std::arch` behind tokens and not a portable vector crate: a sphere test measured .060 ns
-//! this way, .106 autovectorised and .164 through a crate's dispatch.
+//! Why `std::arch` with tokens and not a portable vector crate: a sphere test measured .060 ns this
+//! way, .106 autovectorised and .164 through a crate's dispatch.
 
 #![allow(
     unsafe_code,

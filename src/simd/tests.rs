@@ -374,8 +374,9 @@ impl Kernel for GatherFromNothing {
     }
 }
 
+/// An empty table is refused in every tier.
 #[test]
-fn an_empty_table_is_refused_in_every_tier() {
+fn empty_table_is_rejected() {
     for tier in Tier::available() {
         for integers in [false, true] {
             let read = std::panic::catch_unwind(|| dispatch(tier, GatherFromNothing(integers)));
@@ -400,8 +401,9 @@ fn the_flushing_tier_drops_denormals() {
     assert_eq!(dispatch(Tier::SCALAR_FLUSH, Flush), [0, 1, 0]);
 }
 
+/// Levels are there and go by their names.
 #[test]
-fn levels_are_there_and_go_by_their_names() {
+fn tiers_parse_by_name() {
     let available = Tier::available();
     assert_eq!(available.first(), Some(&Tier::SCALAR));
     assert!(available.contains(&Tier::detect()));
@@ -412,8 +414,9 @@ fn levels_are_there_and_go_by_their_names() {
     }
 }
 
+/// An unknown tier and a missing one are different errors.
 #[test]
-fn an_unknown_level_is_told_from_a_missing_one() {
+fn unknown_and_missing_tiers_differ() {
     let unknown = "avx1024".parse::<Tier>();
     assert_eq!(unknown, Err(TierError::Unknown("avx1024".into())));
     for name in Tier::NAMES {

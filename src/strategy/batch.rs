@@ -1,8 +1,8 @@
 //! S-DOP in batches (paper, section 4b): the potentially colliding set is listed first, then its
 //! or-DOPs are tested.
 //!
-//! Lazy updates need the pairs before rows are made, and so flow this way under every strategy that
-//! refines. Where the output is in portions, so is the list.
+//! Lazy updates need the pairs before rows are computed, so that every refining strategy flows this
+//! way with them. If the output is in portions, so is the list.
 
 use super::interest::InterestFilter;
 use super::listing::{PairNames, list};
@@ -13,8 +13,8 @@ use super::{Inputs, Scratch, Totals};
 use crate::pairs::PairList;
 use crate::update::OrDopRows;
 
-/// Candidates that pass the first test are listed, then refined; with `interest`, only those that
-/// have a body of interest.
+/// Lists the candidates that pass the first test, then refines them; with `interest`, only those
+/// that have a body of interest.
 pub(super) fn flow(
     inputs: Inputs<'_>,
     rows: &mut OrDopRows,
@@ -74,8 +74,8 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// Appends what is reported of `candidates` to `out`, in their order; on all threads if their
-    /// `tasks` are at hand.
+    /// Appends the reported pairs among `candidates` to `out`, in their order; on all threads if
+    /// `tasks` are given.
     fn refine(&mut self, candidates: &PairList, tasks: Option<&mut Tasks>, out: &mut PairList) {
         let Some(interest) = self.interest else {
             return self.refiner.refine(candidates, tasks, out);

@@ -1,5 +1,4 @@
-//! One frame by the strategy of the settings: what it reads, what it keeps, and the way that pairs
-//! take.
+//! Culling one frame by a strategy: its inputs, its buffers, and the flow of pairs.
 
 use super::tasks::Tasks;
 #[cfg(feature = "serde")]
@@ -14,17 +13,17 @@ use crate::settings::{CullSettings, Flow, Scheme, Updates};
 use crate::threads::Executor;
 use crate::update::{OrDopRows, UpdateInputs};
 
-/// Rows that the second-level cache holds.
+/// Rows that fit into the second-level cache.
 const ROWS_IN_CACHE: usize = 1 << 14;
 
-/// What a culler is made with, and keeps.
+/// The settings that a culler is made with.
 #[derive(Clone, Debug)]
 pub(crate) struct Setup {
     pub settings: CullSettings,
     /// The strategy's row in the table of strategies.
     pub scheme: Scheme,
-    /// Whether budgets are spent on pairs in the order of their bodies, whatever the finder and the
-    /// frames so far.
+    /// Whether budgets are spent on pairs in the order of their body numbers, independent of the
+    /// finder and of earlier frames.
     pub is_canonical: bool,
 }
 
@@ -84,12 +83,12 @@ pub(crate) struct FrameVolumes<'a> {
     pub intervals: &'a IntervalSlots,
     /// Whether each body is of interest.
     pub interest: &'a [bool],
-    /// Counts frames from 1.
+    /// The number of the frame, from 1.
     pub stamp: u32,
     pub row_timing: RowTiming,
 }
 
-/// What culling a frame reads, once volumes are updated and bodies arranged in slots.
+/// The inputs of culling a frame, after volumes are updated and bodies are arranged in slots.
 #[derive(Clone, Copy)]
 pub(crate) struct Inputs<'a> {
     pub executor: Executor<'a>,
@@ -106,41 +105,42 @@ impl Inputs<'_> {
     }
 }
 
-/// What stays from frame to frame: buffers, and when time-critical culling refined which pair.
+/// State that is kept from frame to frame: buffers, and the refinement history of time-critical
+/// culling.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     pub(super) tasks: Tasks,
-    /// The potentially colliding set by places, where a list of it is kept.
+    /// The potentially colliding set as pairs of places, if a list of it is kept.
     pub candidates: PairList,
-    /// Those of them that have a body of interest, and which of those survived.
+    /// The candidates that have a body of interest, and which of those survived.
     pub(super) selected: PairList,
     pub(super) survivors: PairList,
-    /// What is reported of a portion of them.
+    /// The reported pairs of a portion of the candidates.
     pub(super) portion: PairList,
     pub(super) history: time_critical::History,
 }
 
 impl Scratch {
-    /// Gives back the memory of lists of pairs, but for the last potentially colliding set.
+    /// Frees the memory of lists of pairs, except the last potentially colliding set.
     pub fn shrink_to_fit(&mut self) {
         self.candidates.shrink_to_fit();
         self.history.shrink_to_fit();
         (self.tasks, self.selected, self.survivors, self.portion) = Default::default();
     }
 
-    /// Gives back the memory of all lists of pairs, the last potentially colliding set included.
+    /// Frees the memory of all lists of pairs, including the last potentially colliding set.
     pub fn forget_lists(&mut self) {
         self.candidates.clear();
         self.shrink_to_fit();
     }
 
-    /// When the pairs of the last frame were refined.
+    /// When each pair of the last frame was last refined.
     #[cfg(feature = "serde")]
     pub fn answers(&self) -> RefinementRanks {
         self.history.answers()
     }
 
-    /// Takes over when pairs were refined.
+    /// Replaces the refinement history.
     #[cfg(feature = "serde")]
     pub fn set_answers(&mut self, answers: &RefinementRanks) {
         self.history.set_answers(answers);
@@ -172,12 +172,12 @@ pub(crate) fn cull(
     match inputs.setup.scheme.flow {
         Flow::Nothing => Totals::default(),
         Flow::FirstTest => listing::flow(inputs, scratch, output),
-        // Rows on demand need the whole set before its first test.
+        // Lazy rows need the whole set before its first test.
         Flow::Sequential if lazy => batch::flow(inputs, rows, scratch, None, output),
         Flow::OfInterest if lazy => batch::flow(inputs, rows, scratch, interest, output),
         Flow::Sequential => sequential::flow(inputs, rows, scratch, None, output),
         Flow::OfInterest => sequential::flow(inputs, rows, scratch, interest, output),
-        // The same pairs in the same order, and no list that grows with them.
+        // The same pairs in the same order, without a list that grows with them.
         Flow::Batch if output.is_in_portions() && !lazy => {
             sequential::flow(inputs, rows, scratch, None, output)
         }
@@ -198,8 +198,9 @@ mod tests {
         list
     }
 
+    /// Bytes are those of all lists and the colliding set alone is kept.
     #[test]
-    fn bytes_are_those_of_all_lists_and_the_colliding_set_alone_is_kept() {
+    fn shrinking_keeps_the_colliding_set() {
         let task = |pairs| Task {
             out: list(pairs),
             block: list(10 * pairs),
@@ -215,7 +216,7 @@ mod tests {
             portion: list(80),
             ..Scratch::default()
         };
-        // Two numbers a pair, and a vector more after each column.
+        // Two numbers per pair, and one vector after each column.
         let pairs = 3 * 1111 + 650_087 + 12 * crate::simd::MAX_WIDTH;
         assert_eq!(scratch.pair_bytes(), 8 * pairs);
         scratch.candidates.clear();

@@ -1,4 +1,4 @@
-//! Which bodies are of interest in a frame (a list, or those whose sphere centres lie in a view
+//! Which bodies are of interest in a frame (a list, or those whose sphere centres are in a view
 //! cone), and which pairs.
 
 use crate::bodies::Bodies;
@@ -7,7 +7,7 @@ use crate::rounding::exp2;
 use crate::rounding::pose::rotation;
 use crate::settings::{Interest, ViewCone};
 
-/// Marks the bodies of interest. `centre` gives a body's sphere centre in the world frame.
+/// Marks the bodies of interest. `centre` returns a body's sphere centre in the world frame.
 pub(crate) fn mark(
     interest: &Interest,
     bodies: &Bodies,
@@ -34,7 +34,7 @@ pub(crate) fn mark(
     }
 }
 
-/// Pairs of places, of which only those with a body of interest are refined.
+/// A list of pairs of places, of which only those with a body of interest are refined.
 pub(super) struct InterestFilter<'a> {
     pub pairs: &'a PairList,
     /// The body in each place.
@@ -62,8 +62,8 @@ impl InterestFilter<'_> {
         }
     }
 
-    /// Appends, as bodies, the pairs that weren't to be refined and those that `passed`, in their
-    /// common order: a list must not show where blocks, and so threads, begin.
+    /// Appends, as pairs of bodies, those that are not refined and those that `passed`, in their
+    /// common order. The list must not depend on where blocks, and therefore threads, begin.
     pub fn merge(&self, passed: &PairList, out: &mut PairList) {
         let mut passed = passed.iter().peekable();
         for (_, [a, b], of_interest) in self.classified() {
@@ -74,8 +74,8 @@ impl InterestFilter<'_> {
     }
 }
 
-/// More than the cosine of the half angle, the axis' length and a product may be off by: what lies
-/// on the rim is in the cone, sideways at 90° and straight behind at 180°.
+/// Exceeds the errors of the half angle's cosine, of the axis' length and of a product, so that
+/// points on the rim are in the cone: at right angles for 90°, and opposite to the axis for 180°.
 const CONE_SLACK: f64 = exp2(-48);
 
 /// A view cone in the world frame.
@@ -88,7 +88,8 @@ pub struct PlacedCone {
 }
 
 impl PlacedCone {
-    /// Places a cone; `pose` is that of the body that looks, if one does.
+    /// Transforms a cone to the world frame. `pose` is that of the body that looks, if there is
+    /// one.
     #[must_use]
     pub fn new(cone: &ViewCone, pose: Option<([f32; 4], [f64; 3])>) -> Self {
         let given = cone.direction.map(f64::from);
@@ -105,8 +106,8 @@ impl PlacedCone {
         }
     }
 
-    /// The apex itself is in the cone, so a body that looks is of interest when its sphere's centre
-    /// is its origin; elsewhere the centre counts, as for others.
+    /// Whether a centre is in the cone. The apex is in it, so a body that looks is of interest if
+    /// its sphere's centre is its origin.
     #[must_use]
     pub fn sees(&self, centre: [f64; 3]) -> bool {
         let way: [f64; 3] = std::array::from_fn(|i| centre[i] - self.apex[i]);
@@ -138,7 +139,7 @@ mod tests {
     }
 
     /// Pythagorean quadruples, so that distances are f32.
-    const WAYS: [([f32; 3], f32); 4] = [
+    const CONE_DIRECTIONS: [([f32; 3], f32); 4] = [
         ([2.0, 3.0, 6.0], 7.0),
         ([-4.0, 7.0, 4.0], 9.0),
         ([8.0, -9.0, 12.0], 17.0),
@@ -147,15 +148,16 @@ mod tests {
 
     const APEXES: [[f32; 3]; 3] = [[0.0; 3], [1000.0, -500.0, 250.0], [-0.5, 0.25, 4096.0]];
 
+    /// A cone reaches as far as its range to the ulp.
     #[test]
-    fn a_cone_reaches_as_far_as_its_range_to_the_ulp() {
+    fn cone_range_is_exact() {
         let body = |apex| {
             let mut bodies = Bodies::default();
             bodies.push(0, true, [0.0, 0.0, 0.0, 2.0], apex);
             bodies
         };
         for apex in APEXES {
-            for (way, length) in WAYS {
+            for (way, length) in CONE_DIRECTIONS {
                 let centre = std::array::from_fn(|i| apex[i] + way[i]);
                 for on_body in [false, true] {
                     let cone = |range: f32| ViewCone {
@@ -173,12 +175,12 @@ mod tests {
         }
     }
 
-    /// Sideways at 90° and straight behind at 180° are on the rim, whatever an axis' length has
-    /// rounded.
+    /// Directions at right angles (90°) and opposite to the axis (180°) are on the rim, however the
+    /// axis' length was rounded.
     #[test]
-    fn what_lies_on_the_rim_is_in_the_cone() {
+    fn cone_includes_its_rim() {
         for apex in APEXES {
-            for (way, _) in WAYS {
+            for (way, _) in CONE_DIRECTIONS {
                 let cone = |half_angle: f32| ViewCone {
                     body: None,
                     apex: Some(apex),
@@ -201,7 +203,7 @@ mod tests {
 
     /// A mesh may lie off the origin that its cone looks from.
     #[test]
-    fn a_body_that_looks_is_of_interest_when_its_centre_is_in_the_cone() {
+    fn looking_body_follows_its_centre() {
         let mut bodies = Bodies::default();
         bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [5.0, 6.0, 7.0]);
         let cone = ViewCone {
@@ -217,9 +219,9 @@ mod tests {
     }
 
     /// Bodies 2·10⁻⁵ of their distance to either side of the rim, where f32 can place them: an apex
-    /// or an angle a little off tells.
+    /// or an angle that is slightly off is detected.
     #[test]
-    fn a_cone_s_rim_is_where_its_angle_says() {
+    fn cone_rim_matches_its_angle() {
         let distance = 64.0_f64;
         for apex in APEXES {
             for half_angle in [1.0_f32, 30.0, 90.0, 135.0, 179.0] {
@@ -255,7 +257,7 @@ mod tests {
     /// Of two centres that are neighbours in f32, one in the cone and one not, integers say which:
     /// cosines of ½, 0 and −½.
     #[test]
-    fn neighbours_on_either_side_of_the_rim_are_told_apart() {
+    fn rim_separates_f32_neighbours() {
         let mut random = ChaCha8Rng::seed_from_u64(11);
         let mut below = |most: i64| i64::from(random.next_u32()) % (2 * most + 1) - most;
         let whole = |v: [i64; 3]| v.map(|x| x as f32);

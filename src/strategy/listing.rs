@@ -1,16 +1,16 @@
-//! Candidates through the first volume test into a list of pairs.
+//! The first volume test: candidates in, a list of pairs out.
 
 use std::ops::Range;
 
 use super::Totals;
-use super::output::{Outlet, Output};
+use super::output::{Output, TaskOutput};
 use super::tasks::{Task, Tasks, split_work};
 #[cfg(feature = "shapes")]
 use super::{Inputs, Scratch, SlotNames};
 use crate::bodies::PairFilter;
 use crate::broad_phase::{Block, EndSlots, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest};
 use crate::counters::VolumeCounters;
-use crate::overlap::boxes::Cubes;
+use crate::overlap::boxes::CubeTest;
 #[cfg(feature = "shapes")]
 use crate::overlap::{intervals::IntervalSlots, sphere::Spheres};
 use crate::pairs::PairList;
@@ -19,14 +19,14 @@ use crate::settings::TestedVolume;
 use crate::simd::{CACHE_LINE, Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
 use crate::threads::{Executor, Threads};
 
-/// Slots of a run that are tested before their hits are listed.
+/// Slots of a run that are tested at once, before their hits are listed.
 const SLOTS_PER_TEST: usize = MOST_CANDIDATES;
 
-/// How far beyond the farthest slot of a block names are prefetched: some twenty blocks ahead of
-/// their use.
+/// How many slots after the farthest slot of a block names are prefetched: about twenty blocks
+/// ahead of their use.
 const PREFETCH_DISTANCE: usize = 256;
 
-/// Up to so many names the second-level cache keeps, and prefetching only costs.
+/// The most names that fit into the second-level cache. With fewer, prefetching only costs time.
 const NAMES_IN_CACHE: usize = 1 << 16;
 
 /// Names in a cache line.
@@ -41,33 +41,33 @@ enum FirstVolume<'a> {
     /// World-aligned slabs.
     #[cfg(feature = "shapes")]
     Intervals(&'a IntervalSlots),
-    /// None: every candidate passes.
+    /// No test: every candidate passes.
     #[cfg(feature = "shapes")]
     PassAll,
-    /// Given boxes.
+    /// Boxes that were given by the caller.
     Boxes(BoxTest<'a>),
 }
 
 /// How given boxes are tested.
 #[derive(Clone, Copy)]
 pub(crate) enum BoxTest<'a> {
-    /// By cubes about them and within.
-    Cubes(Cubes<'a>),
+    /// By the cubes around and inside them.
+    Cubes(CubeTest<'a>),
     /// By their ends.
     Ends(&'a EndSlots),
 }
 
-/// What is listed of a pair of slots.
+/// What is listed for a pair of slots.
 #[cfg(feature = "shapes")]
 #[derive(Clone, Copy)]
 pub(super) enum PairNames {
-    /// Its bodies, the lower first: what is reported.
+    /// Its bodies, the lower first, to be reported.
     Bodies,
-    /// Its places, that of the lower body first: what is refined.
+    /// Its places, that of the lower body first, to be refined.
     Places,
 }
 
-/// What is listed of a pair, that of the lower body first.
+/// The listed numbers of a pair, that of the lower body first.
 #[inline(always)]
 fn in_order<L: Lanes>(l: L, listed: [L::I; 2], bodies: [L::I; 2]) -> [L::I; 2] {
     let [one, other] = listed;
@@ -78,7 +78,7 @@ fn in_order<L: Lanes>(l: L, listed: [L::I; 2], bodies: [L::I; 2]) -> [L::I; 2] {
     ]
 }
 
-/// The candidates of a frame, the test that they must pass, and what is listed of those that do.
+/// The candidates of a frame, the test that they must pass, and what is listed for those that pass.
 #[derive(Clone, Copy)]
 pub(super) struct Listing<'a> {
     tier: Tier,
@@ -111,8 +111,8 @@ impl<'a> Listing<'a> {
         }
     }
 
-    /// The entry of each slot that hits are looked up in: its name, or its body where slots name
-    /// themselves.
+    /// The entry of each slot in which hits are looked up: its name, or its body if slots are their
+    /// own names.
     #[cfg(feature = "shapes")]
     fn by_slot(&self) -> &'a [u32] {
         match self.names {
@@ -126,14 +126,14 @@ impl<'a> Listing<'a> {
         self.finder.names()
     }
 
-    /// What is listed of hits with these entries, that of the lower body first.
+    /// The listed numbers of hits with these entries, that of the lower body first.
     #[cfg(feature = "shapes")]
     #[inline(always)]
     fn listed<L: Lanes>(&self, l: L, hits: HitSlots, hit: L::I, entries: [L::I; 2]) -> [L::I; 2] {
         let (mut names, mut bodies) = (entries, entries);
         match self.names {
             SlotNames::Bodies => {}
-            // Written out: a closure would be compiled apart, without the tier's features.
+            // Written out, because a closure would be compiled without the tier's features.
             SlotNames::Places(body) => {
                 bodies = [
                     l.gather_u32(body, entries[0]),
@@ -155,7 +155,7 @@ impl<'a> Listing<'a> {
         in_order(l, entries, entries)
     }
 
-    /// The body of a name that is listed.
+    /// The body of a listed name.
     #[cfg(feature = "shapes")]
     fn body_of(&self, name: u32) -> u32 {
         match (self.listed, self.names) {
@@ -171,8 +171,8 @@ impl<'a> Listing<'a> {
         name
     }
 
-    /// Lists the pairs of some parts of the finder's work that pass the first test, and counts
-    /// tests and hits. `flush` gets the list whenever it has reached `enough` pairs.
+    /// Lists the pairs that pass the first test, for some parts of the finder's work, and counts
+    /// tests and hits. `flush` gets the list whenever it has at least `enough` pairs.
     pub(super) fn run(
         &self,
         parts: Range<usize>,
@@ -186,7 +186,7 @@ impl<'a> Listing<'a> {
         };
         dispatch(
             self.tier,
-            List {
+            ListParts {
                 listing: *self,
                 parts,
                 out,
@@ -196,13 +196,13 @@ impl<'a> Listing<'a> {
     }
 }
 
-/// Reports what passes the first test.
+/// Reports the pairs that pass the first test.
 #[cfg(feature = "shapes")]
 pub(super) fn flow(inputs: Inputs<'_>, scratch: &mut Scratch, output: Output<'_>) -> Totals {
     list(inputs, PairNames::Bodies, &mut scratch.tasks, output)
 }
 
-/// Lists what passes the first test, on all threads.
+/// Lists the pairs that pass the first test, on all threads.
 #[cfg(feature = "shapes")]
 pub(super) fn list(
     inputs: Inputs<'_>,
@@ -218,7 +218,7 @@ pub(super) fn list(
     )
 }
 
-/// Given boxes that are arranged in slots, and how they are tested.
+/// Boxes that are arranged in slots, and how they are tested.
 #[derive(Clone, Copy)]
 pub(crate) struct BoxInputs<'a> {
     pub executor: Executor<'a>,
@@ -228,7 +228,7 @@ pub(crate) struct BoxInputs<'a> {
     pub filter: Option<PairFilter<'a>>,
 }
 
-/// Lists the boxes that meet, by their names, on all threads.
+/// Lists the pairs of boxes that meet, by their names, on all threads.
 pub(crate) fn list_boxes(
     inputs: BoxInputs<'_>,
     tasks: &mut Tasks,
@@ -253,27 +253,27 @@ fn list_parts(
     tasks: &mut Tasks,
     output: Output<'_>,
 ) -> Totals {
-    let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
+    let work = |parts: Range<usize>, task: &mut Task, outlet: &TaskOutput<'_, '_>| {
         let flush = &mut |out: &mut PairList| outlet.offer(out);
         task.first = listing.run(parts, &mut task.out, outlet.worth(), flush);
     };
     split_work(pool, tasks, listing.finder.parts(), output, work)
 }
 
-/// What is done with a list that has grown long enough.
+/// What happens when a list has enough pairs.
 struct FlushRule<'a> {
     enough: usize,
     call: &'a mut dyn FnMut(&mut PairList),
 }
 
-struct List<'a> {
+struct ListParts<'a> {
     listing: Listing<'a>,
     parts: Range<usize>,
     out: &'a mut PairList,
     flush: FlushRule<'a>,
 }
 
-impl Kernel for List<'_> {
+impl Kernel for ListParts<'_> {
     type Output = VolumeCounters;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> VolumeCounters {
@@ -290,7 +290,7 @@ impl Kernel for List<'_> {
     }
 }
 
-impl List<'_> {
+impl ListParts<'_> {
     #[inline(always)]
     fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> VolumeCounters {
         let finder = self.listing.finder;
@@ -310,7 +310,7 @@ impl List<'_> {
     }
 }
 
-/// The test that every candidate passes.
+/// A test that every candidate passes.
 #[cfg(feature = "shapes")]
 struct PassAll;
 
@@ -331,25 +331,25 @@ impl SlotTest for PassAll {
     }
 }
 
-/// A first test that lists what passes it.
+/// A first test that lists the pairs that pass.
 struct Lister<'a, 'f, T> {
     test: &'a T,
-    /// The name of each slot, or its body where slots name themselves.
+    /// The name of each slot, or its body if slots are their own names.
     by_slot: &'a [u32],
     listing: Listing<'a>,
     out: &'f mut PairList,
     flush: FlushRule<'f>,
     counters: VolumeCounters,
-    /// Up to this slot, names are prefetched.
+    /// The slot up to which names are prefetched.
     prefetched: usize,
-    /// Of the piece or block at hand.
+    /// The hits of the present piece or block.
     hits: HitBuffer,
 }
 
-/// Room for the hits of a piece or a block, from a cache line's beginning. Each vector of tests
-/// stores one of hits behind those before, which are none as a rule: across two pages, that one
-/// store made a frame of spheres take 3.4 times as long (500 bodies, all pairs, AVX-512), and where
-/// the stack lay decided.
+/// A buffer for the hits of a piece or a block, aligned to a cache line. Each vector of tests
+/// stores a vector of hits after the earlier ones, usually at the same place because there are no
+/// hits. If that store crosses a page, a frame of spheres takes 3.4 times as long (500 bodies, all
+/// pairs, AVX-512), which would depend on the position of the stack.
 #[repr(align(64))]
 struct HitBuffer([u32; SLOTS_PER_TEST + MAX_WIDTH]);
 
@@ -377,12 +377,12 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
     }
 }
 
-/// What hits stand for.
+/// The meaning of hits.
 #[derive(Clone, Copy)]
 enum HitSlots {
-    /// Slots that this one meets.
+    /// Slots that this slot meets.
     With(usize),
-    /// Codes of a block whose lane 0 is this slot.
+    /// Codes of a block whose lane 0 has this slot.
     Codes(usize),
 }
 
@@ -400,7 +400,7 @@ impl HitSlots {
         }
     }
 
-    /// The entries of a table by slot for a vector of pairs.
+    /// Looks up a table by slot for a vector of pairs.
     #[inline(always)]
     fn entries<L: Lanes>(self, l: L, hit: L::I, table: &[u32]) -> [L::I; 2] {
         match self {
@@ -418,9 +418,9 @@ impl HitSlots {
 }
 
 impl<T> Lister<'_, '_, T> {
-    /// Prefetches the names that the next blocks will be the first to read: those behind the
-    /// farthest slot so far. Apart, so that scenes whose names are in the caches pay for a
-    /// comparison only.
+    /// Prefetches the names that the next blocks will be the first to read: those after the
+    /// farthest slot so far. It is not inlined, so that scenes whose names are in the caches pay
+    /// only for a comparison.
     #[inline(never)]
     fn prefetch_beyond(&mut self, block: &Block<'_>) {
         let farthest = block.codes().last().map_or(0, |code| code >> 4) as usize;
@@ -449,8 +449,8 @@ impl<T> Lister<'_, '_, T> {
         }
     }
 
-    /// Lists them all, a vector at a time; what is computed of the lanes after the last hit is
-    /// overwritten by the next pairs.
+    /// Lists all hits, a vector at a time. Results in lanes after the last hit are overwritten by
+    /// the next pairs.
     #[inline(always)]
     fn name<L: Lanes>(&mut self, l: L, found: usize, hits: HitSlots) {
         let (first, second) = self.out.room(found);

@@ -1,10 +1,10 @@
-//! The paper's strategies (section 4) and the homogeneous volumes they are judged against: which
-//! tests each makes is a row of [`Strategy::scheme`](crate::settings::Strategy::scheme), and how
-//! pairs flow through them a file here.
+//! The paper's strategies (section 4) and the single volumes that they are compared with. A row of
+//! [`Strategy::scheme`](crate::settings::Strategy::scheme) says which tests a strategy makes; each
+//! flow of pairs through the tests is a file here.
 //!
-//! A strategy takes updated volumes and a pair finder and leaves the reported pairs. Strategies
-//! differ in false positives and time, never in misses: each reports every pair whose meshes meet,
-//! `none` excepted.
+//! A strategy takes updated volumes and a pair finder, and produces the reported pairs. Strategies
+//! differ in false positives and time, never in misses: each except `none` reports every pair whose
+//! meshes meet.
 
 use crate::counters::VolumeCounters;
 
@@ -36,34 +36,34 @@ pub(crate) use tasks::Tasks;
 #[cfg(all(feature = "shapes", feature = "serde"))]
 pub(crate) use time_critical::RefinementRanks;
 
-/// What the finder's slots are named by.
+/// What the names of the finder's slots are.
 ///
 /// Volumes other than spheres are looked up by place. With spheres alone, names are bodies, so that
-/// no hit needs a look at its places: naming slots by place under every strategy took 2.5 % more
-/// instructions of a frame of spheres (10,000 bodies, grid, AVX2).
+/// hits need not be looked up by place: naming slots by place under every strategy took 2.5 % more
+/// instructions per frame of spheres (10,000 bodies, grid, AVX2).
 #[cfg(feature = "shapes")]
 #[derive(Clone, Copy)]
 pub(crate) enum SlotNames<'a> {
     /// Bodies, in the order of the user's columns.
     Bodies,
-    /// Places, in which these bodies are.
+    /// Places; these are the bodies in them.
     Places(&'a [u32]),
-    /// Themselves: places have the order of slots, and these bodies are in them.
+    /// The slots themselves: places have the order of slots, and these are the bodies in them.
     Slots(&'a [u32]),
 }
 
-/// What culling a frame took.
+/// The counts and times of culling a frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Totals {
-    /// Of the first test.
+    /// The counters of the first test.
     pub first: VolumeCounters,
-    /// Of the refining test, with the rows made on demand as updates.
+    /// The counters of the refining test, with lazily computed rows as updates.
     pub refining: VolumeCounters,
     /// Pairs reported untested because the budget had ended.
     #[cfg(feature = "shapes")]
     pub untested: u64,
-    /// Wall time of the refining test: its seconds over the threads.
+    /// Wall time of the refining test: its seconds divided by the number of threads.
     pub refining_seconds: f64,
-    /// Wall time of making rows on demand.
+    /// Wall time of computing rows lazily.
     pub update_seconds: f64,
 }

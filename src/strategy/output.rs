@@ -1,27 +1,27 @@
-//! Where listed pairs go: into one list, or portion after portion to a function, so that memory
-//! stays bounded whatever the number of pairs.
+//! The output of listed pairs: into one list, or in portions to a function, so that memory stays
+//! bounded whatever the number of pairs.
 //!
 //! Portions come in the order of the list, whichever thread found them: a thread whose list is full
-//! waits for its turn. Tasks are begun in their order, so the task whose turn it is always runs,
-//! and no thread waits for ever. While a task hands many portions over, the others wait: in a
-//! crowd, more threads bring nothing.
+//! waits for its turn. Tasks are started in their order, so the task whose turn it is always runs,
+//! and no thread waits for ever. While a task passes on many portions, the others wait, so that
+//! more threads don't help in a crowd.
 
 use std::sync::{Condvar, Mutex, MutexGuard};
 
 use crate::pairs::PairList;
 
-/// Pairs in a portion; a block of candidates more may come with the last of them.
+/// Pairs in a portion. It may have one block of candidates more.
 pub(crate) const PAIRS_PER_PORTION: usize = 1 << 16;
 
-/// Where the pairs of a frame go.
+/// The destination of a frame's pairs.
 pub(crate) enum Output<'a> {
     /// All into one list.
     List(&'a mut PairList),
-    /// Portions to a function, which empties each.
+    /// Portions to a function, which empties each one.
     Portions(&'a mut PortionSink<'a>),
 }
 
-/// Takes a portion.
+/// A function that takes a portion.
 pub(crate) type PortionSink<'a> = dyn FnMut(&mut PairList) + Send + 'a;
 
 #[cfg(feature = "shapes")]
@@ -31,16 +31,16 @@ impl Output<'_> {
     }
 }
 
-/// Where a task's list goes while it is being written.
-pub(super) enum Outlet<'t, 's> {
+/// The destination of a task's list while it is being written.
+pub(super) enum TaskOutput<'t, 's> {
     /// It is kept until all tasks are done.
     Kept,
-    /// It is handed over whenever it is a portion.
+    /// It is passed on whenever it is a portion.
     HandedOver(TaskTurn<'t, 's>),
 }
 
-impl Outlet<'_, '_> {
-    /// How many pairs make a list worth offering.
+impl TaskOutput<'_, '_> {
+    /// The number of pairs from which on a list is offered.
     pub fn worth(&self) -> usize {
         match self {
             Self::Kept => usize::MAX,
@@ -48,7 +48,7 @@ impl Outlet<'_, '_> {
         }
     }
 
-    /// Hands the list over, and empties it, if that is worth it.
+    /// Passes the list on and empties it, if it has enough pairs.
     pub fn offer(&self, list: &mut PairList) {
         if let Self::HandedOver(turn) = self
             && list.len() >= PAIRS_PER_PORTION
@@ -57,7 +57,7 @@ impl Outlet<'_, '_> {
         }
     }
 
-    /// The list is complete: the last of it is handed over, and it is the next task's turn.
+    /// Completes the list: passes on the rest of it, and ends the task's turn.
     pub fn end(self, list: &mut PairList) {
         if let Self::HandedOver(turn) = self {
             turn.hand_over(list);
@@ -65,29 +65,29 @@ impl Outlet<'_, '_> {
     }
 }
 
-/// The order in which tasks hand portions over.
-pub(super) struct Turns<'s> {
-    state: Mutex<State<'s>>,
+/// The turns in which tasks pass on portions.
+pub(super) struct OutputTurns<'s> {
+    state: Mutex<TurnState<'s>>,
     changed: Condvar,
 }
 
-struct State<'s> {
+struct TurnState<'s> {
     /// The task whose turn it is.
     task: usize,
-    /// Whether a task panicked: nothing is handed over from then on.
+    /// Whether a task panicked. Nothing is passed on from then on.
     abandoned: bool,
     sink: &'s mut PortionSink<'s>,
 }
 
 /// One task's turn.
 pub(super) struct TaskTurn<'t, 's> {
-    turns: &'t Turns<'s>,
+    turns: &'t OutputTurns<'s>,
     task: usize,
 }
 
-impl<'s> Turns<'s> {
+impl<'s> OutputTurns<'s> {
     pub fn new(sink: &'s mut PortionSink<'s>) -> Self {
-        let state = State {
+        let state = TurnState {
             task: 0,
             abandoned: false,
             sink,
@@ -104,7 +104,7 @@ impl<'s> Turns<'s> {
 }
 
 impl<'t, 's> TaskTurn<'t, 's> {
-    /// Hands a list over when it is this task's turn, and empties it.
+    /// Waits for this task's turn, passes a list on and empties it.
     fn hand_over(&self, list: &mut PairList) {
         if let Some(mut state) = self.wait()
             && !list.is_empty()
@@ -114,8 +114,8 @@ impl<'t, 's> TaskTurn<'t, 's> {
         list.clear();
     }
 
-    /// Waits for this task's turn; `None` if another task panicked, which its thread passes on.
-    fn wait(&self) -> Option<MutexGuard<'t, State<'s>>> {
+    /// Waits for this task's turn; `None` if another task panicked.
+    fn wait(&self) -> Option<MutexGuard<'t, TurnState<'s>>> {
         let mut state = self.turns.state.lock().ok()?;
         while state.task != self.task && !state.abandoned {
             state = self.turns.changed.wait(state).ok()?;
@@ -126,8 +126,8 @@ impl<'t, 's> TaskTurn<'t, 's> {
 
 impl Drop for TaskTurn<'_, '_> {
     fn drop(&mut self) {
-        // A poisoned lock means that the sink panicked: waiting tasks see that by themselves once
-        // they are woken.
+        // A poisoned lock means that the sink panicked, which waiting tasks notice when they are
+        // woken.
         if let Ok(mut state) = self.turns.state.lock() {
             state.abandoned |= std::thread::panicking();
             state.task = self.task + 1;
@@ -143,16 +143,17 @@ mod tests {
 
     use super::*;
 
+    /// A task that panics leaves no other waiting.
     #[test]
-    fn a_task_that_panics_leaves_no_other_waiting() {
+    fn panicking_task_wakes_others() {
         let (done, is_done) = mpsc::channel();
         std::thread::spawn(move || {
             let mut handed_over = 0;
             let mut sink = |list: &mut PairList| handed_over += list.len();
-            let turns = Turns::new(&mut sink);
+            let turns = OutputTurns::new(&mut sink);
             let panicked = std::thread::scope(|scope| {
                 let later = scope.spawn(|| {
-                    let _outlet = Outlet::HandedOver(turns.of(1));
+                    let _outlet = TaskOutput::HandedOver(turns.of(1));
                     panic!("planted");
                 });
                 later.join().is_err()
@@ -160,7 +161,7 @@ mod tests {
             let mut list: PairList = (0..PAIRS_PER_PORTION as u32)
                 .map(|pair| [pair, pair + 1])
                 .collect();
-            let outlet = Outlet::HandedOver(turns.of(0));
+            let outlet = TaskOutput::HandedOver(turns.of(0));
             outlet.offer(&mut list);
             outlet.end(&mut list);
             done.send((panicked, list.len(), handed_over))

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use super::output::{Outlet, Output};
+use super::output::{Output, TaskOutput};
 use super::tasks::{Task, Tasks, split_work};
 use super::{FrameVolumes, Inputs, RowTiming, Setup, Totals};
 use crate::counters::VolumeCounters;
@@ -13,11 +13,11 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
 use crate::threads::Executor;
 use crate::update::{MOST_ROWS, OrDopRows, RowsByNumber, UpdateInputs};
 
-/// Pairs whose rows are made together, and how many of such stretches one thread looks at.
+/// Pairs whose rows are computed together, and how many such stretches one thread checks at a time.
 const PAIRS_PER_STRETCH: usize = 1024;
 const STRETCHES_PER_TASK: usize = 16;
 
-/// The or-DOP test with the rows as they are: takes pairs of places, leaves pairs of bodies.
+/// The or-DOP test with existing rows: takes pairs of places, returns pairs of bodies.
 #[derive(Clone, Copy)]
 pub(super) struct Refine<'a> {
     tier: Tier,
@@ -42,8 +42,8 @@ impl<'a> Refine<'a> {
         }
     }
 
-    /// Tests pairs and appends the survivors to `out`, in list order. Called per block: the
-    /// dispatch is paid once for all.
+    /// Tests pairs and appends the survivors to `out`, in list order. It is called per block, so
+    /// that the dispatch to a tier costs little.
     pub fn test(
         &self,
         [first, second]: [&[u32]; 2],
@@ -60,7 +60,8 @@ impl<'a> Refine<'a> {
         *seconds += start.elapsed().as_secs_f64();
     }
 
-    /// Tests a task's pairs, stretch after stretch, and makes the rows of each when it is its turn.
+    /// Tests a task's pairs stretch by stretch, and computes the rows of each stretch shortly
+    /// before its test.
     fn test_in_windows(
         &self,
         posed: UpdateInputs<'_>,
@@ -90,10 +91,10 @@ impl<'a> Refine<'a> {
     }
 }
 
-/// The places in which some pairs are, and those between: of bodies that move, which have the first
-/// places, and of the others.
+/// The ranges of places that include those of some pairs: one of moving bodies, which have the
+/// first places, and one of static bodies.
 fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2] {
-    /// The least place and the one after the greatest.
+    /// Finds the smallest place and the one after the largest.
     struct FindEnds<'a>(u32, [&'a [u32]; 2]);
     impl Kernel for FindEnds<'_> {
         type Output = [[u32; 2]; 2];
@@ -124,7 +125,7 @@ fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2]
         .map(|[least, end]| least.min(end) as usize..end as usize)
 }
 
-/// The or-DOP test that makes rows first where they are lacking, and sums up what it took.
+/// The or-DOP test that computes missing rows first, and sums up counts and times.
 pub(super) struct Refiner<'a> {
     inputs: Inputs<'a>,
     rows: &'a mut OrDopRows,
@@ -140,8 +141,8 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// Tests all pairs of a list and appends the survivors to `out`; on all threads if their
-    /// `tasks` are at hand.
+    /// Tests all pairs of a list and appends the survivors to `out`; on all threads if `tasks` are
+    /// given.
     pub fn refine(&mut self, list: &PairList, tasks: Option<&mut Tasks>, out: &mut PairList) {
         let Some(tasks) = tasks else {
             return self.refine_range(list, 0..list.len(), out);
@@ -152,13 +153,13 @@ impl<'a> Refiner<'a> {
             self.make_rows(list, 0..list.len());
         }
         let refine = Refine::new(self.inputs, self.rows);
-        // Tasks begin where stretches do, which were looked at one by one.
+        // Tasks begin at the start of stretches, which were checked one by one.
         let unit = if in_windows {
             PAIRS_PER_STRETCH
         } else {
             MAX_WIDTH
         };
-        let work = |units: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
+        let work = |units: Range<usize>, task: &mut Task, _: &TaskOutput<'_, '_>| {
             let pairs = units.start * unit..(units.end * unit).min(list.len());
             let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
             if in_windows {
@@ -174,7 +175,7 @@ impl<'a> Refiner<'a> {
         self.totals.update_seconds += done.update_seconds;
     }
 
-    /// Whether the places of each stretch of pairs lie so near each other that a window holds their
+    /// Whether the places of each stretch of pairs are so close together that a window holds their
     /// rows.
     fn are_near(&self, list: &PairList) -> bool {
         let Executor { tier, pool } = self.inputs.executor;
@@ -208,8 +209,8 @@ impl<'a> Refiner<'a> {
         Refine::new(self.inputs, self.rows).test(pairs, refining, refining_seconds, out);
     }
 
-    /// Makes the rows that this frame lacks: with lazy updates, those of some listed pairs, and
-    /// else all.
+    /// Computes the missing rows of this frame: with lazy updates those of some listed pairs,
+    /// otherwise all.
     fn make_rows(&mut self, list: &PairList, range: Range<usize>) {
         let executor = self.inputs.executor;
         let FrameVolumes {
@@ -314,8 +315,9 @@ mod tests {
         })
     }
 
+    /// Pairs are near whose places a window holds stretch by stretch.
     #[test]
-    fn pairs_are_near_whose_places_a_window_holds_stretch_by_stretch() {
+    fn window_decides_near_stretches() {
         // The first three places are those that move.
         let is_near = |pairs: &[[u32; 2]]| {
             let list: PairList = pairs.iter().copied().collect();
@@ -332,8 +334,9 @@ mod tests {
         assert!(!is_near(&pairs));
     }
 
+    /// The places of pairs go from the least to the greatest.
     #[test]
-    fn the_places_of_pairs_go_from_the_least_to_the_greatest() {
+    fn places_cover_all_pairs() {
         for tier in Tier::available() {
             let pairs: [&[u32]; 2] = [&[7, 9, 8], &[5, 30, 6]];
             assert_eq!(places_of(tier, 40, pairs), [5..31, 0..0]);
@@ -345,8 +348,9 @@ mod tests {
         }
     }
 
+    /// Rows made on demand count as updates and take an update's time.
     #[test]
-    fn rows_made_on_demand_count_as_updates_and_take_an_update_s_time() {
+    fn lazy_rows_count_as_updates() {
         let [eager, lazy] = [Updates::Eager, Updates::Lazy].map(refined);
         assert_eq!([eager, lazy].map(|t| t.refining.updates), [0, 3]);
         assert_eq!(eager.update_seconds, 0.0);

@@ -1,28 +1,28 @@
 //! S-DOP, sequential (paper, section 4a): a pair whose spheres overlap goes to the or-DOP test at
 //! once.
 //!
-//! "At once" means a block of some [`PAIRS_PER_BLOCK`] pairs here, since one pair can't fill a
-//! vector; no list of the potentially colliding set is kept. The same flow serves the object of
-//! interest (section 4c), where some pairs of the block are not refined, and oriented volumes
-//! without a sphere stage.
+//! "At once" means in blocks of about [`PAIRS_PER_BLOCK`] pairs, because one pair can't fill a
+//! vector. No list of the potentially colliding set is kept. The same flow serves objects of
+//! interest (section 4c), where some pairs of a block are not refined, and oriented volumes without
+//! a sphere stage.
 
 use std::ops::Range;
 
 use super::interest::InterestFilter;
 use super::listing::{Listing, PairNames};
-use super::output::{Outlet, Output};
+use super::output::{Output, TaskOutput};
 use super::refine::Refine;
 use super::tasks::{Task, split_work};
 use super::{Inputs, Scratch, Totals};
 use crate::pairs::PairList;
 use crate::update::OrDopRows;
 
-/// Pairs that flow through the or-DOP test at once where no list is kept: few enough for the
-/// first-level cache, enough to make the clock's cost vanish.
+/// Pairs per block if no list is kept: few enough for the first-level cache, and enough to make the
+/// clock's cost negligible.
 const PAIRS_PER_BLOCK: usize = 256;
 
-/// Candidates that pass the first test, then or-DOPs block by block; with `interest`, only for
-/// pairs that have a body of interest.
+/// Refines the candidates that pass the first test block by block; with `interest`, only pairs that
+/// have a body of interest.
 pub(super) fn flow(
     inputs: Inputs<'_>,
     rows: &OrDopRows,
@@ -32,7 +32,7 @@ pub(super) fn flow(
 ) -> Totals {
     let listing = Listing::new(inputs, PairNames::Places);
     let refine = Refine::new(inputs, rows);
-    let work = |parts: Range<usize>, task: &mut Task, outlet: &Outlet<'_, '_>| {
+    let work = |parts: Range<usize>, task: &mut Task, outlet: &TaskOutput<'_, '_>| {
         refine_blocks(&listing, parts, &refine, interest, task, outlet);
     };
     let units = inputs.arranged.finder.parts();
@@ -45,14 +45,14 @@ pub(super) fn flow(
     )
 }
 
-/// One task: candidates are refined whenever they fill a block.
+/// Runs one task: candidates are refined whenever they fill a block.
 fn refine_blocks(
     listing: &Listing<'_>,
     parts: Range<usize>,
     refine: &Refine<'_>,
     interest: Option<&[bool]>,
     task: &mut Task,
-    outlet: &Outlet<'_, '_>,
+    outlet: &TaskOutput<'_, '_>,
 ) {
     let Task {
         out,

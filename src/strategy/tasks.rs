@@ -3,14 +3,14 @@
 use std::ops::Range;
 
 use super::Totals;
-use super::output::{Outlet, Output, Turns};
+use super::output::{Output, OutputTurns, TaskOutput};
 use crate::counters::VolumeCounters;
 use crate::pairs::PairList;
 use crate::threads::Threads;
 #[cfg(feature = "shapes")]
 use crate::update::RowWindow;
 
-/// Tasks per thread: a thread that is done early takes another.
+/// Tasks per thread. A thread that finishes early takes another one.
 const TASKS_PER_THREAD: usize = 4;
 
 /// One contiguous range of the work, with buffers that stay from frame to frame.
@@ -18,20 +18,20 @@ const TASKS_PER_THREAD: usize = 4;
 pub(super) struct Task {
     /// Reported pairs, or candidates.
     pub out: PairList,
-    /// Candidates that wait for the refining test.
+    /// Candidates for the refining test.
     pub block: PairList,
-    /// Those of a block that have a body of interest.
+    /// The candidates of a block that have a body of interest.
     pub selected: PairList,
-    /// Those of them that survived.
+    /// The selected candidates that survived.
     pub survivors: PairList,
-    /// Rows that are made where they are tested.
+    /// Rows that are computed where they are tested.
     #[cfg(feature = "shapes")]
     pub window: RowWindow,
     pub first: VolumeCounters,
     pub refining: VolumeCounters,
     /// Seconds in the refining test.
     pub seconds: f64,
-    /// Seconds in making rows.
+    /// Seconds of computing rows.
     pub update_seconds: f64,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Task {
 pub(crate) struct Tasks(pub(super) Vec<Task>);
 
 impl Tasks {
-    /// Gives back the memory of all lists of pairs.
+    /// Frees the memory of all lists of pairs.
     pub fn shrink_to_fit(&mut self) {
         *self = Self::default();
     }
@@ -55,13 +55,14 @@ impl Tasks {
     }
 }
 
-/// Splits `units` of work into tasks; what they list goes to `output` in the order of the work.
+/// Splits `units` of work into tasks. The pairs that they list go to `output` in the order of the
+/// work.
 pub(super) fn split_work(
     pool: &Threads,
     Tasks(tasks): &mut Tasks,
     units: usize,
     output: Output<'_>,
-    work: impl Fn(Range<usize>, &mut Task, &Outlet<'_, '_>) + Sync,
+    work: impl Fn(Range<usize>, &mut Task, &TaskOutput<'_, '_>) + Sync,
 ) -> Totals {
     let threads = pool.threads();
     let count = match threads {
@@ -81,18 +82,18 @@ pub(super) fn split_work(
     let range = |index: usize| index * units / count..(index + 1) * units / count;
     match output {
         Output::List(out) => {
-            // The first task's list is the common one: with a single task nothing is copied.
+            // The first task writes to the common list, so that a single task copies nothing.
             std::mem::swap(out, &mut tasks[0].out);
             pool.each(tasks, |index, task| {
-                work(range(index), task, &Outlet::Kept);
+                work(range(index), task, &TaskOutput::Kept);
             });
             std::mem::swap(out, &mut tasks[0].out);
             out.append_all(tasks[1..].iter().map(|task| &task.out));
         }
         Output::Portions(sink) => {
-            let turns = Turns::new(sink);
+            let turns = OutputTurns::new(sink);
             pool.each(tasks, |index, task| {
-                let outlet = Outlet::HandedOver(turns.of(index));
+                let outlet = TaskOutput::HandedOver(turns.of(index));
                 work(range(index), task, &outlet);
                 outlet.end(&mut task.out);
             });
@@ -117,7 +118,7 @@ mod tests {
     fn shares(threads: usize, units: usize) -> (Vec<[u32; 2]>, Totals) {
         let pool = Threads::new(threads).expect("a few threads");
         let mut out = PairList::default();
-        let work = |share: Range<usize>, task: &mut Task, _: &Outlet<'_, '_>| {
+        let work = |share: Range<usize>, task: &mut Task, _: &TaskOutput<'_, '_>| {
             task.out.push(share.start as u32, share.end as u32);
             (task.first.tests, task.refining.hits) = (share.len() as u64, 1);
             task.seconds = 6.0;
@@ -127,8 +128,9 @@ mod tests {
         (out.iter().collect(), totals)
     }
 
+    /// A thread has four tasks unless there is less work.
     #[test]
-    fn a_thread_has_four_tasks_unless_there_is_less_work() {
+    fn threads_get_four_tasks() {
         for (threads, units, tasks) in [(1, 100, 1), (3, 100, 12), (3, 5, 5), (2, 0, 1)] {
             let (shares, totals) = shares(threads, units);
             assert_eq!(shares.len(), tasks, "{units} units");

@@ -1,9 +1,9 @@
 //! S-DOP under a budget (the paper's third phase; Hubbard 1996): the potentially colliding set is
-//! refined in a chosen order until the budget ends, and what isn't refined counts as colliding
-//! (Dingliana & O'Sullivan 2000).
+//! refined in a chosen order until the budget is spent, and pairs that are not refined are reported
+//! as colliding (Dingliana & O'Sullivan 2000).
 //!
-//! A budget of tests gives the same pairs everywhere; a budget of time is compared with the clock
-//! after every [`TESTS_PER_CLOCK_READING`] tests.
+//! A budget of tests gives the same pairs on every machine. A budget of time is compared with the
+//! clock after every [`TESTS_PER_CLOCK_READING`] tests.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -17,10 +17,10 @@ use crate::pairs::PairList;
 use crate::settings::{Budget, Order};
 use crate::update::OrDopRows;
 
-/// Tests between two readings of the clock: some microseconds.
+/// Tests between two readings of the clock: a few microseconds.
 const TESTS_PER_CLOCK_READING: usize = 128;
 
-/// What a frame leaves to the next: when pairs were refined, and buffers.
+/// The refinement history, and buffers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct History {
     /// For each pair that spheres reported in the last frame, the frame in which it was last
@@ -30,9 +30,10 @@ pub(super) struct History {
     ranked: Vec<RankedPair>,
 }
 
-/// When pairs were refined: sorted pairs of bodies, each with a rank that is 0 for never and grows
-/// by one from each frame in which some were refined last to the next such frame. So equal
-/// histories are equal, whatever the frames' numbers.
+/// The refinement history without frame numbers: sorted pairs of bodies with ranks. The rank is 0
+/// for pairs that were never refined; pairs that were last refined in the same frame have the same
+/// rank, and later frames have higher ranks, without gaps. Equal histories therefore compare equal,
+/// whatever the frames' numbers.
 #[cfg(feature = "serde")]
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct RefinementRanks(pub Vec<([u32; 2], u32)>);
@@ -45,8 +46,8 @@ impl RefinementRanks {
     }
 }
 
-/// A pair in the order of refinement: by rank, then by body, so that the order is the same for
-/// every pair finder.
+/// A pair with its rank. Pairs are ordered by rank, then by body, which is the same for every pair
+/// finder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RankedPair {
     rank: u32,
@@ -146,8 +147,8 @@ impl<'a> Spender<'a> {
         }
     }
 
-    /// Appends what is reported of some candidates to `out`: those that survive the or-DOP test,
-    /// and those that the budget leaves untested.
+    /// Appends the reported pairs among some candidates to `out`: those that survive the or-DOP
+    /// test, and those that the budget leaves untested.
     fn report(&mut self, candidates: &PairList, range: Range<usize>, out: &mut PairList) {
         let limit = range.end.min(range.start.saturating_add(self.tests_left));
         let slice = if self.deadline.is_some() {
@@ -186,7 +187,7 @@ fn arrange(inputs: Inputs<'_>, history: &mut History, candidates: &mut PairList)
     let rank = |bodies: [u32; 2], places: [u32; 2]| match order {
         Order::AsFound => 0,
         Order::InterestFirst => u32::from(bodies.iter().all(of_no_interest)),
-        // Of numbers that aren't negative, the bits sort as the values do.
+        // The bits of non-negative numbers sort as the values do.
         Order::LargestOverlap => relative_distance(inputs.volumes.posed.balls, places).to_bits(),
         Order::OldestAnswer => refined.get(&bodies).copied().unwrap_or(0),
     };
@@ -215,13 +216,13 @@ fn relative_distance(spheres: &[[f32; 4]], pair: [u32; 2]) -> f32 {
 }
 
 impl History {
-    /// Gives back the memory of buffers.
+    /// Frees the memory of buffers.
     pub fn shrink_to_fit(&mut self) {
         self.refined.shrink_to_fit();
         (self.before, self.ranked) = Default::default();
     }
 
-    /// When pairs were refined, apart from the numbers of frames.
+    /// The refinement history without frame numbers.
     #[cfg(feature = "serde")]
     pub fn answers(&self) -> RefinementRanks {
         let mut answers: Vec<_> = self.refined.iter().map(|(&pair, &at)| (pair, at)).collect();
@@ -236,15 +237,15 @@ impl History {
         RefinementRanks(answers)
     }
 
-    /// Takes over when pairs were refined; the coming frames have larger numbers than the latest
+    /// Replaces the refinement history. Coming frames must have larger numbers than the latest
     /// rank.
     #[cfg(feature = "serde")]
     pub fn set_answers(&mut self, answers: &RefinementRanks) {
         self.refined = answers.0.iter().copied().collect();
     }
 
-    /// Notes in which frame each of the sphere hits was last refined: the first `refined` of
-    /// `pairs` in this one.
+    /// Records the frame in which each sphere hit was last refined: this one for the first
+    /// `refined` of `pairs`.
     fn remember(&mut self, pairs: impl Iterator<Item = [u32; 2]>, refined: usize, stamp: u32) {
         std::mem::swap(&mut self.refined, &mut self.before);
         self.refined.clear();
@@ -259,16 +260,18 @@ impl History {
 mod tests {
     use super::*;
 
+    /// Distances are relative to the sum of radii.
     #[test]
-    fn distances_are_relative_to_the_sum_of_radii() {
+    fn distances_are_relative_to_radii() {
         let spheres = [[9.0; 4], [1.0, 2.0, 3.0, 1.0], [-3.0, 6.0, -4.0, 2.0]];
         // Apart by (4, −4, 7), whose length is 9, of radii that are 3 together.
         assert_eq!(relative_distance(&spheres, [1, 2]), 9.0);
     }
 
+    /// Answers have ranks in the order of frames.
     #[cfg(feature = "serde")]
     #[test]
-    fn answers_have_ranks_in_the_order_of_frames() {
+    fn answer_ranks_follow_frames() {
         let mut history = History::default();
         history.remember([[0, 5], [0, 2], [3, 4]].into_iter(), 2, 7);
         history.remember([[3, 4], [0, 5], [1, 2]].into_iter(), 1, 900);
@@ -282,8 +285,9 @@ mod tests {
         assert_eq!(other.answers().0, [([0, 5], 1), ([3, 4], 2)]);
     }
 
+    /// Answers are kept and buffers are given back.
     #[test]
-    fn answers_are_kept_and_buffers_are_given_back() {
+    fn shrinking_keeps_the_answers() {
         let mut history = History::default();
         history.remember([[0, 1], [0, 2], [3, 4]].into_iter(), 2, 7);
         history.remember([[3, 4], [0, 1]].into_iter(), 1, 9);

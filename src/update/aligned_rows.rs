@@ -1,31 +1,30 @@
-//! Rows on cache lines of their own. A vector's memory is aligned as its elements are, that is to
-//! four bytes for floats: most rows would lie across two lines, and a row is read whole, at random.
+//! [`AlignedRows`]: rows that each occupy one cache line. A `Vec` of floats is only aligned to four
+//! bytes, so most rows would cross two lines, and rows are read whole and in random order.
 
 use std::ops::{Deref, DerefMut};
 
 use crate::simd::ROW;
 
-/// Bytes of a cache line, as many as a row has.
+/// Bytes of a cache line, and of a row.
 const CACHE_LINE_BYTES: usize = ROW * size_of::<f32>();
 
-/// Rows, each on one cache line. Those of a clone may lie across two, which takes time and changes
-/// nothing.
+/// Rows, each on one cache line. Rows of a clone may cross two lines, which costs time but changes
+/// no result.
 #[derive(Clone, Debug, Default)]
 pub struct AlignedRows {
     floats: Vec<f32>,
-    /// Where the first row begins.
+    /// The offset of the first row.
     first: usize,
     len: usize,
 }
 
 impl AlignedRows {
-    /// Room for `len` rows: the first ones stay, new ones are zero.
+    /// Resizes to `len` rows. New rows are zero.
     pub fn resize(&mut self, len: usize) {
         let needed = (len + 1) * ROW;
         if needed > self.floats.len() {
             let mut floats = vec![0.0; needed];
-            // At most a row less a float; the hint to the contrary that the function may give costs
-            // alignment alone.
+            // At most a row minus one float. If the function can't align, rows are not aligned.
             let first = floats.as_ptr().align_offset(CACHE_LINE_BYTES).min(ROW - 1);
             floats[first..first + self.len * ROW].copy_from_slice(self.as_flattened());
             (self.floats, self.first) = (floats, first);
@@ -58,8 +57,9 @@ impl DerefMut for AlignedRows {
 mod tests {
     use super::*;
 
+    /// Rows lie on lines and stay when their number changes.
     #[test]
-    fn rows_lie_on_lines_and_stay_when_their_number_changes() {
+    fn rows_stay_aligned_on_resize() {
         let mut lines = AlignedRows::default();
         assert!(lines.is_empty());
         for len in [3, 100, 7, 40, 1000] {

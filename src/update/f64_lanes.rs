@@ -1,20 +1,19 @@
-//! A vector of f64 in the formulas of a pose: every lane computes what one f64 would, to the bit.
+//! [`F64Lanes`]: a vector of f64 in which every lane computes what one f64 would, to the bit.
 //!
-//! Lanes of a tier and not arrays of numbers: of arrays, the compiler makes vectors of its own
-//! choice, and where a formula has sums and differences of the same products it mixes lanes of
-//! different bodies.
+//! It uses the tier's lanes, not arrays of numbers. The compiler vectorises arrays as it likes and,
+//! where a formula has sums and differences of the same products, mixes lanes of different bodies.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::rounding::pose::Real;
 use crate::simd::Lanes;
 
-/// As many f64 as the tier has f32.
+/// As many f64 as the tier's vectors have f32.
 #[derive(Clone, Copy)]
 pub struct F64Lanes<L: Lanes>(pub L, pub L::D);
 
 impl<L: Lanes> F64Lanes<L> {
-    /// The same numbers.
+    /// The same numbers in f64.
     #[inline(always)]
     pub fn of(l: L, numbers: L::F) -> Self {
         Self(l, l.widen(numbers))

@@ -1,5 +1,5 @@
-//! Eight f64 at a time, as plain arrays: compiled inside a [`Kernel`](crate::simd::Kernel), loops
-//! over them become vectors of its tier, and every lane computes what one f64 would, to the bit.
+//! [`F64x8`]: eight f64 as a plain array. Inside a [`Kernel`](crate::simd::Kernel), loops over it
+//! are compiled to vectors of the tier, and every lane computes what one f64 would, to the bit.
 
 #![allow(
     clippy::needless_range_loop,
@@ -25,7 +25,7 @@ impl F64x8 {
         Self([x; LANES])
     }
 
-    /// Smaller lane by lane.
+    /// The smaller number in each lane.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         let mut out = [0.0; LANES];
@@ -35,7 +35,7 @@ impl F64x8 {
         Self(out)
     }
 
-    /// Larger lane by lane.
+    /// The larger number in each lane.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         let mut out = [0.0; LANES];
@@ -46,7 +46,7 @@ impl F64x8 {
     }
 }
 
-// Loops and not closures: a closure is compiled without the tier's features.
+// Loops, because closures are compiled without the tier's features.
 macro_rules! lane_by_lane {
     ($($operator:ident, $name:ident, $sign:tt;)+) => {
         $(impl $operator for F64x8 {

@@ -1,4 +1,4 @@
-//! What is known of each shape that bodies are posed in.
+//! [`ShapeFrame`]: the numbers of a shape from which a body's volumes are updated.
 
 use std::ops::Deref;
 
@@ -9,40 +9,40 @@ use crate::rounding::up;
 use crate::simd::ROW;
 use crate::volume::{Basis, Shape};
 
-/// Where the basis begins in a shape's record, column by column.
+/// Index of the basis in a shape's record, column by column.
 pub const BASIS: usize = 0;
-/// Where the centre of its ball begins.
+/// Index of the ball's centre in a shape's record.
 pub const CENTRE: usize = 9;
-/// Where one over the length of each of the basis' columns begins, a number of f64 as the sum of
-/// three of f32.
+/// Index of the inverse length of the basis' columns in a shape's record: an f64 as the sum of
+/// three f32.
 pub const INVERSE_LENGTHS: usize = 12;
 
 /// The frames of all shapes.
 #[derive(Clone, Debug, Default)]
 pub struct ShapeFrames {
     frames: Vec<ShapeFrame>,
-    /// What or-DOPs are turned by: records that are read as columns, a vector of shapes at a time.
+    /// The records for or-DOP updates, which are read as columns, a vector of shapes at a time.
     pub(super) records: Vec<[f32; ROW]>,
-    /// Whether some ball's centre isn't its body's origin.
+    /// Whether some shape's ball centre is not its body's origin.
     some_eccentric: bool,
 }
 
 impl ShapeFrames {
-    /// Adds the next shape's.
+    /// Appends the frame of the next shape.
     pub fn push(&mut self, frame: ShapeFrame) {
         self.records.push(frame.record());
         self.some_eccentric |= frame.inflated.is_none();
         self.frames.push(frame);
     }
 
-    /// Puts another in the place of one.
+    /// Replaces the frame of a shape.
     pub(crate) fn set(&mut self, number: usize, frame: ShapeFrame) {
         self.records[number] = frame.record();
         self.some_eccentric |= frame.inflated.is_none();
         self.frames[number] = frame;
     }
 
-    /// Keeps the first ones, and no room for more.
+    /// Keeps the first `len` frames, and frees other memory.
     pub(crate) fn shrink_to(&mut self, len: usize) {
         self.records.truncate(len);
         self.frames.truncate(len);
@@ -51,7 +51,7 @@ impl ShapeFrames {
         self.some_eccentric = self.frames.iter().any(|frame| frame.inflated.is_none());
     }
 
-    /// Whether the centre of each body's ball is its origin.
+    /// Whether the centre of every ball is its body's origin.
     pub(super) fn are_centred(&self) -> bool {
         !self.some_eccentric
     }
@@ -72,15 +72,15 @@ impl FromIterator<ShapeFrame> for ShapeFrames {
     }
 }
 
-/// The numbers of a shape from which a body's volumes are updated, in the body frame.
+/// The numbers of a shape, in the body frame, from which a body's volumes are updated.
 #[derive(Clone, Debug)]
 pub struct ShapeFrame {
-    /// The shape, and how far it is grown beyond its vertices.
+    /// The number of the shape.
     pub(super) shape: u32,
     pub(super) margin: f32,
     centre: [f32; 3],
     radius: f32,
-    /// R, if the ball's centre is the body's origin: no pose changes it then.
+    /// The inflated radius R, if the ball's centre is the body's origin. No pose changes it then.
     pub(super) inflated: Option<f32>,
     pub(super) reach: f32,
     /// Column by column.
@@ -88,7 +88,7 @@ pub struct ShapeFrame {
 }
 
 impl ShapeFrame {
-    /// Of a shape whose or-DOP has the axes `basis`.
+    /// The frame of a shape whose or-DOP has the axes `basis`.
     #[must_use]
     pub fn new(shape: &Shape, basis: &Basis) -> Self {
         let frame = Self {
@@ -103,7 +103,7 @@ impl ShapeFrame {
         frame.with_radius(shape.ball.radius)
     }
 
-    /// The same with another radius about the ball's centre.
+    /// The frame with another radius about the ball's centre.
     #[must_use]
     pub fn with_radius(self, radius: f32) -> Self {
         let centred = self.centre == [0.0; 3];
@@ -114,18 +114,18 @@ impl ShapeFrame {
         }
     }
 
-    /// The same with the number of its shape, to whose hull world-aligned volumes are fitted.
+    /// The frame with the number of the hull to which world-aligned volumes are fitted.
     #[must_use]
     pub fn numbered(self, shape: u32) -> Self {
         Self { shape, ..self }
     }
 
-    /// The number of its shape's hull.
+    /// The number of the shape's hull.
     pub(crate) fn hull(&self) -> u32 {
         self.shape
     }
 
-    /// The same, grown by `margin` all around.
+    /// The frame grown by `margin` on all sides.
     #[must_use]
     pub fn grown(&self, margin: f32) -> Self {
         let grow = |size: f32| up(f64::from(size) + f64::from(margin));
@@ -141,13 +141,13 @@ impl ShapeFrame {
         frame.with_radius(grow(self.radius))
     }
 
-    /// The ball's radius, not inflated.
+    /// The ball's radius, without inflation.
     #[must_use]
     pub fn radius(&self) -> f32 {
         self.radius
     }
 
-    /// The ball's centre, body frame.
+    /// The ball's centre in the body frame.
     #[must_use]
     pub fn centre(&self) -> [f32; 3] {
         self.centre
@@ -159,13 +159,13 @@ impl ShapeFrame {
         self.reach
     }
 
-    /// Basis, centre and unit.
+    /// The record: basis, centre and inverse length.
     fn record(&self) -> [f32; ROW] {
         let mut record = [0.0; ROW];
         record[BASIS..CENTRE].copy_from_slice(self.basis.as_flattened());
         record[CENTRE..INVERSE_LENGTHS].copy_from_slice(&self.centre);
-        // Lengths are in (1/2, 1], so each part takes 24 bits of what the ones before it leave, and
-        // none is left of 53.
+        // Lengths are in (1/2, 1], so each part takes 24 bits of the rest, and three parts take all
+        // 53.
         let mut rest = over_norm(self.basis[0]);
         for part in &mut record[INVERSE_LENGTHS..INVERSE_LENGTHS + 3] {
             *part = rest as f32;
@@ -174,7 +174,7 @@ impl ShapeFrame {
         record
     }
 
-    /// The or-DOP's row of a body in this shape, whose slabs are in the table of number `table`.
+    /// The or-DOP row of a body of this shape, whose slabs are in the table number `table`.
     #[must_use]
     pub fn row(&self, table: u32, q: [f32; 4], t: [f32; 3]) -> [f32; ROW] {
         let (turn, mut row) = (rotation(q), [0.0; ROW]);
@@ -187,7 +187,7 @@ impl ShapeFrame {
         row
     }
 
-    /// Inflated world sphere (x, y, z, R) of a body in this shape.
+    /// The inflated world sphere (x, y, z, R) of a body of this shape.
     #[inline]
     #[must_use]
     pub fn sphere(&self, q: [f32; 4], t: [f32; 3]) -> [f32; 4] {
@@ -208,8 +208,9 @@ mod tests {
 
     use super::*;
 
+    /// A record has the unit to the bit.
     #[test]
-    fn a_record_has_the_unit_to_the_bit() {
+    fn shape_record_is_exact() {
         for (x, y, z, w) in [(0, 0, 0, 1), (1, 2, 3, 4), (-5, 7, 0, 11), (1, 0, 0, 1000)] {
             let basis = Basis::from_integer_quaternion([x, y, z, w]).unwrap();
             let frame = ShapeFrame {

@@ -1,4 +1,5 @@
-//! World-aligned updates: slabs re-fitted each frame to the hull's vertices and rounded outward.
+//! [`Intervals`]: updates of world-aligned volumes. Slabs are fitted to the posed hull vertices in
+//! each frame and rounded outward.
 
 #![allow(
     clippy::needless_range_loop,
@@ -15,21 +16,23 @@ use crate::simd::{Kernel, Lanes, dispatch};
 use crate::threads::Executor;
 use crate::volume::{DirectionSet, Hull, Shape};
 
-/// Bodies that one thread re-fits at a time.
+/// Bodies that one thread updates at a time.
 const BODIES_PER_TASK: usize = 32;
 
-/// World-aligned slabs by place, re-fitted each frame from the hull's vertices and rounded outward.
+/// World-aligned slabs by place, fitted to the posed hull vertices in each frame and rounded
+/// outward.
 #[derive(Clone, Debug)]
 pub struct Intervals {
     directions: DirectionSet,
-    /// Hull vertices of each shape, body frame, in eights; the last is filled up by its first.
+    /// Hull vertices of each shape in the body frame, eight at a time. The last group is padded
+    /// with its first vertex.
     hulls: Vec<Vec<[F64x8; 3]>>,
     /// `ends[place·slabs + slab]` = [lo, hi].
     pub ends: Vec<[f32; 2]>,
 }
 
 impl Intervals {
-    /// Room for `bodies` bodies in `shapes`.
+    /// Slabs for `bodies` bodies of `shapes`.
     #[must_use]
     pub fn new(directions: DirectionSet, shapes: &[Shape], bodies: usize) -> Self {
         Self {
@@ -39,19 +42,19 @@ impl Intervals {
         }
     }
 
-    /// Takes a shape as the one of this number: in place of another, or the next.
+    /// Sets the hull of this number to that of a shape: replaces one, or appends the next.
     pub(crate) fn set(&mut self, hull: usize, shape: &Shape) {
         self.hulls
             .resize_with(self.hulls.len().max(hull + 1), Vec::new);
         self.hulls[hull] = hull_in_eights(shape);
     }
 
-    /// Forgets the shape of this number.
+    /// Removes the hull of this number.
     pub(crate) fn clear(&mut self, hull: usize) {
         self.hulls[hull] = Vec::new();
     }
 
-    /// Keeps the first shapes, and no room for more.
+    /// Keeps the first `hulls` hulls, and frees other memory.
     pub(crate) fn shrink_to(&mut self, hulls: usize) {
         self.hulls.truncate(hulls);
         self.hulls.shrink_to_fit();
@@ -63,12 +66,12 @@ impl Intervals {
         self.ends.resize(bodies * slabs, [0.0; 2]);
     }
 
-    /// Room for no body, and no memory kept for any.
+    /// Removes all bodies and frees their memory.
     pub(crate) fn forget_bodies(&mut self) {
         self.ends = Vec::new();
     }
 
-    /// Re-fits the slabs of the bodies in a range of places, and the cubes about their boxes:
+    /// Updates the slabs of the bodies in a range of places, and the cubes around their boxes:
     /// centre and half side.
     pub fn update(
         &mut self,
@@ -114,7 +117,7 @@ fn hull_in_eights(shape: &Shape) -> Vec<[F64x8; 3]> {
     in_eights.collect()
 }
 
-/// The cube about a box, whose slabs are the first three: if two boxes meet, so do their cubes.
+/// The cube around a box, whose slabs are the first three. If two boxes meet, so do their cubes.
 fn cube_about(ends: &[[f32; 2]]) -> [f32; 4] {
     let mut cube = [0.0; 4];
     for (axis, &[lo, hi]) in ends[..3].iter().enumerate() {
@@ -127,7 +130,7 @@ fn cube_about(ends: &[[f32; 2]]) -> [f32; 4] {
     cube
 }
 
-/// The slabs of consecutive places.
+/// Computes the slabs of consecutive places.
 struct Refit<'a> {
     posed: UpdateInputs<'a>,
     hulls: &'a [Vec<[F64x8; 3]>],
@@ -160,7 +163,7 @@ impl Kernel for Refit<'_> {
     }
 }
 
-/// The slabs of posed points along integer directions of the world axes.
+/// The slabs of posed points along integer combinations of the world axes.
 #[inline(always)]
 fn fit(
     ends: &mut [[f32; 2]],
@@ -205,7 +208,7 @@ fn fit(
     }
 }
 
-/// Moves slabs out by `margin`.
+/// Moves slabs outward by `margin`.
 fn widen(ends: &mut [[f32; 2]], coefficients: &[[i8; 3]], margin: f32) {
     for ([lo, hi], c) in ends.iter_mut().zip(coefficients) {
         let out = f64::from(margin) * norm(c.map(f32::from));
@@ -229,7 +232,7 @@ mod tests {
 
     /// To round outward once more would lose no pair, and report some that are apart.
     #[test]
-    fn without_a_margin_slabs_are_one_place_wider_than_the_body_and_with_one_by_that() {
+    fn slabs_grow_by_their_margin() {
         let half = [1.0, 2.5, 0.75];
         let [x, y, z] = half.map(|half| 2.0 * half);
         let mesh = ProceduralShape::Box { x, y, z }.build().expect("a box");
@@ -265,8 +268,9 @@ mod tests {
         }
     }
 
+    /// A cube contains its box and is as small as the box is wide.
     #[test]
-    fn a_cube_contains_its_box_and_is_as_small_as_the_box_is_wide() {
+    fn cube_contains_its_box_tightly() {
         let mut random = ChaCha8Rng::seed_from_u64(3);
         let mut next = || (random.next_u32() >> 8) as f32 * exp2(-24) as f32;
         for n in 0..1000 {
@@ -287,9 +291,9 @@ mod tests {
         }
     }
 
-    /// Mirrored slabs meet as the true ones do, so that no list of pairs tells them apart.
+    /// Mirrored slabs meet exactly if the true ones do, so lists of pairs can't distinguish them.
     #[test]
-    fn slabs_are_those_of_the_vertices_in_the_world() {
+    fn slabs_fit_posed_vertices() {
         let vertices = [[1.0, 2.0, 3.0], [-2.0, 0.5, 1.0], [0.25, -4.0, -0.5]];
         let mut hull = [F64x8::splat(0.0); 3];
         for (axis, eight) in hull.iter_mut().enumerate() {

@@ -1,8 +1,8 @@
 //! The update stage (the paper's Nu): poses in, world-space volumes out.
 //!
-//! A body's volumes move, they are never re-fitted: a sphere update is a copy of the translation
-//! (ball-centred shapes) or one transformed point, an or-DOP update turns the basis. World-aligned
-//! volumes alone are re-fitted, from hull vertices.
+//! Spheres and or-DOPs move with the body and are never fitted again. Updating a sphere copies the
+//! translation (for ball-centred shapes) or transforms one point; updating an or-DOP rotates the
+//! basis. Only world-aligned volumes are fitted in each frame, to hull vertices.
 
 mod aligned_rows;
 mod f64_lanes;
@@ -28,21 +28,21 @@ use crate::bodies::{Bodies, Places, read_ahead};
 use crate::simd::prefetch_ends;
 use crate::threads::Executor;
 
-/// How many places ahead a pose is prefetched: bodies that are neighbours in space lie anywhere in
-/// the user's columns, and a cache miss takes as long as some ten updates.
+/// How many places ahead a pose is prefetched. Neighbours in space may be anywhere in the user's
+/// columns, and a cache miss takes as long as about ten updates.
 const PREFETCH_DISTANCE: usize = 64;
 
-/// Translations that are read ahead, up to so many bytes: of more, the second-level cache has lost
-/// the first when the last are read, and a third-level cache that is shared with others may have,
-/// too.
+/// The most bytes of translations that are read ahead. With more, the first ones are no longer in
+/// the second-level cache when the last are read, and perhaps not in a shared third-level cache
+/// either.
 const MOST_READ_AHEAD_BYTES: usize = 4 << 20;
 
-/// Bodies whose spheres one thread updates at a time: some ten microseconds.
+/// Bodies whose spheres one thread updates at a time: about ten microseconds.
 const BODIES_PER_TASK: usize = 4096;
 
 /// Updates the spheres (x, y, z, R) of the bodies in a range of places. Returns whether all
-/// translations, and the centres that a rotation takes part in, are within the contract: checked
-/// here, where they are at hand, this costs few instructions a body (`benches/README.md`).
+/// translations, and the centres that depend on a rotation, are within the contract. Checking it
+/// here, where they have just been computed, costs few instructions per body (`benches/README.md`).
 pub fn update_spheres(
     executor: Executor<'_>,
     spheres: &mut [[f32; 4]],
@@ -71,7 +71,7 @@ pub fn update_spheres(
             }
             let (body, frame) = (body as usize, &frames[shape as usize]);
             let t = bodies.translation[body];
-            // The rotation lies elsewhere in memory: reading it for nothing doubles the time of a
+            // The rotation is elsewhere in memory. Reading it without need doubles the time for a
             // million bodies.
             *sphere = match frame.inflated {
                 Some(inflated) => [t[0], t[1], t[2], inflated],
@@ -83,7 +83,7 @@ pub fn update_spheres(
                 }
             };
         }
-        // A centre apart from its body's origin may lie a little further out than the translation.
+        // A centre other than the body's origin may be a little farther out than the translation.
         if !balls_are_within_limit(tier, spheres) {
             sound &= turned && centred_within_limit(spheres, frames, &places.shape[start..]);
         }
@@ -94,7 +94,7 @@ pub fn update_spheres(
     is_sound.into_inner()
 }
 
-/// Whether those of the balls are within the contract whose centres are translations.
+/// Whether the balls whose centres are translations are within the contract.
 fn centred_within_limit(balls: &[[f32; 4]], frames: &[ShapeFrame], shapes: &[u32]) -> bool {
     let mut balls = balls.iter().zip(shapes);
     balls.all(|([x, y, z, radius], &shape)| {
@@ -137,8 +137,9 @@ mod tests {
         f64::from(size) >= sum && f64::from(size.next_down().next_down()) <= sum
     }
 
+    /// A frame has the sizes of its shape and grows by the margin to the ulp.
     #[test]
-    fn a_frame_has_the_sizes_of_its_shape_and_grows_by_the_margin_to_the_ulp() {
+    fn shape_frame_grows_by_margin() {
         for centre in [[0.0; 3], [0.5, -3.0, 0.125]] {
             let shape = boxed(centre);
             let frame = ShapeFrame::new(&shape, &shape.ordop.basis);
@@ -183,8 +184,9 @@ mod tests {
         answers[0]
     }
 
+    /// A body off its ball's centre is judged by its pose and others by their ball.
     #[test]
-    fn a_body_off_its_ball_s_centre_is_judged_by_its_pose_and_others_by_their_ball() {
+    fn eccentric_bodies_are_checked_by_pose() {
         let shapes = [boxed([0.0; 3]), boxed([LIMIT / 4.0, 0.0, 0.0])];
         let (still, no_turn, at) = ([0.0, 0.0, 0.0, 1.0], [0.0; 4], [3.0, -7.0, 0.5]);
         let [near, edge, beyond] = [LIMIT / 2.0, LIMIT, LIMIT.next_up()].map(|x| [x, 0.0, 0.0]);

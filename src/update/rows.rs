@@ -1,6 +1,6 @@
-//! or-DOP updates: the basis is turned with the body, its slabs stay.
+//! [`OrDopRows`]: or-DOP updates. The basis is rotated with the body, and its slabs stay.
 //!
-//! Sixteen bodies at a time, whatever the tier.
+//! They are computed for sixteen bodies at a time in every tier.
 
 use std::ops::Range;
 
@@ -17,13 +17,13 @@ use crate::simd::{
 };
 use crate::threads::Executor;
 
-/// Bodies whose rows one thread makes at a time: some microseconds.
+/// Bodies whose rows one thread computes at a time: a few microseconds.
 const ROWS_PER_TASK: usize = 512;
 
-/// Bodies whose rows are made together.
+/// Bodies whose rows are computed together.
 pub(super) const BODIES_PER_BATCH: usize = MAX_WIDTH;
 
-/// or-DOP rows by place, each with the frame in which it was last made.
+/// or-DOP rows by place, each with the frame in which it was last computed.
 #[derive(Clone, Debug, Default)]
 pub struct OrDopRows {
     /// One row per body.
@@ -35,19 +35,20 @@ pub struct OrDopRows {
 /// The inputs of an or-DOP update.
 #[derive(Clone, Copy)]
 pub struct UpdateInputs<'a> {
-    /// Of every shape.
+    /// The frames of all shapes.
     pub frames: &'a ShapeFrames,
-    /// The poses.
+    /// The bodies, with their poses.
     pub bodies: &'a Bodies,
     /// The body in each place.
     pub places: &'a Places,
-    /// Updated spheres by place, or none: where the centre of each ball is its body's origin,
-    /// translations are read here, in order, and not again from anywhere in the user's columns.
+    /// Updated spheres by place, or an empty slice. If the centre of each ball is its body's
+    /// origin, translations are read from here in order, instead of from the user's columns in
+    /// random order.
     pub balls: &'a [[f32; 4]],
 }
 
 impl OrDopRows {
-    /// Room for `bodies` bodies.
+    /// Rows for `bodies` bodies.
     #[must_use]
     pub fn new(bodies: usize) -> Self {
         let mut rows = Self::default();
@@ -61,7 +62,8 @@ impl OrDopRows {
         self.made.resize(bodies, 0);
     }
 
-    /// Updates the rows of the bodies in a range of places; `stamp` counts frames from 1.
+    /// Updates the rows of the bodies in a range of places. `stamp` is the number of the frame,
+    /// from 1.
     pub fn update(
         &mut self,
         executor: Executor<'_>,
@@ -79,7 +81,7 @@ impl OrDopRows {
     }
 
     /// Lazily updates the rows in the places `wanted` whose bodies move and whose rows are not yet
-    /// made in this frame. Returns how many were made.
+    /// computed in this frame. Returns how many it computed.
     pub fn update_missing(
         &mut self,
         tier: Tier,
@@ -108,7 +110,7 @@ impl OrDopRows {
     }
 }
 
-/// Rows of consecutive places.
+/// Computes the rows of consecutive places.
 pub(super) struct ConsecutiveRows<'a> {
     pub posed: UpdateInputs<'a>,
     pub first: usize,
@@ -148,7 +150,7 @@ impl Kernel for ConsecutiveRows<'_> {
     }
 }
 
-/// Rows of listed places.
+/// Computes the rows of listed places.
 struct ListedRows<'a> {
     posed: UpdateInputs<'a>,
     places: &'a [u32],
@@ -184,14 +186,14 @@ impl UpdateInputs<'_> {
         }
     }
 
-    /// Whether translations can be read off the balls.
+    /// Whether translations can be read from the balls.
     #[inline(always)]
     fn balls_are_at_origins(&self) -> bool {
         self.frames.are_centred() && !self.balls.is_empty()
     }
 
     /// The translations of the bodies in sixteen places from `first` on, as the first three numbers
-    /// of quads: the balls where they stand, or else what is gathered in `buffer`.
+    /// of quads: the balls themselves, or otherwise gathered into `buffer`.
     #[inline(always)]
     fn origins<'b>(
         &'b self,
@@ -237,9 +239,9 @@ impl UpdateInputs<'_> {
         self.make(l, (&bodies, &shapes), origins, rows);
     }
 
-    /// The rows (Q, t, o, shape) of sixteen bodies; the first three numbers of `origins` are their
-    /// translations. What is read a body at a time is turned into columns, and these into rows
-    /// again, a vector at a time: number by number it would take longer than the arithmetic.
+    /// Computes the rows (Q, t, o, shape) of sixteen bodies; the first three numbers of each of
+    /// `origins` are the translation. Inputs are transposed to columns and results back to rows, a
+    /// vector at a time. Doing this number by number would take longer than the arithmetic.
     #[inline(always)]
     fn make<L: Lanes>(
         &self,
@@ -250,14 +252,14 @@ impl UpdateInputs<'_> {
     ) {
         let (mut codes, mut made) = ([0; BODIES_PER_BATCH], [[0.0; BODIES_PER_BATCH]; ROW]);
         for lane in 0..BODIES_PER_BATCH {
-            // fits: the contract has fewer bodies than there are codes
+            // Fits, because the contract allows fewer bodies than there are codes.
             codes[lane] = bodies[lane] << 4;
             made[S][lane] = f32::from_bits(SHAPE + shapes[lane]);
         }
         let are_centred = self.frames.are_centred();
         let mut start = 0;
         while start < BODIES_PER_BATCH {
-            // Loops and no closures, which would be compiled apart and without the tier's features.
+            // Loops, because closures would be compiled without the tier's features.
             let q = l.gather_quads(&self.bodies.rotation, &codes[start..]);
             let record = l.load_transposed(&self.frames.records, &shapes[start..]);
             let translation = l.load_quads(&origins[start..]);
@@ -302,7 +304,7 @@ impl UpdateInputs<'_> {
     }
 }
 
-/// Three numbers that follow each other.
+/// Three consecutive numbers.
 #[inline(always)]
 fn column<N: Copy>(numbers: &[N; ROW], first: usize) -> [N; 3] {
     [numbers[first], numbers[first + 1], numbers[first + 2]]
@@ -345,8 +347,9 @@ mod tests {
             .collect()
     }
 
+    /// Every lane of every tier computes what one f64 would.
     #[test]
-    fn every_lane_of_every_tier_computes_what_one_f64_would() {
+    fn every_lane_matches_plain_f64() {
         let shapes = shapes();
         let frames: ShapeFrames = shapes
             .iter()

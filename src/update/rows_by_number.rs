@@ -1,24 +1,24 @@
-//! Where each body's row is.
+//! [`RowsByNumber`]: the index of each body's row.
 
 use std::ops::Deref;
 
 use crate::simd::ROW;
 
-/// Rows that are found by their body's number: one a body, or two rings of a power of two, of which
-/// the first has rows of bodies that move, the second those of the others.
+/// Rows that are found by their body's number: one row per body, or two rings whose length is a
+/// power of two. The first ring has the rows of moving bodies, the second those of static ones.
 #[derive(Clone, Copy, Debug)]
 pub struct RowsByNumber<'a> {
     rows: &'a [[f32; ROW]],
-    /// The bits of a body's number that its row's has.
+    /// Mask of the bits of a body's number that select its row.
     bits: u32,
-    /// From this number on, bodies don't move.
+    /// The first number of a static body.
     still: u32,
-    /// Where their ring begins.
+    /// The start of the second ring.
     second: u32,
 }
 
 impl<'a> RowsByNumber<'a> {
-    /// A row for each body.
+    /// One row per body.
     #[must_use]
     pub fn all(rows: &'a [[f32; ROW]]) -> Self {
         Self {
@@ -29,8 +29,8 @@ impl<'a> RowsByNumber<'a> {
         }
     }
 
-    /// Two rings, equally long. The bodies of the numbers below `moving` have their rows in the
-    /// first one.
+    /// Two rings of equal length. Bodies with numbers below `moving` have their rows in the first
+    /// one.
     #[must_use]
     pub fn in_rings(rows: &'a [[f32; ROW]], moving: usize) -> Self {
         let ring = rows.len() / 2;
@@ -43,7 +43,7 @@ impl<'a> RowsByNumber<'a> {
         }
     }
 
-    /// Where a body's row is.
+    /// The index of a body's row.
     #[inline(always)]
     #[must_use]
     pub fn find(&self, body: u32) -> u32 {

@@ -1,10 +1,10 @@
-//! or-DOP rows of stretches of places that move on through them.
+//! [`RowWindow`]: or-DOP rows of a moving window of places.
 //!
-//! A million rows are 64 MB: written by the update and read by the test, they go to memory and
-//! back. Pairs come in the order of slots, and where places have nearly that order, rows made
-//! shortly before they are wanted are still in the second-level cache. The rows stand in two rings,
-//! so that one that leaves makes room for one that comes: bodies that move have the first places,
-//! the others the last, and those that are near each other in space lie near each other in both.
+//! A million rows are 64 MB, which the update would write to memory and the test would read back.
+//! Pairs come in the order of slots. If places have nearly that order, rows can be computed shortly
+//! before they are needed and are still in the second-level cache. Rows are in two rings, in which
+//! new rows overwrite old ones: one for moving bodies, which have the first places, and one for
+//! static bodies. Neighbours in space are near each other in both.
 
 use std::ops::Range;
 
@@ -13,33 +13,34 @@ use super::rows::{BODIES_PER_BATCH, ConsecutiveRows, UpdateInputs};
 use super::rows_by_number::RowsByNumber;
 use crate::simd::{ROW, Tier, dispatch};
 
-/// The longest stretch that is covered; its ring takes 8 MB.
+/// The longest window, in rows; its ring takes 8 MB.
 pub const MOST_ROWS: usize = 1 << 16;
 
-/// The shortest ring.
+/// The shortest ring, in rows.
 const FEWEST_ROWS: usize = 1 << 12;
 
-/// Rows are made so many at once, beyond those that are wanted.
+/// Rows that are computed at once, beyond those that are needed.
 const ROWS_PER_BATCH: usize = 256;
 
-/// The rows of two stretches of consecutive places, of bodies that move and of bodies that don't.
+/// The rows of two ranges of consecutive places, one of moving and one of static bodies.
 #[derive(Clone, Debug, Default)]
 pub struct RowWindow {
-    /// Two rings, each a power of two of rows: the row of a place has the number of its lower bits.
+    /// Two rings whose length is a power of two. The lower bits of a place are the index of its
+    /// row.
     rings: AlignedRows,
-    /// The places whose rows are in each ring, of this frame.
+    /// The places whose rows of this frame are in each ring.
     held: [Range<usize>; 2],
 }
 
 impl RowWindow {
-    /// Forgets all rows: those of another frame.
+    /// Forgets all rows, at the start of a frame.
     pub fn clear(&mut self) {
         self.held = Default::default();
     }
 
-    /// Sees to it that the rows of these places are there, first those of bodies that move, then
-    /// the others. There are no more of either than [`MOST_ROWS`]. Bodies that don't move have
-    /// their rows in `made`, by place.
+    /// Ensures that the rows of these two ranges of places are in the rings: first of moving
+    /// bodies, then of static ones. Each range has at most [`MOST_ROWS`] places. The rows of static
+    /// bodies are copied from `made`, which is by place.
     pub fn cover(
         &mut self,
         tier: Tier,
@@ -66,15 +67,15 @@ impl RowWindow {
         fill(second, still, wanted_still, posed.places.len(), copy);
     }
 
-    /// The rows that are there; bodies that move have the places below `moving`.
+    /// The rows in the rings. Moving bodies have the places below `moving`.
     #[must_use]
     pub fn rows(&self, moving: usize) -> RowsByNumber<'_> {
         RowsByNumber::in_rings(&self.rings, moving)
     }
 }
 
-/// Sees to it that a ring, which holds the rows of some places, has those that are wanted, and some
-/// that follow up to the place `limit`. `make` makes the rows from a place on.
+/// Ensures that a ring has the rows of the places that are wanted, and computes some of the
+/// following ones, up to the place `limit`. `make` computes the rows from a place on.
 fn fill(
     ring: &mut [[f32; ROW]],
     held: &mut Range<usize>,
@@ -113,7 +114,7 @@ mod tests {
     /// Stretches that follow each other, that go back, that leave some out, and that are too long
     /// for the ring that is there.
     #[test]
-    fn the_rows_of_covered_places_are_those_of_an_update() {
+    fn window_rows_match_an_update() {
         let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
         let shape = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
         let mut bodies = Bodies::default();

@@ -1,11 +1,11 @@
-//! The smallest enclosing ball, Welzl's problem, by pivoting: Gärtner, "Fast and robust smallest
+//! The smallest enclosing ball (Welzl's problem), by pivoting: Gärtner, "Fast and robust smallest
 //! enclosing balls", 1999.
 //!
-//! The support set (at most four vertices) is replaced by that of itself and the farthest vertex
-//! until no vertex is outside. The ball of those few points needs no tolerance, whatever their
-//! position (duplicate, collinear, cospherical): its centre is the circumcentre of one of the
-//! subsets, namely the one whose farthest point is nearest. The radius grows in each step, so no
-//! support set returns. A dozen sweeps over the vertices are typical.
+//! In each step the support set (at most four vertices) and the farthest vertex give a new support
+//! set, until no vertex is outside. The ball of those few points needs no tolerance for duplicate,
+//! collinear or cospherical points: its centre is the circumcentre of the subset whose farthest
+//! point is nearest. The radius grows in each step, so no support set occurs twice. A dozen sweeps
+//! over the vertices are typical.
 
 use glam::DVec3;
 
@@ -22,7 +22,7 @@ pub struct Ball {
 }
 
 impl Ball {
-    /// The ball about `centre` that just contains all vertices.
+    /// The smallest ball about `centre` that contains all vertices.
     #[must_use]
     pub fn about(centre: impl Into<[f32; 3]>, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         let centre = centre.into();
@@ -32,8 +32,8 @@ impl Ball {
         }
     }
 
-    /// The smallest enclosing ball with its centre rounded to f32: larger than the optimum by an
-    /// ulp of |c| and r.
+    /// The smallest enclosing ball with its centre rounded to f32. It is larger than the optimum by
+    /// about one ulp of |c| and r.
     #[must_use]
     pub fn smallest(vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         Self::about(smallest_enclosing(vertices).0.as_vec3(), vertices)
@@ -48,8 +48,8 @@ impl Ball {
 
 /// max ‖v − c‖, rounded up; exactly 0 when every vertex is c.
 ///
-/// The f64 steps err by less than 2⁻⁵⁰ in all (squares of f32 differences can't underflow); `up`
-/// covers 2⁻²⁶.
+/// The f64 steps have a relative error below 2⁻⁵⁰ in total (squares of f32 differences can't
+/// underflow); `up` covers 2⁻²⁶.
 pub(super) fn farthest_distance(centre: [f32; 3], vertices: &[impl Into<[f32; 3]> + Copy]) -> f32 {
     let centre = in_f64(&centre);
     let squared = vertices
@@ -111,7 +111,7 @@ fn smallest_of_few(points: &[DVec3]) -> (Vec<DVec3>, DVec3, f64) {
             .iter()
             .map(|p| p.distance_squared(centre))
             .fold(0.0, f64::max);
-        // A degenerate subset has a NaN centre, and `max` would hide it.
+        // A degenerate subset has a NaN centre, which `max` would hide.
         if centre.is_finite() && farthest < best.2 {
             best = (subset, centre, farthest);
         }

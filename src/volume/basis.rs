@@ -1,10 +1,10 @@
-//! Exact orthogonal bases: rotations snapped to integer quaternions.
+//! Exact orthogonal bases: rotations rounded to integer quaternions.
 //!
 //! For an integer q = (x, y, z, w) with n = |q|², n·R(q) has integer entries of magnitude ≤ n and
 //! orthogonal columns of norm n. With n ≤ 2²² and a scale by a power of two, the entries and their
-//! sums under coefficients from {−1, 0, 1} are integers below 2²⁴ times that power: exact in f32. A
-//! basis rounded to f32 vector by vector loses (1,1,0) = (1,0,0) + (0,1,0), and with it the
-//! weak-duality bound on supports.
+//! sums under coefficients from {−1, 0, 1} are integers below 2²⁴ times that power: exact in f32.
+//! If each vector of a basis were rounded to f32 separately, (1,1,0) = (1,0,0) + (0,1,0) would no
+//! longer hold, and neither would the weak-duality bound on supports.
 
 use glam::DQuat;
 
@@ -15,7 +15,7 @@ use crate::mesh::in_f64;
 const MAX_NORM: i64 = 1 << 22;
 
 choices! {
-    /// Where an or-DOP's basis comes from.
+    /// How an or-DOP's axes are chosen.
     Axes, "axes", {
         /// Principal axes of the convex hull's surface.
         Principal = "principal",
@@ -75,12 +75,12 @@ impl Basis {
     }
 
     /// The basis nearest to a rotation (x, y, z, w): its unit quaternion times 2048, rounded to
-    /// integers; off by less than 10⁻³ rad. Rotations that differ by rounding errors snap to one
-    /// basis, but for the few that lie between two.
+    /// integers. It is off by less than 10⁻³ rad. Rotations that differ only by rounding errors
+    /// give the same basis, except for the few that are between two.
     #[must_use]
     pub fn snapped(rotation: impl Into<[f64; 4]>) -> Self {
         let unit = DQuat::from_array(rotation.into()).normalize().to_array();
-        // Rounding may lift |q| above 2048 by up to 1.
+        // Rounding may increase |q| above 2048 by up to 1.
         (2046..=2048)
             .rev()
             .find_map(|size| {
@@ -105,7 +105,7 @@ impl Basis {
         std::array::from_fn(|i| x[i] * a + y[i] * b + z[i] * c)
     }
 
-    /// The columns of the rotation that is this basis, normalised.
+    /// The columns of this basis, normalised to a rotation.
     #[must_use]
     pub fn rotation(&self) -> [[f64; 3]; 3] {
         let norm = self.norm();

@@ -46,7 +46,8 @@ choices! {
 }
 
 impl DirectionSet {
-    /// The coefficients of each direction over the basis, in the order of every slab column.
+    /// The coefficients of each direction with respect to the basis, in the order of all slab
+    /// columns.
     #[must_use]
     pub const fn coefficients(self) -> &'static [[i8; 3]] {
         match self {
@@ -74,8 +75,9 @@ impl DirectionSet {
 mod tests {
     use super::*;
 
+    /// Each set has k over two directions and none twice.
     #[test]
-    fn each_set_has_k_over_two_directions_and_none_twice() {
+    fn direction_sets_have_k_halves() {
         for (set, k) in DirectionSet::ALL.iter().zip([6, 14, 18, 26]) {
             assert_eq!((set.k(), set.to_string()), (k, k.to_string()));
             let directions = set.coefficients();
@@ -91,7 +93,7 @@ mod tests {
         let [k6, k14, k18, k26] = [0, 1, 2, 3].map(|i| DirectionSet::ALL[i].coefficients());
         assert_eq!((k18, &k26[9..]), (&k26[..9], &k14[3..]));
         assert_eq!((k6, k6), (&k14[..3], &k18[..3]));
-        // Records and hashes spell the slabs in this order.
+        // Records and hashes depend on this order.
         let faces = [
             [1, 1, 0],
             [1, -1, 0],

@@ -1,16 +1,16 @@
 //! The outline of points in one plane, exact: Andrew's monotone chain (1979) on Shewchuk's
 //! predicate.
 //!
-//! Points of a plane keep their outline in each coordinate plane on which they do not fall into a
-//! line. So the outline is taken in all three, and the one with most corners is right: for points
-//! of a line each has its two ends, or one.
+//! Coplanar points keep their outline when they are projected onto a coordinate plane in which they
+//! are not collinear. Therefore the outline is computed in all three, and the one with most corners
+//! is the right one. Collinear points have two corners in each, or one.
 
 use robust::{Coord, Coord3D, orient2d};
 
 /// The corners of the convex hull of coplanar points: indices, ascending.
 pub(super) fn corners(points: &[Coord3D<f64>]) -> Vec<u32> {
-    type Plane = fn(&Coord3D<f64>) -> Coord<f64>;
-    let planes: [Plane; 3] = [
+    type Projection = fn(&Coord3D<f64>) -> Coord<f64>;
+    let planes: [Projection; 3] = [
         |p| Coord { x: p.x, y: p.y },
         |p| Coord { x: p.y, y: p.z },
         |p| Coord { x: p.z, y: p.x },
@@ -25,7 +25,7 @@ pub(super) fn corners(points: &[Coord3D<f64>]) -> Vec<u32> {
 }
 
 fn outline(points: &[Coord<f64>]) -> Vec<u32> {
-    // x + 0.0 turns −0 into 0, which the order of all floats would put before it.
+    // x + 0.0 turns −0 into 0; the total order of floats would sort −0 before 0.
     let key = |&i: &u32| [points[i as usize].x + 0.0, points[i as usize].y + 0.0];
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     order.sort_by(|a, b| {
@@ -41,7 +41,7 @@ fn outline(points: &[Coord<f64>]) -> Vec<u32> {
     corners
 }
 
-/// One side of the outline, without its last corner, with which the other side begins.
+/// One side of the outline, without its last corner, which is the first of the other side.
 fn half(points: &[Coord<f64>], order: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut side: Vec<u32> = Vec::new();
     for next in order {

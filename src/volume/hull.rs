@@ -1,13 +1,14 @@
 //! The convex hull, exact: Quickhull (Barber, Dobkin, Huhdanpaa 1996) on Shewchuk's predicates.
 //!
-//! Re-fitted volumes are taken from hull vertices alone, so a vertex lost here is a missed
+//! World-aligned volumes are fitted to hull vertices only, so a vertex lost here would be a missed
 //! collision later. Every decision is the sign of an exact orient3d, and a facet is visible from a
-//! point only if that is *strictly* outside. Then no degenerate facet arises, the visible region is
-//! a disk, and the result is a closed surface with all vertices on its inner side: duplicate,
-//! coplanar and cospherical vertices need no tolerance and there is no failure to handle. (Of the
-//! crates, quickhull works in f32 and turns a facet of the bunny inside out; chull walks randomly
-//! hashed sets, so that its facets change from run to run, and gives up on rotated grids.) The
-//! distances that choose the next vertex are approximate; they steer the speed only.
+//! point only if the point is *strictly* outside. Therefore no degenerate facet arises, the visible
+//! region is a disk, and the result is a closed surface with all vertices on or inside it.
+//! Duplicate, coplanar and cospherical vertices need no tolerance, and the algorithm cannot fail.
+//! The distances that choose the next vertex are approximate; they affect only the speed.
+//!
+//! (Existing crates did not suffice: quickhull works in f32 and turns a facet of the bunny inside
+//! out; chull's facets change from run to run, and it fails on rotated grids.)
 
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
@@ -18,9 +19,9 @@ use crate::mesh::in_f64;
 /// The convex hull of a shape's vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    /// Indices of the vertices that span the hull, ascending. All vertices when these are coplanar.
+    /// Indices of the hull's vertices, ascending; all vertices if they are coplanar.
     pub vertices: Vec<u32>,
-    /// Triangles over the shape's vertices, counter-clockwise from outside. None when the vertices
+    /// Triangles over the shape's vertices, counter-clockwise from outside; empty if the vertices
     /// are coplanar.
     pub facets: Vec<[u32; 3]>,
 }
@@ -36,7 +37,7 @@ impl Hull {
                 facets: Vec::new(),
             };
         };
-        let facets = Builder::new(&points, simplex).run();
+        let facets = HullBuilder::new(&points, simplex).run();
         let mut used: Vec<u32> = facets.iter().flatten().copied().collect();
         used.sort_unstable();
         used.dedup();
@@ -46,15 +47,15 @@ impl Hull {
         }
     }
 
-    /// The positions of the hull's vertices: all that world-aligned volumes are re-fitted from.
+    /// The positions of the hull's vertices, to which world-aligned volumes are fitted.
     #[must_use]
     pub fn points(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Vec<[f32; 3]> {
         let position = |&i: &u32| vertices[i as usize].into();
         self.vertices.iter().map(position).collect()
     }
 
-    /// Indices of the vertices that span the hull, ascending: of a flat hull, too, whose `vertices`
-    /// are all there are.
+    /// Indices of the hull's corners, ascending. Unlike `vertices`, these are only the corners for
+    /// a flat hull too.
     #[must_use]
     pub fn corners(&self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Vec<u32> {
         if !self.facets.is_empty() {
@@ -76,7 +77,7 @@ impl Hull {
         self.fold_facets(vertices, |[p, q, r]| (q - p).cross(r - p).length() / 2.0)
     }
 
-    /// Σ over facets of a measure of its corners relative to one hull vertex.
+    /// Sums a measure of each facet's corners, relative to one hull vertex.
     fn fold_facets(
         &self,
         vertices: &[impl Into<[f32; 3]> + Copy],
@@ -85,30 +86,30 @@ impl Hull {
         let position = |i: u32| in_f64(&vertices[i as usize].into());
         let origin = self.vertices.first().map_or(DVec3::ZERO, |&i| position(i));
         let facets = self.facets.iter();
-        // From 0, since the sum of no floats is −0.
+        // Starts from 0, because the sum of no floats is −0.
         facets
             .map(|f| measure(f.map(|i| position(i) - origin)))
             .fold(0.0, |sum, part| sum + part)
     }
 }
 
-type Point = Coord3D<f64>;
+type HullPoint = Coord3D<f64>;
 
-fn coordinates(vertex: [f32; 3]) -> Point {
+fn coordinates(vertex: [f32; 3]) -> HullPoint {
     let [x, y, z] = vertex.map(f64::from);
-    Point { x, y, z }
+    HullPoint { x, y, z }
 }
 
 /// How far `p` is outside the plane of (a, b, c), counter-clockwise from outside: exact sign,
 /// approximate size.
-fn height(points: &[Point], [a, b, c]: [u32; 3], p: u32) -> f64 {
+fn height(points: &[HullPoint], [a, b, c]: [u32; 3], p: u32) -> f64 {
     let [a, b, c, p] = [a, b, c, p].map(|i| points[i as usize]);
     -orient3d(a, b, c, p)
 }
 
-/// Four vertices that are not coplanar, the first three clockwise seen from the fourth; `None` when
-/// there are none.
-fn initial_simplex(points: &[Point]) -> Option<[u32; 4]> {
+/// Four vertices that are not coplanar, the first three clockwise seen from the fourth; `None` if
+/// all are coplanar.
+fn initial_simplex(points: &[HullPoint]) -> Option<[u32; 4]> {
     let farthest = |measure: &dyn Fn(u32) -> f64| {
         let candidates = (0..points.len() as u32).map(|i| (i, measure(i)));
         let best = candidates.max_by(|a, b| a.1.total_cmp(&b.1));
@@ -129,10 +130,10 @@ fn initial_simplex(points: &[Point]) -> Option<[u32; 4]> {
     })
 }
 
-/// 0 exactly when p is on the line ab: the largest of the triangle's three projected areas.
-fn off_line(a: Point, b: Point, p: Point) -> f64 {
+/// The largest of the three projected areas of the triangle abp: 0 exactly if p is on the line ab.
+fn off_line(a: HullPoint, b: HullPoint, p: HullPoint) -> f64 {
     let area =
-        |project: fn(Point) -> Coord<f64>| orient2d(project(a), project(b), project(p)).abs();
+        |project: fn(HullPoint) -> Coord<f64>| orient2d(project(a), project(b), project(p)).abs();
     let xy = area(|p| Coord { x: p.x, y: p.y });
     let yz = area(|p| Coord { x: p.y, y: p.z });
     let zx = area(|p| Coord { x: p.z, y: p.x });
@@ -144,31 +145,32 @@ struct Facet {
     corners: [u32; 3],
     /// The facet across the edge from corner k to corner k + 1.
     neighbours: [u32; 3],
-    /// Vertices strictly outside this facet, each in one facet's list only, with their heights.
+    /// Vertices strictly outside this facet, with their heights. Each vertex is in the list of one
+    /// facet.
     outside: Vec<(u32, f64)>,
-    /// Replaced by later facets.
+    /// Whether later facets have replaced it.
     dead: bool,
     /// The last step in which this facet was visited.
     visited: u32,
 }
 
-/// An edge between a visible facet and one that stays.
+/// An edge between a visible facet and one that remains.
 struct HorizonEdge {
     from: u32,
     to: u32,
     beyond: u32,
 }
 
-struct Builder<'a> {
-    points: &'a [Point],
+struct HullBuilder<'a> {
+    points: &'a [HullPoint],
     facets: Vec<Facet>,
-    /// Scratch: the new facet whose horizon edge starts at a vertex.
+    /// Buffer: the new facet whose horizon edge starts at each vertex.
     starting_at: Vec<u32>,
     step: u32,
 }
 
-impl<'a> Builder<'a> {
-    fn new(points: &'a [Point], [a, b, c, d]: [u32; 4]) -> Self {
+impl<'a> HullBuilder<'a> {
+    fn new(points: &'a [HullPoint], [a, b, c, d]: [u32; 4]) -> Self {
         let facet = |corners, neighbours| Facet {
             corners,
             neighbours,
@@ -205,7 +207,7 @@ impl<'a> Builder<'a> {
         alive.map(|f| f.corners).collect()
     }
 
-    /// Gives each vertex to the first facet, from number `first` on, that it is strictly outside
+    /// Assigns each vertex to the first facet, from number `first` on, that it is strictly outside
     /// of.
     fn distribute(&mut self, vertices: Vec<u32>, first: usize) {
         for vertex in vertices {
@@ -219,8 +221,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Replaces all facets visible from the farthest outside vertex of `facet` by the cone from it
-    /// to their horizon.
+    /// Replaces all facets that are visible from the farthest outside vertex of `facet` by the cone
+    /// from that vertex to their horizon.
     fn extend_to_farthest(&mut self, facet: u32) {
         let outside = self.facets[facet as usize].outside.iter();
         let Some(&(apex, _)) = outside.max_by(|a, b| a.1.total_cmp(&b.1)) else {
@@ -231,8 +233,8 @@ impl<'a> Builder<'a> {
         for (i, edge) in horizon.iter().enumerate() {
             self.starting_at[edge.from as usize] = (first + i) as u32;
         }
-        // Facet i has the edges from → to, to → apex, apex → from; the last is shared with the
-        // facet that ends here.
+        // Facet i has the edges from → to, to → apex and apex → from. It shares the last one with
+        // the facet whose horizon edge ends at `from`.
         for edge in &horizon {
             let number = self.facets.len() as u32;
             let across = &mut self.facets[edge.beyond as usize];
@@ -253,8 +255,8 @@ impl<'a> Builder<'a> {
         self.distribute(orphans, first);
     }
 
-    /// Kills the facets that are visible from `apex`; returns their horizon and the other vertices
-    /// outside them.
+    /// Removes the facets that are visible from `apex`. Returns their horizon and the other
+    /// vertices outside them.
     fn remove_visible(&mut self, start: u32, apex: u32) -> (Vec<HorizonEdge>, Vec<u32>) {
         self.step += 1;
         let (mut horizon, mut orphans, mut stack) = (Vec::new(), Vec::new(), vec![start]);

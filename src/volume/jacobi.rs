@@ -3,22 +3,22 @@
 //!
 //! Each rotation makes one off-diagonal entry zero: with θ = (a_qq − a_pp)/2a_pq, its tangent is
 //! the smaller root t = sign(θ)/(|θ| + √(θ² + 1)). Only sums, products, quotients and square roots
-//! occur, in one written order, so every CPU computes the same bits. Convergence is quadratic: over
-//! 10⁶ random hulls and all shipped meshes, the last sweeps change nothing, and the snapped bases
+//! are used, in a fixed order, so every CPU computes the same bits. Convergence is quadratic: for
+//! 10⁶ random hulls and all shipped meshes, the last sweeps change nothing, and the rounded bases
 //! equal those of a library's solver.
 
 use glam::{DMat3, DVec3};
 
-/// Sweeps over the three off-diagonal entries. Five suffice for f64; the rest find zeros and are
-/// skipped.
-const SWEEPS: usize = 8;
+/// Sweeps over the three off-diagonal entries. Five suffice for f64; the others find zeros and do
+/// nothing.
+const JACOBI_SWEEPS: usize = 8;
 
 /// Eigenvalues in falling order, each with its unit eigenvector of either sign. Their residuals
 /// |Av − λv| are at most 2⁻⁴⁸·max|A|.
 pub fn eigen(matrix: DMat3) -> [(f64, DVec3); 3] {
     let mut a = matrix.to_cols_array_2d();
     let mut vectors = DMat3::IDENTITY.to_cols_array_2d();
-    for _ in 0..SWEEPS {
+    for _ in 0..JACOBI_SWEEPS {
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
             if a[p][q] != 0.0 {
                 rotate(&mut a, &mut vectors, p, q);

@@ -1,7 +1,7 @@
 //! Bounding volumes, built once per mesh (the paper's Co) in the body frame.
 //!
-//! One file a volume; each contains the f32 vertices as culled in exact arithmetic, before any
-//! inflation for rounding.
+//! There is one file per volume. In exact arithmetic each volume contains the shape's f32 vertices,
+//! before it is inflated for rounding.
 
 mod ball;
 mod basis;

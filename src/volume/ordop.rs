@@ -1,9 +1,9 @@
 //! Oriented k-DOPs: slabs `lo ≤ d·x ≤ hi` along directions fixed in the body frame, never
 //! re-fitted.
 //!
-//! Containment is exact. A direction has 24-bit entries, so each product of d·x is exact in f64 and
-//! only the two additions round; Knuth's two-sum recovers what they lost. An end that is an f32 (a
-//! box's face, a plate's zero) is kept to the bit, any other is the next f32 outward.
+//! Containment is exact. A direction has 24-bit entries, so each product in d·x is exact in f64 and
+//! only the two additions round; Knuth's two-sum recovers the lost part. An end that is an f32 (a
+//! box's face, a plate's zero) is kept to the bit, any other is rounded outward to the next f32.
 
 use glam::DVec3;
 
@@ -19,15 +19,15 @@ pub struct OrDop {
     pub directions: DirectionSet,
     /// The exact basis that the directions combine.
     pub basis: Basis,
-    /// Lower slab ends, one a direction, rounded down.
+    /// Lower slab ends, one per direction, rounded down.
     pub lo: Vec<f32>,
-    /// Upper slab ends, one a direction, rounded up.
+    /// Upper slab ends, one per direction, rounded up.
     pub hi: Vec<f32>,
 }
 
 impl OrDop {
-    /// The tightest slabs with f32 ends around the vertices. No vertices: empty slabs, lo = ∞ and
-    /// hi = −∞.
+    /// The tightest slabs with f32 ends around the vertices. Without vertices the slabs are empty:
+    /// lo = ∞ and hi = −∞.
     #[must_use]
     pub fn build(
         vertices: &[impl Into<[f32; 3]> + Copy],
@@ -47,14 +47,15 @@ impl OrDop {
         }
     }
 
-    /// The slabs moved out by `margin`: what they contain with all points up to `margin` away.
+    /// The slabs moved outward by `margin`. They contain all points within `margin` of the original
+    /// ones.
     #[must_use]
     pub fn grown(&self, margin: f32) -> Self {
         let mut grown = self.clone();
         let ends = grown.lo.iter_mut().zip(&mut grown.hi);
         for ((lo, hi), &coefficients) in ends.zip(self.directions.coefficients()) {
-            // The factor is above what three f64 roundings take where lo and the margin nearly
-            // cancel; elsewhere the step outward is.
+            // Where lo and the margin nearly cancel, the factor exceeds three f64 roundings;
+            // elsewhere the step outward does.
             let length = in_f64(&self.basis.direction(coefficients)).length();
             let out = f64::from(margin) * length * (1.0 + 2f64.powi(-40));
             (*lo, *hi) = (down(f64::from(*lo) - out), up(f64::from(*hi) + out));
@@ -71,7 +72,7 @@ fn slab(direction: DVec3, vertices: &[impl Into<[f32; 3]> + Copy]) -> (f32, f32)
         lo = lo.min(below);
         hi = hi.max(above);
     }
-    // Plus zero, because min and max may return either of −0 and +0, and the bits are hashed.
+    // Zero is added because min and max may return either of −0 and +0, and the bits are hashed.
     (floor_f32(lo) + 0.0, ceil_f32(hi) + 0.0)
 }
 
@@ -83,7 +84,8 @@ fn dot_bounds(a: DVec3, b: DVec3) -> (f64, f64) {
     if tail == 0.0 {
         return (sum, sum); // exact: all terms are multiples of 2⁻²⁹⁸, so nothing underflows
     }
-    // sum + lost + lost_too is the exact value; two additions of relative error 2⁻⁵³ each are left.
+    // sum + lost + lost_too is the exact value; the two remaining additions have a relative error
+    // of 2⁻⁵³ each.
     let value = sum + tail;
     let error = f64::EPSILON * 2.0 * (sum.abs() + tail.abs());
     (value - error, value + error)
@@ -127,8 +129,9 @@ mod tests {
         lo.ceil() as i128 <= exact && exact <= hi.floor() as i128
     }
 
+    /// The exact sum of products lies within its bounds.
     #[test]
-    fn the_exact_sum_of_products_lies_within_its_bounds() {
+    fn dot_bounds_contain_exact_sum() {
         let big = 1 << 30;
         // Two equal losses; what is lost is all that is left; nothing is lost; losses of other
         // signs.
@@ -147,8 +150,9 @@ mod tests {
         }
     }
 
+    /// An end at zero is no negative zero.
     #[test]
-    fn an_end_at_zero_is_no_negative_zero() {
+    fn zero_end_is_positive_zero() {
         for x in [0.0, -0.0] {
             let (lo, hi) = slab(DVec3::X, &[[x, x, x]]);
             assert_eq!([lo, hi].map(f32::to_bits), [0, 0]);

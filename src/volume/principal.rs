@@ -1,9 +1,9 @@
 //! Principal axes: eigenvectors of the covariance of the convex hull's surface.
 //!
 //! With A_i, m_i the area and centroid of triangle (p, q, r)_i, A = ΣA_i and μ = ΣA_i m_i / A
-//! (Gottschalk 2000, §3.5): C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. Taken over the
-//! hull's surface, not the mesh's vertices, neither interior detail nor sampling density turns the
-//! axes.
+//! (Gottschalk 2000, §3.5): C = Σ A_i/(12A)·(9 m mᵀ + p pᵀ + q qᵀ + r rᵀ) − μ μᵀ. It is computed
+//! over the hull's surface and not over the mesh's vertices, so neither interior detail nor
+//! sampling density changes the axes.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -11,13 +11,13 @@ use super::jacobi::eigen;
 use super::{Axes, Basis, Hull};
 use crate::mesh::in_f64;
 
-/// Eigenvalues closer than this share of the largest are a tie: the axes of a gear or a cube are
-/// whatever rounding makes of them. Far above f32 rounding (2⁻²⁴), so a symmetric mesh is seen as
-/// such after any rotation.
+/// Eigenvalues closer than this share of the largest are tied: rounding alone would decide the axes
+/// of a gear or a cube. It is far above f32 rounding (2⁻²⁴), so that a symmetric mesh is recognised
+/// after any rotation.
 const EIGENVALUE_TIE: f64 = 1.0 / 8192.0;
 
 impl Axes {
-    /// The basis for these vertices; only principal axes need their hull.
+    /// The basis for these vertices. Only principal axes need the hull.
     #[must_use]
     pub fn basis(self, vertices: &[impl Into<[f32; 3]> + Copy]) -> Basis {
         match self {
@@ -28,8 +28,8 @@ impl Axes {
 }
 
 impl Basis {
-    /// The principal axes, longest first, snapped; the model axes when they are tied or the hull is
-    /// flat.
+    /// The principal axes, longest first, rounded to an exact basis; the model axes if two are tied
+    /// or the hull is flat.
     #[must_use]
     pub fn principal(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         surface_covariance(hull, vertices)
@@ -70,7 +70,8 @@ fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
-/// Eigenvectors by falling eigenvalue as a right-handed rotation; `None` when two eigenvalues tie.
+/// Eigenvectors by falling eigenvalue as a right-handed rotation; `None` if two eigenvalues are
+/// tied.
 fn principal_rotation(covariance: DMat3) -> Option<DMat3> {
     let [(first, x), (second, y), (third, _)] = eigen(covariance);
     let gap = (first - second).min(second - third);
@@ -82,7 +83,7 @@ fn principal_rotation(covariance: DMat3) -> Option<DMat3> {
     Some(DMat3::from_cols(x, y, x.cross(y)))
 }
 
-/// The sign of the largest component; of the first one when others equal it but for rounding.
+/// The sign of the largest component, or of the first one if others equal it up to rounding.
 fn sign_of_largest(v: DVec3) -> f64 {
     let limit = v.abs().max_element() * (1.0 - 1e-6);
     let largest = v.to_array().into_iter().find(|c| c.abs() >= limit);
@@ -96,7 +97,7 @@ mod tests {
     /// Of a box with these half sides, wherever it is: (bc·a² + (ab + ca)·a²/3)/(ab + bc + ca)
     /// along a, in units of its diagonal.
     #[test]
-    fn the_covariance_of_a_box_is_that_of_its_surface_in_its_own_size() {
+    fn box_covariance_is_its_surface_s() {
         let [a, b, c] = [1.0, 2.0, 4.0];
         let area = a * b + b * c + c * a;
         let along = |x: f64| x * x * (area / 3.0 + 2.0 / 3.0 * (a * b * c / x)) / area;
@@ -115,8 +116,9 @@ mod tests {
         }
     }
 
+    /// Principal axes are found unless two of them tie.
     #[test]
-    fn axes_are_told_where_no_two_of_them_tie() {
+    fn tied_axes_are_detected() {
         let axes = |x, y, z| principal_rotation(DMat3::from_diagonal(DVec3::new(x, y, z)));
         let wanted = DMat3::from_cols(DVec3::Y, DVec3::X, DVec3::NEG_Z);
         for size in [1.0, 1e6, 1e-6] {
@@ -133,8 +135,9 @@ mod tests {
         assert_eq!(axes(0.0, 0.0, 0.0), None);
     }
 
+    /// The largest component is positive the first one of equals.
     #[test]
-    fn the_largest_component_is_positive_the_first_one_of_equals() {
+    fn largest_component_is_positive() {
         for (v, sign) in [
             ([-3.0, 1.0, 2.0], -1.0),
             ([1.0, -2.0, 1.9], -1.0),

@@ -1,17 +1,17 @@
-//! A mesh made ready for culling: placed in its body frame, with its volumes (the paper's one-off
+//! [`Shape`]: a mesh prepared for culling, in its body frame, with its volumes (the paper's one-off
 //! construction, Co).
 //!
 //! `origin = "file"`, the default, keeps the mesh's own origin, to which an engine's poses refer.
-//! `origin = "ball"` moves the smallest enclosing ball's centre into the body origin, so that the
-//! sphere of a posed body is a copy of its translation. Either way every volume is computed from,
-//! and contains exactly, the f32 vertices as culled:
+//! `origin = "ball"` makes the centre of the smallest enclosing ball the body's origin, so that
+//! updating a sphere only copies the translation. Either way, every volume is computed from these
+//! f32 vertices and contains them exactly:
 //!
 //! > vertex = scale · (point of the file − offset), rounded to f32
 //!
-//! with the [`Shape::offset`] and [`Shape::scale`] that the shape keeps. A mesh that is far from
-//! its own origin is the exception to "keeps": its vertices are about a point near it, and its
-//! [`Shape::pose_offset`] says where that lies, seen from the point that poses refer to. Its
-//! volumes are grown by what rounding has moved, [`Shape::rounding`].
+//! with the shape's [`Shape::offset`] and [`Shape::scale`]. A mesh that is far from its own origin
+//! is the exception: its vertices are relative to a point near it, and [`Shape::pose_offset`] is
+//! the position of that point relative to the one that poses refer to. Its volumes are grown by
+//! [`Shape::rounding`].
 
 use glam::DVec3;
 
@@ -33,12 +33,13 @@ choices! {
     }
 }
 
-/// How a mesh becomes a shape.
+/// Options for building a shape from a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeSpec {
-    /// The body's origin: the point that poses place. By default the mesh's own, [`Origin::File`].
+    /// The body's origin, the point that poses place. The default is the mesh's own,
+    /// [`Origin::File`].
     pub origin: Origin,
-    /// The radius to which the smallest enclosing ball is scaled, about the body's origin; `None`
+    /// The radius of the smallest enclosing ball after scaling about the body's origin; `None`
     /// keeps the mesh's size.
     pub radius: Option<f32>,
     /// The or-DOP's directions.
@@ -58,26 +59,26 @@ impl Default for ShapeSpec {
     }
 }
 
-/// A mesh with its volumes: what the culler needs to know of a body's form.
+/// A mesh with its bounding volumes: what a culler needs for all bodies of this shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
     /// The mesh's name.
     pub name: String,
-    /// Vertices as culled, in the body frame: scale · (point of the mesh − offset), rounded to f32.
+    /// Vertices in the body frame: scale · (point of the mesh − offset), rounded to f32.
     pub vertices: Vec<[f32; 3]>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// The point of the file's coordinates that is the origin of `vertices`: zero for
-    /// [`Origin::File`], unless the mesh is far from its origin.
+    /// The origin of `vertices` in the file's coordinates: zero for [`Origin::File`], unless the
+    /// mesh is far from its origin.
     pub offset: [f64; 3],
-    /// By how much the mesh was scaled: 1 without a [`ShapeSpec::radius`].
+    /// The factor by which the mesh was scaled: 1 without a [`ShapeSpec::radius`].
     pub scale: f64,
-    /// Where the origin of `vertices` lies in the frame that poses place: zero, or scale · offset
-    /// for a mesh that is far from its origin and keeps it. A pose (q, t) stands for vertices at
-    /// (q, t + R(q)·pose_offset), which a [`World`](crate::World) composes in f64; what has poses
-    /// in f32 refuses such a shape.
+    /// The origin of `vertices` in the frame that poses place: zero, or scale · offset for a mesh
+    /// that is far from its origin with [`Origin::File`]. A pose (q, t) puts the origin of the
+    /// vertices at t + R(q)·pose_offset. A [`World`](crate::World) computes that in f64; a culler
+    /// with f32 poses rejects such a shape.
     pub pose_offset: [f64; 3],
-    /// How far a vertex of a far mesh is at most from the f64 point that it stands for: 0 for any
+    /// An upper bound on the distance of a far mesh's vertices from their f64 points; 0 for any
     /// other mesh. Ball, reach and slabs are grown by it.
     pub rounding: f32,
     /// Smallest enclosing ball of `vertices`, rounded up.
@@ -92,13 +93,13 @@ impl Shape {
     /// Places the mesh and builds its ball and or-DOP.
     ///
     /// # Errors
-    /// An empty or non-finite mesh, a radius that can't be reached, or a size beyond 2⁶⁰.
+    /// An empty or non-finite mesh, an invalid radius, or a size beyond 2⁶⁰.
     pub fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
         in_default_mode(|| Self::place(mesh, spec))
     }
 
     fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
-        let placement = Placement::of(mesh, spec)?;
+        let placement = ShapePlacement::of(mesh, spec)?;
         let vertices: Vec<[f32; 3]> = mesh
             .vertices
             .iter()
@@ -143,12 +144,12 @@ impl Shape {
         self.pose_offset != [0.0; 3]
     }
 
-    /// The or-DOP along a basis, with what rounding has moved.
+    /// The or-DOP along a basis, grown by the shape's rounding.
     pub(crate) fn slabs(&self, basis: Basis, directions: DirectionSet) -> OrDop {
         in_default_mode(|| slabs(&self.vertices, basis, directions, self.rounding))
     }
 
-    /// Exchanges the or-DOP's directions; ball, basis and placement stay.
+    /// The shape with other directions of its or-DOP. Ball, basis and placement stay.
     #[must_use]
     pub fn with_directions(mut self, directions: DirectionSet) -> Self {
         self.ordop = self.slabs(self.ordop.basis, directions);
@@ -169,7 +170,7 @@ impl Shape {
     }
 }
 
-/// The or-DOP of vertices that rounding has moved.
+/// The or-DOP of vertices, grown by their rounding.
 fn slabs(vertices: &[[f32; 3]], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
     let ordop = OrDop::build(vertices, basis, directions);
     if rounding == 0.0 {
@@ -179,7 +180,7 @@ fn slabs(vertices: &[[f32; 3]], basis: Basis, directions: DirectionSet, rounding
     }
 }
 
-/// A size, with what rounding has moved.
+/// A size, grown by the rounding of vertices.
 fn grown(size: f32, rounding: f32) -> f32 {
     if rounding == 0.0 {
         size
@@ -188,17 +189,17 @@ fn grown(size: f32, rounding: f32) -> f32 {
     }
 }
 
-/// Where the origin of the vertices lies, and by how much the mesh is scaled.
-struct Placement {
-    /// In the mesh's coordinates, which are about an offset of its own.
+/// The origin of the vertices and the scale of the mesh.
+struct ShapePlacement {
+    /// In the mesh's coordinates, which are relative to the mesh's offset.
     centre: DVec3,
-    /// In the file's.
+    /// In the file's coordinates.
     offset: DVec3,
     scale: f64,
     pose_offset: DVec3,
 }
 
-impl Placement {
+impl ShapePlacement {
     fn of(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
         let shape = || mesh.name.clone();
         if mesh.vertices.is_empty() {
@@ -247,7 +248,7 @@ impl Placement {
                 pose_offset: base * scale,
             },
             Origin::Ball => {
-                // Of a far mesh, what their sum keeps of the centre.
+                // For a far mesh, the part of the centre that their sum keeps.
                 let offset = if mesh.is_far() { base + centre } else { centre };
                 let centre = if mesh.is_far() { offset - base } else { centre };
                 Self {
@@ -265,9 +266,9 @@ impl Placement {
         (in_f64(vertex) - self.centre) * self.scale
     }
 
-    /// How far a vertex is at most from scale · (point of the file − offset), or with the pose's
-    /// offset from scale · point: 0 for a mesh that has been rounded where it is, whose own
-    /// vertices count.
+    /// An upper bound on the distance of a vertex from scale · (point of the file − offset), or
+    /// with the pose's offset from scale · point. It is 0 for a mesh that is not far, whose f32
+    /// vertices are what is culled.
     fn rounding(&self, mesh: &TriangleMesh, vertices: &[[f32; 3]]) -> f32 {
         if !mesh.is_far() && mesh.rounding == 0.0 {
             return 0.0;
@@ -278,8 +279,8 @@ impl Placement {
             placed = placed.max(self.point(vertex).distance(in_f64(rounded)));
             size = size.max(in_f64(vertex).abs().max_element());
         }
-        // In f64 the difference and the product round each coordinate twice, and a scaled offset
-        // once.
+        // In f64, the difference and the product round each coordinate twice, and a scaled offset
+        // rounds once.
         let size = (size + self.centre.abs().max_element()) * self.scale;
         let scaled = if self.scale == 1.0 {
             0.0
@@ -299,7 +300,7 @@ impl Placement {
     }
 }
 
-/// Why a mesh has no volumes.
+/// Why a shape can't be built from a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VolumeError {
     /// No vertices.
@@ -324,7 +325,7 @@ pub enum VolumeError {
         /// The radius as given.
         radius: f32,
     },
-    /// A mesh of one point can't be scaled.
+    /// The mesh is a single point, which can't be scaled.
     #[error("shape `{shape}` is a single point and can't be scaled to radius {radius}")]
     NoExtent {
         /// The mesh's name.

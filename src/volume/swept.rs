@@ -1,23 +1,23 @@
-//! Margins for a whole step: how far from where a shape is now its points can be before the step
-//! ends.
+//! Margins for a whole step: the largest distance that a shape's points can move from their present
+//! place before the step ends.
 //!
-//! A body that is grown by that contains all of the way, whatever its path, as long as it is no
-//! faster. Two bodies that meet at any time of the step then meet as they are grown now, and are
-//! reported (theorem U of `paper/proofs/LEMMAS.md`). That says which pairs to look at, not when
-//! they meet.
+//! A body grown by this margin contains its whole path, whatever the path is, as long as the body
+//! is no faster than stated. Two bodies that meet at any time of the step then meet now with their
+//! margins, and are reported (theorem U of `paper/proofs/LEMMAS.md`). The report says which pairs
+//! to test, not when they meet.
 
 use super::Shape;
 use crate::rounding::{pose::norm, up};
 use crate::simd::in_default_mode;
 
 impl Shape {
-    /// The margin that covers a step: no point of the shape goes farther from its present place
-    /// within `seconds`, if the body's origin is never faster than `linear` and its rotation never
-    /// faster than `angular` (in radians per second), of which the lengths count. Infinite where
-    /// that is beyond f32, NaN where a number is.
+    /// The margin that covers a step: no point of the shape moves farther from its present place
+    /// within `seconds`, if the speed of the body's origin is at most the length of `linear` and
+    /// its angular speed at most the length of `angular` (in radians per second). The result is
+    /// infinite if it exceeds f32, and NaN if an argument is.
     ///
-    /// The origin is the point that poses place. Rotation moves a point at the distance ρ by at
-    /// most 2ρ, and by the angle times ρ.
+    /// The origin is the point that poses place. Rotation moves a point at distance ρ by at most
+    /// 2ρ, and by at most the angle times ρ.
     ///
     /// ```
     /// # use sdop::{ProceduralShape, Shape, ShapeSpec};
@@ -61,8 +61,8 @@ mod tests {
         Shape::build(&form.build().unwrap(), &ShapeSpec::default()).unwrap()
     }
 
-    /// No point is farther from its place at any time of the step, and the farthest is nearly that
-    /// far.
+    /// At no time of the step is a point farther from its place than the margin, and the farthest
+    /// point is nearly that far.
     #[test]
     fn no_point_goes_farther() {
         let shape = rod();
@@ -84,7 +84,7 @@ mod tests {
                     }
                 }
                 assert!(farthest <= margin, "{turn} {speed}: {farthest} {margin}");
-                // Less than that of a long way and a turn across it.
+                // A long path with a turn across it reaches less.
                 let is_tight = turn <= 0.1 && turn * speed == 0.0;
                 assert!(
                     !is_tight || farthest > 0.98 * margin - 1e-12,
@@ -100,7 +100,7 @@ mod tests {
         assert!(shape.swept_margin([0.0; 3], [0.0; 3], 1.0) > 0.0);
         let margin = shape.swept_margin([3.0, 4.0, 12.0], [0.0; 3], -2.0);
         assert!(margin > 26.0 && margin < 26.00001, "{margin}");
-        // Half a turn takes a point to the other side, and no farther.
+        // Half a turn moves a point to the opposite side, and no farther.
         let turned = shape.swept_margin([0.0; 3], [0.0, 99.0, 0.0], 1.0);
         assert!(turned > 2.0 * shape.reach && turned < 2.000_001 * shape.reach);
         assert!(shape.swept_margin([f32::NAN; 3], [0.0; 3], 1.0).is_nan());
@@ -112,7 +112,7 @@ mod tests {
         );
     }
 
-    /// Poses turn a far mesh about the file's own origin.
+    /// Poses turn a far mesh about the origin of its file.
     #[test]
     fn far_meshes_swing() {
         let points = [

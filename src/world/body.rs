@@ -1,4 +1,4 @@
-//! What a world's bodies are made of.
+//! The bodies of a world.
 
 use crate::bodies::{Groups, Motion};
 
@@ -7,7 +7,7 @@ use crate::bodies::{Groups, Motion};
 pub struct Body {
     /// Index into the world's shapes.
     pub shape: u32,
-    /// Whether it moves; pairs of two fixed bodies are never tested.
+    /// Whether it is dynamic, resting or fixed. Pairs of two fixed bodies are never tested.
     pub motion: Motion,
     /// Orientation quaternion (x, y, z, w) of any non-zero norm.
     pub rotation: [f32; 4],
@@ -16,14 +16,14 @@ pub struct Body {
     /// Which bodies it may collide with.
     pub groups: Groups,
     /// Contact margin, a length ≥ 0: a pair is reported when its meshes, each grown by its margin,
-    /// meet. The culler may round it up by an eighth.
+    /// meet. The culler may round it up by at most an eighth.
     pub margin: f32,
 }
 
 impl Body {
-    /// A dynamic body of a shape at a pose, that collides with all, without a margin: rotation as a
-    /// quaternion (x, y, z, w) of any non-zero norm, translation of the body origin in the world
-    /// frame.
+    /// A dynamic body with a shape and a pose, without a margin, that collides with all: rotation
+    /// as a quaternion (x, y, z, w) of any non-zero norm, translation of the body origin in the
+    /// world frame.
     #[must_use]
     pub fn at(shape: u32, rotation: impl Into<[f32; 4]>, translation: impl Into<[f64; 3]>) -> Self {
         Self {
@@ -34,7 +34,7 @@ impl Body {
         }
     }
 
-    /// The same, not to be moved: pairs of two such bodies are never tested.
+    /// This body, fixed: pairs of two fixed bodies are never tested.
     #[must_use]
     pub fn fixed(self) -> Self {
         Self {
@@ -45,8 +45,8 @@ impl Body {
 }
 
 impl Default for Body {
-    /// A dynamic body of the first shape at the origin, unturned, that collides with all, without a
-    /// margin.
+    /// A dynamic body of shape 0 at the origin, not rotated, without a margin, that collides with
+    /// all.
     fn default() -> Self {
         Self {
             shape: 0,

@@ -1,18 +1,18 @@
-//! A box about bodies, from which the origin of their f32 coordinates follows.
+//! A box around bodies, which determines the origin of their f32 coordinates.
 
-use super::region::{Placed, Region};
+use super::region::{PlacedBody, Region};
 use crate::rounding::{LIMIT, exp2};
 
-/// How many cells wide a box may be whose bodies are placed about one origin, without a search for
-/// regions: rounding there is below 2⁻¹⁰ of the largest body.
+/// The largest width, in cells, of a box whose bodies are placed about one origin without a search
+/// for regions. Rounding is then below 2⁻¹⁰ of the largest body.
 const CELLS_PER_ORIGIN: f64 = 64.0;
 
-/// The least cell, for bodies without any extent.
+/// The smallest cell, for bodies without extent.
 const LEAST_CELL: f64 = exp2(-149);
 
-/// The translations of some bodies, from `lo` to `hi`; no body reaches farther than `size`.
+/// The range of translations of some bodies, `lo` to `hi`, and the largest reach of a body, `size`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounds {
+pub(super) struct BodyBounds {
     lo: [f64; 3],
     hi: [f64; 3],
     size: f64,
@@ -20,7 +20,7 @@ pub(super) struct Bounds {
     pub are_placed: bool,
 }
 
-/// A cube from `lowest` on that holds the bodies of a region.
+/// A cube that contains the bodies of a region. `lowest` is its lowest corner.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cube {
     pub lowest: [f64; 3],
@@ -28,8 +28,8 @@ pub(super) struct Cube {
     pub side: f64,
 }
 
-impl Bounds {
-    /// Of no body.
+impl BodyBounds {
+    /// The bounds of no body.
     pub const EMPTY: Self = Self {
         lo: [f64::INFINITY; 3],
         hi: [f64::NEG_INFINITY; 3],
@@ -37,8 +37,8 @@ impl Bounds {
         are_placed: true,
     };
 
-    pub fn of(bodies: impl Iterator<Item = Placed>) -> Self {
-        let alone = |(_, t, size): Placed| Self {
+    pub fn of(bodies: impl Iterator<Item = PlacedBody>) -> Self {
+        let alone = |(_, t, size): PlacedBody| Self {
             lo: t,
             hi: t,
             size,
@@ -47,7 +47,7 @@ impl Bounds {
         bodies.map(alone).fold(Self::EMPTY, Self::union)
     }
 
-    /// Of both sets.
+    /// The bounds of both sets.
     pub fn union(self, other: Self) -> Self {
         Self {
             lo: std::array::from_fn(|i| self.lo[i].min(other.lo[i])),
@@ -57,7 +57,7 @@ impl Bounds {
         }
     }
 
-    /// A power of two, for which bodies that can meet are at most a 32nd apart.
+    /// The cell width, a power of two: bodies that can meet are at most a 32nd of it apart.
     pub fn cell(&self) -> f64 {
         power_from((64.0 * self.size).max(LEAST_CELL))
     }
@@ -74,9 +74,9 @@ impl Bounds {
         2.0 * self.half() > CELLS_PER_ORIGIN * self.cell()
     }
 
-    /// One origin for all: the world's own, unless the box lies farther out than it is wide. Then
-    /// the middle, in steps of about an eighth of the width, so that it seldom changes while bodies
-    /// move.
+    /// One origin for all: the world's origin, unless the box is farther from it than it is wide.
+    /// Then it is the middle of the box, rounded to steps of about an eighth of the width, so that
+    /// it seldom changes while bodies move.
     pub fn region(&self) -> Region {
         let (half, middle) = (self.half(), self.middle());
         if middle.iter().all(|x| x.abs() <= half) {
@@ -89,7 +89,7 @@ impl Bounds {
         }
     }
 
-    /// A cube that holds all bodies and, about them, room for four of the largest. Its lowest
+    /// A cube that contains all bodies and, around them, space for four of the largest. Its lowest
     /// corner is a multiple of a quarter of the side, so that it seldom changes while bodies move.
     pub fn cube(&self) -> Cube {
         let room = 4.0 * self.size;
@@ -115,7 +115,7 @@ pub(super) fn is_placed(t: [f64; 3]) -> bool {
         .all(|&x| f64::from(x as f32) == x && x.abs() <= f64::from(LIMIT))
 }
 
-/// The smallest power of two that is no less than a positive normal number; 0 for 0.
+/// The smallest power of two that is at least `x`, a positive normal number; 0 for 0.
 fn power_from(x: f64) -> f64 {
     const MANTISSA: u64 = (1 << 52) - 1;
     f64::from_bits((x.to_bits() + MANTISSA) & !MANTISSA)
@@ -125,8 +125,8 @@ fn power_from(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn bounds(places: &[[f64; 3]], size: f64) -> Bounds {
-        Bounds::of(places.iter().map(|&t| (0, t, size)))
+    fn bounds(places: &[[f64; 3]], size: f64) -> BodyBounds {
+        BodyBounds::of(places.iter().map(|&t| (0, t, size)))
     }
 
     #[test]

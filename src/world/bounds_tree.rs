@@ -2,24 +2,24 @@
 
 use std::ops::Range;
 
-use super::bounds::Bounds;
+use super::bounds::BodyBounds;
 
-/// Slots whose bodies a leaf has.
+/// Slots per leaf.
 const SLOTS_PER_LEAF: usize = 16;
 
 /// A binary tree over slots: each node has the bounds of the bodies below it.
 #[derive(Clone, Debug)]
 pub(super) struct BoundsTree {
     /// The root is 1, the children of i are 2i and 2i + 1, and the leaves are the second half.
-    nodes: Vec<Bounds>,
+    nodes: Vec<BodyBounds>,
 }
 
 impl BoundsTree {
-    /// Of so many slots; `of_slots` gives the bounds of the bodies in a range of them, which may go
-    /// beyond.
-    pub fn new(slots: usize, of_slots: impl Fn(Range<usize>) -> Bounds) -> Self {
+    /// A tree of `slots` slots. `of_slots` returns the bounds of the bodies in a range of slots,
+    /// whose end may be larger.
+    pub fn new(slots: usize, of_slots: impl Fn(Range<usize>) -> BodyBounds) -> Self {
         let leaves = slots.div_ceil(SLOTS_PER_LEAF).next_power_of_two();
-        let mut nodes = vec![Bounds::EMPTY; 2 * leaves];
+        let mut nodes = vec![BodyBounds::EMPTY; 2 * leaves];
         for leaf in 0..leaves {
             nodes[leaves + leaf] = of_slots(slots_of(leaf));
         }
@@ -29,13 +29,13 @@ impl BoundsTree {
         Self { nodes }
     }
 
-    /// Whether it has so many slots.
+    /// Whether it has at least this number of slots.
     pub fn has_room_for(&self, slots: usize) -> bool {
         slots <= self.nodes.len() / 2 * SLOTS_PER_LEAF
     }
 
-    /// Takes note of a change in one slot.
-    pub fn update(&mut self, slot: usize, of_slots: impl Fn(Range<usize>) -> Bounds) {
+    /// Updates the bounds after a change in one slot.
+    pub fn update(&mut self, slot: usize, of_slots: impl Fn(Range<usize>) -> BodyBounds) {
         let leaf = slot / SLOTS_PER_LEAF;
         let (mut node, mut bounds) = (self.nodes.len() / 2 + leaf, of_slots(slots_of(leaf)));
         while self.nodes[node] != bounds {
@@ -48,8 +48,8 @@ impl BoundsTree {
         }
     }
 
-    /// Of all bodies.
-    pub fn whole(&self) -> Bounds {
+    /// The bounds of all bodies.
+    pub fn whole(&self) -> BodyBounds {
         self.nodes[1]
     }
 }
@@ -65,14 +65,15 @@ mod tests {
 
     use super::*;
 
+    /// Changes lead to the bounds of all.
     #[test]
-    fn changes_lead_to_the_bounds_of_all() {
+    fn bounds_follow_changes() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         for slots in [1, 15, 16, 17, 300] {
             let mut bodies: Vec<Option<[f64; 3]>> = vec![None; slots];
             let of = |bodies: &[Option<[f64; 3]>], range: Range<usize>| {
                 let some = bodies.iter().take(range.end).skip(range.start).flatten();
-                Bounds::of(some.map(|&t| (0, t, t[1].abs())))
+                BodyBounds::of(some.map(|&t| (0, t, t[1].abs())))
             };
             let mut tree = BoundsTree::new(slots, |range| of(&bodies, range));
             assert!(tree.has_room_for(slots) && !tree.has_room_for(20 * slots + 40));

@@ -1,30 +1,30 @@
-//! Which pairs came and went since events were last read.
+//! A log of the pairs that began or ended since events were last read.
 
 use std::sync::Arc;
 
 use super::pair_log::Reported;
 use super::{BodyId, Event, Events};
 
-/// A log of so many changes is searched for those that cancel each other.
-const WORTH_CANCELLING: usize = 1024;
+/// The least number of changes for which a log is searched for those that cancel each other.
+const LEAST_SEARCHED_CHANGES: usize = 1024;
 
-/// A pair that came or went.
+/// A pair that began or ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct PairChange {
     pub pair: [BodyId; 2],
     pub has_begun: bool,
 }
 
-/// What came and went since events were last read, in the order of time.
+/// The pairs that began or ended since events were last read, in the order of time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ChangeLog {
     changes: Vec<PairChange>,
-    /// So many are left of those that were there when the log was last searched.
+    /// Number of changes that the last search left.
     lasting: usize,
 }
 
 impl ChangeLog {
-    /// What leads from some pairs to others.
+    /// The changes from some pairs to others.
     pub fn between(before: Arc<Reported>, now: Arc<Reported>) -> Self {
         let change = |pair, has_begun| Some(PairChange { pair, has_begun });
         let events = Events::between(before, now);
@@ -43,17 +43,17 @@ impl ChangeLog {
         self.changes.push(change);
     }
 
-    /// Drops changes that cancel each other, if the log has doubled since it was last done: so it
-    /// holds at most some times the pairs of then and of now, however long events aren't read.
+    /// Removes changes that cancel each other, if the log has doubled since the last search. So its
+    /// size stays proportional to the pairs of both moments, however long events aren't read.
     pub fn cancel_some(&mut self) {
-        if self.changes.len() > 2 * self.lasting + WORTH_CANCELLING {
+        if self.changes.len() > 2 * self.lasting + LEAST_SEARCHED_CHANGES {
             self.cancel();
             self.lasting = self.changes.len();
         }
     }
 
-    /// Sorts by pair, and leaves those changes that no later one cancels. A pair comes and goes in
-    /// turns, so of an even number of changes nothing is left, and of an odd one the last.
+    /// Sorts by pair, and keeps those changes that no later one cancels. A pair begins and ends
+    /// alternately, so of an even number of changes none is left, and of an odd number the last.
     fn cancel(&mut self) {
         self.changes.sort_by_key(|change| change.pair);
         let mut kept: Vec<PairChange> = Vec::new();
@@ -77,7 +77,7 @@ impl ChangeLog {
         [of(true), of(false)]
     }
 
-    /// Bytes that it holds.
+    /// Bytes of memory.
     pub fn bytes(&self) -> usize {
         self.changes.capacity() * size_of::<PairChange>()
     }

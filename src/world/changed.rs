@@ -2,8 +2,8 @@
 //! model and at a place, of their groups and motion, of whether one of them is of interest, and of
 //! whether the pair is excluded.
 //!
-//! A body is noted as changed when any of these is set, one of the two for a pair that is excluded,
-//! and where its local place or its model becomes another one because an origin has moved.
+//! A body counts as changed when any of these is set (for an excluded pair, one of its bodies), and
+//! when its local place or its model changes because an origin has moved.
 
 use std::time::Instant;
 
@@ -14,9 +14,9 @@ use crate::culler::FoundPairs;
 use crate::simd::in_default_mode;
 
 impl World {
-    /// Changes the pairs of the last cull to those of now, by the bodies that have changed. False
-    /// if that would take longer than finding them all, if a pair's verdict depends on others, or
-    /// if these bodies are near more than so many others: then all pairs are to be found anew.
+    /// Updates the pairs of the last cull by the bodies that have changed. Returns false if finding
+    /// all pairs would be faster, if a pair's verdict depends on other pairs, or if these bodies
+    /// are near more than `most` others: then all pairs must be found anew.
     pub(super) fn cull_changed(&mut self, most: usize) -> bool {
         if !self.movers.are_few() || !self.culler.judges_pairs_alone() {
             return false;
@@ -36,7 +36,7 @@ impl World {
         true
     }
 
-    /// Puts changed bodies where they are now, and lists the partners of each.
+    /// Moves changed bodies in the index, and lists the partners of each.
     fn find_changed(&mut self, most: usize) -> bool {
         if self.place_changed().is_err() || !self.movers.are_few() {
             return false;
@@ -71,7 +71,7 @@ impl World {
         work.is_some()
     }
 
-    /// An index of all bodies as they are now.
+    /// An index of all present bodies.
     fn index_of_all(&mut self) -> BoxIndex {
         let all: Vec<u32> = self.ids.iter().map(|id| id.slot).collect();
         let boxes = self.culler.boxes_of(&self.bodies, &all);
@@ -80,7 +80,7 @@ impl World {
         BoxIndex::of(indexed, all.len())
     }
 
-    /// The body in a slot as an index has it, with its box, or none if it is gone.
+    /// The body in a slot, for the index: with its box, or without one if it was removed.
     fn indexed(&self, slot: u32, aabb: Option<Aabb>) -> IndexedBox {
         let at = slot as usize;
         IndexedBox {

@@ -1,4 +1,4 @@
-//! Crowds and streams: pairs in portions, a limit to their number, and memory that is given back.
+//! Crowds: pairs in portions, a limit to their number, and the release of memory.
 
 use super::ids::shrink_column;
 use super::local::Origins;
@@ -6,15 +6,15 @@ use super::pair_log::WorldPairs;
 use super::{World, WorldError};
 
 impl World {
-    /// Culls as [`Self::cull`] does and hands the pairs to `take`, some 65,000 at a time. Returns
-    /// their number; there are no [`Self::pairs`] then, and [`Self::events`] see a cull without
-    /// any.
+    /// Culls as [`Self::cull`] does and hands the pairs to `take`, about 65,000 at a time. Returns
+    /// their number. Then there are no [`Self::pairs`], and for [`Self::events`] the cull found
+    /// none.
     ///
-    /// Portions are not sorted: their order depends on the finder and on the frames so far, never
-    /// on threads. No list of all pairs is kept, so memory doesn't grow with their number, except
-    /// under `s-dop-time-critical`, which sorts the potentially colliding set: some thirty bytes
-    /// for each of its pairs. With several threads, `take` is called from any of them, one call at
-    /// a time.
+    /// Portions are not sorted: their order depends on the finder and on earlier frames, never on
+    /// threads. No list of all pairs is kept, so memory doesn't grow with their number, except with
+    /// `s-dop-time-critical`, which sorts the potentially colliding set: about thirty bytes for
+    /// each of its pairs. With several threads, `take` is called from any of them, one call at a
+    /// time.
     ///
     /// # Errors
     /// As [`Self::cull`].
@@ -32,11 +32,11 @@ impl World {
     }
 
     /// Culls as [`Self::cull`] does, if there are at most `limit` pairs. Memory for more is never
-    /// taken.
+    /// allocated.
     ///
     /// # Errors
-    /// More pairs than that, with their number: there are no [`Self::pairs`] then, and the frame
-    /// counts as culled. Otherwise as [`Self::cull`].
+    /// There are more pairs, and the error has their number: then there are no [`Self::pairs`], and
+    /// the frame counts as culled. Otherwise as [`Self::cull`].
     pub fn cull_up_to(&mut self, limit: usize) -> Result<WorldPairs<'_>, WorldError> {
         if !self.cull_changed(limit) || self.log.pairs(&self.ids).len() > limit {
             self.cull_all(|culler, bodies| culler.cull_up_to(bodies, limit).map(|_| ()))?;
@@ -44,17 +44,17 @@ impl World {
         Ok(self.log.pairs(&self.ids))
     }
 
-    /// Bytes that lists of pairs hold: those of the last cull, those that events were last read of,
-    /// and those on the way to them.
+    /// Bytes of the lists of pairs: those of the last cull, those of the last events, and
+    /// intermediate ones.
     #[must_use]
     pub fn pair_bytes(&self) -> usize {
         self.log.bytes() + self.culler.pair_bytes()
     }
 
-    /// Gives back all memory but what the bodies and shapes that are there need, and the last
-    /// pairs: after a crowd, or after most of a world has gone. Free slots at the end are given
-    /// back, too ([`Self::slots`]); ids are still never given again. The next cull begins anew, at
-    /// the price of a first one, and reports the same pairs in the same order.
+    /// Frees all memory except that of the present bodies and shapes and the last pairs. Use it
+    /// after a crowd, or when most of a world is gone. Free slots at the end are removed, too
+    /// ([`Self::slots`]); ids are still never reused. The next cull starts without lists, takes as
+    /// long as a first one, and reports the same pairs in the same order.
     pub fn shrink_to_fit(&mut self) {
         if self.place().is_ok() {
             self.sweep_margins(false);

@@ -1,9 +1,9 @@
-//! A number by which a shape is known again: that of its numbers, in one order, on every machine.
+//! Digests by which a restored world recognises its shapes, the same on every machine.
 
 use crate::volume::Shape;
 
-/// FNV-1a over words: shapes that differ in one word have different digests, others by all but 2⁻⁶⁴
-/// of chance.
+/// FNV-1a over words: shapes that differ in one word have different digests, others with a
+/// probability of 1 − 2⁻⁶⁴.
 struct Digest(u64);
 
 impl Digest {
@@ -11,13 +11,13 @@ impl Digest {
         self.0 = (self.0 ^ u64::from(word)).wrapping_mul(0x0000_0100_0000_01b3);
     }
 
-    /// A number; −0 and 0 differ, as they may where it is used.
+    /// Adds a number; −0 and 0 differ.
     fn number(&mut self, number: f32) {
         self.word(number.to_bits());
     }
 }
 
-/// The digest of all that decides which pairs a shape is in, and of its triangles.
+/// The digest of all numbers of a shape that decide its pairs, and of its triangles.
 pub(super) fn of(shape: &Shape) -> u64 {
     let mut digest = Digest(0xcbf2_9ce4_8422_2325);
     digest.word(shape.vertices.len() as u32);

@@ -1,4 +1,4 @@
-//! What a world refuses.
+//! Errors of worlds.
 
 use thiserror::Error;
 
@@ -6,7 +6,7 @@ use super::BodyId;
 use crate::bodies::contract::ContractError;
 use crate::culler::CullError;
 
-/// A request that a world can't carry out. The world is as it was before.
+/// The error of a request that a world can't carry out. The world stays unchanged.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum WorldError {
     /// The body has been removed.
@@ -15,23 +15,23 @@ pub enum WorldError {
     /// A number of the body is outside of the contract.
     #[error(transparent)]
     Contract(#[from] ContractError),
-    /// A culler that can't be made.
+    /// The culler can't be built.
     #[error(transparent)]
     Cull(#[from] CullError),
-    /// Bodies too far from each other to be culled about one origin.
+    /// Bodies are too far from each other to be culled about one origin.
     #[error("bodies lie farther apart than 2^60: {0} is out of reach of the others")]
     Apart(BodyId),
-    /// A shape that some body has can't be removed.
+    /// A shape that a body uses can't be removed.
     #[error("shape {shape} (`{name}`) is the shape of body {body}")]
     ShapeInUse {
         /// The shape's number.
         shape: u32,
         /// Its name.
         name: String,
-        /// A body that has it.
+        /// A body that uses it.
         body: BodyId,
     },
-    /// A number that no shape has.
+    /// No shape has this number.
     #[error("no shape of this world has the number {0}")]
     NoShape(u32),
 }

@@ -1,5 +1,4 @@
-//! What has changed between two culls: read off a merge of their lists, or listed where little has
-//! changed.
+//! Events between two culls: found by merging their lists, or listed if little has changed.
 
 use std::iter::Peekable;
 use std::sync::Arc;
@@ -8,11 +7,11 @@ use super::BodyId;
 use super::pair_log::{PairIds, Reported, WorldPairs};
 use crate::pairs::Partners;
 
-/// Changes are listed while they are at most one in so many pairs of both culls, and some more.
+/// Changes are listed if they are at most about one in this number of pairs of both culls.
 const LISTED_SHARE: usize = 2;
 const ALWAYS_LISTED: usize = 64;
 
-/// A change of one pair, or none: the lower slot first.
+/// The event of one pair, the lower slot first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// Reported now and not before.
@@ -23,12 +22,13 @@ pub enum Event {
     Ended([BodyId; 2]),
 }
 
-/// What the pairs of two culls have in common and what not, each kind sorted by slots.
+/// The pairs that have begun, persist or have ended between two culls, each kind sorted by slots.
 ///
-/// Borrows nothing of the world: bodies may be removed while events are read. [`Self::begun`] and
-/// [`Self::ended`] cost what has changed, or one pass over both lists of pairs where that is much;
-/// [`Self::persisting`] and [`Self::iter`] are one pass over the pairs. Drop the events before the
-/// next cull, or that copies the pairs that they share with the world.
+/// It doesn't borrow the world: bodies may be removed while events are read. The cost of
+/// [`Self::begun`] and [`Self::ended`] is proportional to the changes, or one pass over both lists
+/// of pairs if there are many; [`Self::persisting`] and [`Self::iter`] take one pass over the
+/// pairs. Drop the events before the next cull, which otherwise copies the pairs that they share
+/// with the world.
 #[derive(Clone, Debug, Default)]
 pub struct Events {
     pub(super) now: CurrentPairs,
@@ -45,12 +45,12 @@ pub(super) enum CurrentPairs {
     },
 }
 
-/// How the pairs of the former cull differ from them.
+/// The difference of the former cull's pairs.
 #[derive(Clone, Debug)]
 pub(super) enum PairDifference {
-    /// These were reported.
+    /// The former pairs.
     Since(Arc<Reported>),
-    /// Both sorted.
+    /// The changes, both sorted.
     Listed {
         begun: Vec<[BodyId; 2]>,
         ended: Vec<[BodyId; 2]>,
@@ -79,7 +79,7 @@ impl CurrentPairs {
 }
 
 impl Events {
-    /// Those between two culls.
+    /// The events between two culls.
     pub(super) fn between(before: Arc<Reported>, now: Arc<Reported>) -> Self {
         let change = changes_between(&before, &now).unwrap_or(PairDifference::Since(before));
         let now = CurrentPairs::List(now);
@@ -90,11 +90,11 @@ impl Events {
     pub fn iter(&self) -> impl Iterator<Item = Event> + '_ {
         let now = self.now.pairs().iter().peekable();
         match &self.change {
-            PairDifference::Since(before) => Either::One(Merge {
+            PairDifference::Since(before) => EitherIterator::One(MergedEvents {
                 before: before.pairs().iter().peekable(),
                 now,
             }),
-            PairDifference::Listed { begun, ended } => Either::Other(Replay {
+            PairDifference::Listed { begun, ended } => EitherIterator::Other(FormerPairs {
                 now,
                 begun: begun.iter().peekable(),
                 ended: ended.iter().peekable(),
@@ -105,9 +105,9 @@ impl Events {
     /// Pairs reported now and not before.
     pub fn begun(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
         match &self.change {
-            PairDifference::Listed { begun, .. } => Either::One(begun.iter().copied()),
+            PairDifference::Listed { begun, .. } => EitherIterator::One(begun.iter().copied()),
             PairDifference::Since(_) => {
-                Either::Other(self.iter().filter_map(|event| match event {
+                EitherIterator::Other(self.iter().filter_map(|event| match event {
                     Event::Begun(pair) => Some(pair),
                     _ => None,
                 }))
@@ -126,9 +126,9 @@ impl Events {
     /// Pairs reported before and not now; those of a body removed since then are among them.
     pub fn ended(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
         match &self.change {
-            PairDifference::Listed { ended, .. } => Either::One(ended.iter().copied()),
+            PairDifference::Listed { ended, .. } => EitherIterator::One(ended.iter().copied()),
             PairDifference::Since(_) => {
-                Either::Other(self.iter().filter_map(|event| match event {
+                EitherIterator::Other(self.iter().filter_map(|event| match event {
                     Event::Ended(pair) => Some(pair),
                     _ => None,
                 }))
@@ -137,7 +137,7 @@ impl Events {
     }
 }
 
-/// Lists what has changed between two culls, unless it is most of all pairs.
+/// Lists the changes between two culls, unless most pairs have changed.
 fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> {
     let [former, later] = [before, now].map(|reported| reported.slots.len());
     let most = (former + later) / LISTED_SHARE + ALWAYS_LISTED;
@@ -155,7 +155,7 @@ fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> 
     let (mut i, mut j) = (0, 0);
     while i < former && j < later {
         let (old, new) = (key(slots[0], i), key(slots[1], j));
-        // Equal slots are equal bodies, unless one was given away in between.
+        // Equal slots are equal bodies, unless a slot was reused in between.
         if old == new && (are_of_one_time || pair(0, i) == pair(1, j)) {
             (i, j) = (i + 1, j + 1);
             continue;
@@ -178,12 +178,12 @@ fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> 
 }
 
 /// One of two iterators.
-enum Either<A, B> {
+enum EitherIterator<A, B> {
     One(A),
     Other(B),
 }
 
-impl<T, A: Iterator<Item = T>, B: Iterator<Item = T>> Iterator for Either<A, B> {
+impl<T, A: Iterator<Item = T>, B: Iterator<Item = T>> Iterator for EitherIterator<A, B> {
     type Item = T;
     fn next(&mut self) -> Option<T> {
         match self {
@@ -193,13 +193,13 @@ impl<T, A: Iterator<Item = T>, B: Iterator<Item = T>> Iterator for Either<A, B> 
     }
 }
 
-/// Two sorted lists, merged.
-struct Merge<'a> {
+/// Merges two sorted lists.
+struct MergedEvents<'a> {
     before: Peekable<PairIds<'a>>,
     now: Peekable<PairIds<'a>>,
 }
 
-impl Iterator for Merge<'_> {
+impl Iterator for MergedEvents<'_> {
     type Item = Event;
     fn next(&mut self) -> Option<Event> {
         let Some(&pair) = self.now.peek() else {
@@ -216,14 +216,14 @@ impl Iterator for Merge<'_> {
     }
 }
 
-/// The later pairs with the changes that led to them, all sorted.
-struct Replay<'a> {
+/// Reconstructs the former pairs from the later ones and the changes, all sorted.
+struct FormerPairs<'a> {
     now: Peekable<PairIds<'a>>,
     begun: Peekable<std::slice::Iter<'a, [BodyId; 2]>>,
     ended: Peekable<std::slice::Iter<'a, [BodyId; 2]>>,
 }
 
-impl Iterator for Replay<'_> {
+impl Iterator for FormerPairs<'_> {
     type Item = Event;
     fn next(&mut self) -> Option<Event> {
         let Some(&pair) = self.now.peek() else {

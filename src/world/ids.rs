@@ -1,11 +1,11 @@
-//! Ids that stay: slots, and how often each has been given.
+//! Stable ids: a slot, and a generation that counts how often it was used.
 
 use std::fmt;
 use std::sync::Arc;
 
 use super::WorldError;
 
-/// A body of a world. Stays the same until the body is removed, and is never given to another.
+/// The id of a body of a world. It stays the same until the body is removed, and is never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId {
@@ -14,21 +14,21 @@ pub struct BodyId {
 }
 
 impl BodyId {
-    /// Where a column a body may keep this one's entry: below
-    /// [`World::slots`](super::World::slots), and given to another body once this one is removed.
+    /// The body's index into columns with one entry per body: less than
+    /// [`World::slots`](super::World::slots), and reused for another body once this one is removed.
     #[must_use]
     pub fn slot(self) -> usize {
         self.slot as usize
     }
 
-    /// The id as a number, for languages and files that have no such type: the generation above the
-    /// slot.
+    /// The id as a number, for other languages and for files: the generation in the upper half, the
+    /// slot in the lower.
     #[must_use]
     pub fn to_bits(self) -> u64 {
         u64::from(self.generation) << 32 | u64::from(self.slot)
     }
 
-    /// The id of [`Self::to_bits`]. Any other number is an id that no world has given.
+    /// The id of [`Self::to_bits`]. Any other number is an id that no body has.
     #[must_use]
     pub fn from_bits(bits: u64) -> Self {
         Self {
@@ -44,17 +44,16 @@ impl fmt::Display for BodyId {
     }
 }
 
-/// The slots of a world, and who lives in them.
+/// The slots of a world, and their bodies.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ids {
     pub(super) present: Vec<bool>,
-    /// How often each slot was given before; shared with the lists of pairs that name slots.
+    /// How often each slot was used before; shared with the lists of pairs.
     pub(super) generation: Arc<Vec<u32>>,
-    /// Empty slots, and those emptied since the last cull, which its pairs still name.
+    /// Empty slots, including those emptied since the last cull, which its pairs still contain.
     pub(super) free: Vec<u32>,
     pub(super) emptied: Vec<u32>,
-    /// The generation of a new slot, above all of the slots that were given back
-    /// ([`Self::shrink`]).
+    /// The generation of a new slot, above those of all slots that were removed ([`Self::shrink`]).
     pub(super) first_generation: u32,
     pub(super) bodies: usize,
 }
@@ -65,7 +64,8 @@ impl Ids {
         self.free.last().map_or(self.slots(), |&slot| slot as usize)
     }
 
-    /// Gives [`Self::next`] to a body. True if the slot is new, so that columns lack it.
+    /// Gives [`Self::next`] to a body. Returns whether the slot is new, so that columns have no
+    /// entry for it yet.
     pub fn take(&mut self) -> bool {
         self.bodies += 1;
         let generation = Arc::make_mut(&mut self.generation);
@@ -80,7 +80,7 @@ impl Ids {
         true
     }
 
-    /// Takes a body out of its slot, which nobody gets before [`Self::settle`].
+    /// Removes a body from its slot, which isn't reused before [`Self::settle`].
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
         let slot = self.slot(id)?;
         self.present[slot] = false;
@@ -89,8 +89,8 @@ impl Ids {
         Ok(())
     }
 
-    /// A cull's pairs name none of the bodies that have been removed: their slots may be given
-    /// away, unless all their generations have been.
+    /// Frees the slots of removed bodies after a cull, whose pairs don't contain them, except slots
+    /// that have used all their generations.
     pub fn settle(&mut self) {
         let generation = &self.generation;
         let emptied = self.emptied.drain(..);
@@ -98,8 +98,8 @@ impl Ids {
         self.free.extend(lasting);
     }
 
-    /// Gives back free slots at the end; returns how many slots are left. Ids that they had are
-    /// never given again.
+    /// Removes free slots at the end and returns the number of slots left. Their ids are never
+    /// reused.
     pub fn shrink(&mut self) -> usize {
         let mut is_free = vec![false; self.slots()];
         for &slot in &self.free {
@@ -119,7 +119,7 @@ impl Ids {
         left
     }
 
-    /// Who is in a slot, or was last.
+    /// The id of the present or last body in a slot.
     pub fn id(&self, slot: u32) -> BodyId {
         BodyId {
             slot,
@@ -127,7 +127,7 @@ impl Ids {
         }
     }
 
-    /// The bodies that are there, by slot.
+    /// The present bodies, by slot.
     pub fn iter(&self) -> impl Iterator<Item = BodyId> + Clone + '_ {
         let slots = (0..).zip(&self.present);
         slots
@@ -135,7 +135,7 @@ impl Ids {
             .map(|(slot, _)| self.id(slot))
     }
 
-    /// The slot of a body that is there.
+    /// The slot of a present body.
     pub fn slot(&self, id: BodyId) -> Result<usize, WorldError> {
         let slot = id.slot as usize;
         let lives = self.present.get(slot) == Some(&true) && self.generation[slot] == id.generation;
@@ -181,8 +181,9 @@ mod tests {
         ids
     }
 
+    /// Slots at the end are given back.
     #[test]
-    fn slots_at_the_end_are_given_back() {
+    fn free_end_slots_are_removed() {
         let mut ids = filled(6);
         for slot in [1, 4, 5] {
             ids.remove(ids.id(slot)).unwrap();
@@ -196,8 +197,9 @@ mod tests {
         assert_eq!(ids.iter().count(), 5);
     }
 
+    /// A slot without generations left is retired.
     #[test]
-    fn a_slot_without_generations_left_is_retired() {
+    fn used_up_slot_is_retired() {
         let mut ids = filled(2);
         ids.generation = Arc::new(vec![u32::MAX - 1, 7]);
         for _ in 0..2 {

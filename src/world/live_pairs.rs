@@ -14,26 +14,26 @@ use super::pair_log::{PairLog, Reported, WorldPairs};
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, Partners};
 
-/// The pairs of the last cull, and how they differ from those that events were last read of.
+/// The pairs of the last cull, and their changes since events were last read.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LivePairs {
-    /// What is left of it is memory while pairs are kept by body.
+    /// While pairs are kept by body, only its memory is used.
     log: PairLog,
     live: Option<PairsByBody>,
 }
 
-/// What is known of pairs while they are kept by body.
+/// The pairs while they are kept by body.
 #[derive(Clone, Debug)]
 struct PairsByBody {
-    /// Shared with the events that are read of them.
+    /// Shared with events.
     partners: Arc<Partners>,
-    /// None if no pairs were there when events were last read, or if none have been read: all have
-    /// begun since then.
+    /// `None` if there were no pairs when events were last read, or if events have never been read:
+    /// all pairs have begun since then.
     changes: Option<ChangeLog>,
 }
 
 impl LivePairs {
-    /// Those of a log.
+    /// The pairs of a log.
     #[cfg(feature = "serde")]
     pub fn of(log: PairLog) -> Self {
         Self { log, live: None }
@@ -55,7 +55,7 @@ impl LivePairs {
         self.log.take()
     }
 
-    /// The pairs of a cull that found them all, in any order.
+    /// Takes the pairs of a cull that found them all, in any order.
     pub fn put(&mut self, slots: PairList, ids: &Ids) {
         self.log.put(slots, ids);
     }
@@ -74,13 +74,13 @@ impl LivePairs {
         }
     }
 
-    /// The slots that one is in pairs with, sorted. None unless pairs are kept by body.
+    /// The slots of a slot's partners, sorted. Empty unless pairs are kept by body.
     pub fn partners(&self, slot: u32) -> &[u32] {
         let live = self.live.as_ref();
         live.map_or(&[], |live| live.partners.of_number(slot))
     }
 
-    /// Brings near what [`Self::partners`] reads of one slot soon, and of another next.
+    /// Prefetches what [`Self::partners`] will read, of one slot soon and of another next.
     #[inline(always)]
     pub fn prefetch(&self, slots: [Option<&u32>; 2]) {
         if let Some(live) = &self.live {
@@ -88,7 +88,7 @@ impl LivePairs {
         }
     }
 
-    /// The pairs, to be changed, if they are kept by body. Copies them if events share them.
+    /// Access for changing the pairs, if they are kept by body. Copies them if events share them.
     pub fn change<'a>(&'a mut self, ids: &'a Ids) -> Option<PairChanges<'a>> {
         let live = self.live.as_mut()?;
         let partners = Arc::make_mut(&mut live.partners);
@@ -100,7 +100,7 @@ impl LivePairs {
         })
     }
 
-    /// Makes room for the slots that there are.
+    /// Makes room for all slots.
     pub fn extend(&mut self, ids: &Ids) {
         if let Some(live) = &mut self.live
             && !live.partners.has_room_for(ids.slots())
@@ -109,7 +109,8 @@ impl LivePairs {
         }
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    /// The pairs that began, persisted or ended between the last call of this method and the last
+    /// cull.
     pub fn events(&mut self, ids: &Ids) -> Events {
         let Some(live) = &mut self.live else {
             return self.log.events();
@@ -121,7 +122,7 @@ impl LivePairs {
         live.events(changes, ids)
     }
 
-    /// Bytes that pairs hold.
+    /// Bytes of the pairs.
     pub fn bytes(&self) -> usize {
         let live = self.live.as_ref().map_or(0, |live| {
             live.partners.bytes() + live.changes.as_ref().map_or(0, ChangeLog::bytes)
@@ -129,15 +130,14 @@ impl LivePairs {
         self.log.bytes() + live
     }
 
-    /// Gives back the memory that the pairs don't need.
+    /// Frees the memory that the pairs don't need.
     pub fn shrink_to_fit(&mut self, ids: &Ids) {
         self.log = self.to_log(ids);
         self.live = None;
         self.log.shrink_to_fit();
     }
 
-    /// The same pairs as lists. One list serves for both if nothing has changed since events were
-    /// read.
+    /// The same pairs as lists. If nothing has changed since events were read, both are one list.
     pub fn to_log(&self, ids: &Ids) -> PairLog {
         let (last, watched) = match &self.live {
             None => {
@@ -164,7 +164,7 @@ impl PairsByBody {
         WorldPairs::of_partners(&self.partners, ids.generation())
     }
 
-    /// The events of these changes, begun and ended ones, that led to the pairs.
+    /// The events of the pairs that have begun and ended.
     fn events(&self, [begun, ended]: [Vec<[BodyId; 2]>; 2], ids: &Ids) -> Events {
         Events {
             now: CurrentPairs::Partners {
@@ -175,7 +175,7 @@ impl PairsByBody {
         }
     }
 
-    /// The pairs that events were last read of.
+    /// The pairs of the last call of `events`.
     fn watched(&self, ids: &Ids) -> Reported {
         let Some(changes) = self.changes.clone() else {
             return Reported::default();
@@ -188,7 +188,7 @@ impl PairsByBody {
     }
 }
 
-/// Sorted pairs as a list, with the generations of the slots that they name alone.
+/// Sorted pairs as a list, with the generations of only their slots.
 fn reported(pairs: impl Iterator<Item = [BodyId; 2]>) -> Reported {
     let (mut slots, mut generation) = (PairList::default(), Vec::new());
     for pair in pairs {
@@ -204,8 +204,7 @@ fn reported(pairs: impl Iterator<Item = [BodyId; 2]>) -> Reported {
     Reported { slots, generation }
 }
 
-/// Pairs that are being changed. A change of a pair of two bodies is made at both of them, and
-/// noted once.
+/// Changes pairs. A change is made in the lists of both bodies, and logged once.
 pub(crate) struct PairChanges<'a> {
     partners: &'a mut Partners,
     log: Option<&'a mut ChangeLog>,
@@ -218,7 +217,7 @@ impl PairChanges<'_> {
         self.partners.replace(slot, partners);
     }
 
-    /// Makes another slot a partner of one, or ends that.
+    /// Adds a partner to a slot, or removes it.
     pub fn set_partner(&mut self, slot: u32, other: u32, has_begun: bool) {
         if has_begun {
             self.partners.insert(slot, other);
@@ -227,7 +226,7 @@ impl PairChanges<'_> {
         }
     }
 
-    /// Notes for events that a pair has begun or ended.
+    /// Logs for events that a pair has begun or ended.
     pub fn note(&mut self, slot: u32, other: u32, has_begun: bool) {
         if let Some(log) = &mut self.log {
             let pair = [slot.min(other), slot.max(other)].map(|slot| self.ids.id(slot));
@@ -235,7 +234,7 @@ impl PairChanges<'_> {
         }
     }
 
-    /// Drops notes that cancel each other, if there are many.
+    /// Removes log entries that cancel each other, if there are many.
     pub fn done(self) {
         if let Some(log) = self.log {
             log.cancel_some();
@@ -260,7 +259,7 @@ mod tests {
         ids
     }
 
-    /// Makes these the pairs, by whatever changes that takes.
+    /// Changes the pairs to these.
     fn change(live: &mut LivePairs, ids: &Ids, wanted: &BTreeSet<[u32; 2]>) {
         live.keep_by_body(ids);
         let now: BTreeSet<[u32; 2]> = live
@@ -314,8 +313,9 @@ mod tests {
         }
     }
 
+    /// Unread events hold no more than pairs.
     #[test]
-    fn unread_events_hold_no_more_than_pairs() {
+    fn unread_events_stay_small() {
         let (ids, mut live) = (ids(200), LivePairs::default());
         let all: BTreeSet<[u32; 2]> = (0..199).map(|i| [i, i + 1]).collect();
         change(&mut live, &ids, &all);

@@ -1,40 +1,40 @@
-//! Large worlds: f64 translations, culled as f32 about local origins.
+//! Large worlds: f64 translations, culled in f32 about local origins.
 //!
-//! Where the origins lie is a function of the bodies as they are now, never of earlier frames.
-//! Translations that are all f32 stay as they are. Otherwise bodies that lie near each other are
-//! placed about one origin; bodies in many far-apart places have an [origin per
-//! region](super::regions).
+//! The origins are a function of the present bodies, never of earlier frames. If all translations
+//! are f32, they stay as they are. Otherwise bodies near each other are placed about one origin,
+//! and bodies in far-apart places have an [origin per region](super::regions).
 
 use std::ops::Range;
 
-use super::bounds::{Bounds, is_placed};
+use super::bounds::{BodyBounds, is_placed};
 use super::bounds_tree::BoundsTree;
-use super::region::{Placed, Region};
+use super::region::{PlacedBody, Region};
 use super::regions::{Regions, regions};
 use super::{World, WorldError, offset};
 use crate::bodies::contract::is_within_limit;
 
-/// About which origin each slot's body is placed.
+/// The origins about which bodies are placed.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Local {
+pub(super) enum LocalOrigins {
     /// All translations stay as they are.
     World,
     One(Region),
     Many(Regions),
 }
 
-impl Local {
-    /// The origins for these bodies, whose translations are at most 2⁶⁰ in size, or little more
-    /// where meshes are far from their own origins.
-    fn of(bodies: impl Iterator<Item = Placed> + Clone) -> Self {
+impl LocalOrigins {
+    /// The origins for these bodies, whose translations are at most 2⁶⁰ in size, or slightly more
+    /// if meshes are far from their own origins.
+    fn of(bodies: impl Iterator<Item = PlacedBody> + Clone) -> Self {
         if bodies.clone().all(|(_, t, _)| is_placed(t)) {
             return Self::World;
         }
-        Self::within(Bounds::of(bodies.clone()), bodies)
+        Self::within(BodyBounds::of(bodies.clone()), bodies)
     }
 
-    /// The same of bodies with these bounds: a look at each takes place only where they are wide.
-    fn within(bounds: Bounds, bodies: impl Iterator<Item = Placed>) -> Self {
+    /// The origins for bodies with these bounds. Single bodies are read only if the bounds are
+    /// wide.
+    fn within(bounds: BodyBounds, bodies: impl Iterator<Item = PlacedBody>) -> Self {
         if bounds.are_placed {
             return Self::World;
         }
@@ -45,7 +45,7 @@ impl Local {
         }
     }
 
-    /// The local translation of a slot's body, and how far from the exact one it may be.
+    /// The local translation of a slot's body, and the bound of its error.
     fn place(&self, slot: usize, t: [f64; 3]) -> ([f32; 3], f64) {
         match self {
             Self::World => (t.map(|x| x as f32), 0.0),
@@ -55,38 +55,37 @@ impl Local {
     }
 }
 
-/// The origins of the last cull, and the bounds of all bodies, of which they follow.
+/// The origins of the last cull, and the bounds of all bodies, from which they follow.
 #[derive(Clone, Debug)]
 pub(super) struct Origins {
-    local: Local,
-    /// None while each cull looks at all bodies.
+    local: LocalOrigins,
+    /// `None` while each cull reads all bodies.
     bounds: Option<BoundsTree>,
 }
 
 impl Default for Origins {
     fn default() -> Self {
         Self {
-            local: Local::World,
+            local: LocalOrigins::World,
             bounds: None,
         }
     }
 }
 
 impl World {
-    /// Brings all bodies near local origins, in the models that their margins and rounding call
-    /// for.
+    /// Places all bodies about local origins, in the models that their margins and rounding need.
     pub(super) fn place(&mut self) -> Result<(), WorldError> {
-        let local = Local::of(self.placed_in(0..self.ids.slots()));
+        let local = LocalOrigins::of(self.placed_in(0..self.ids.slots()));
         self.origins.bounds = None;
         self.place_all(local)
     }
 
-    /// The same where some bodies have changed since the last cull: places these, and all others if
-    /// an origin has changed. Takes note of those whose place or model is another one now.
+    /// Places the bodies that have changed since the last cull, and all others if an origin has
+    /// changed. Notes those whose place or model has changed.
     pub(super) fn place_changed(&mut self) -> Result<(), WorldError> {
         let slots = self.ids.slots();
         let bounds = self.origins.bounds.take();
-        let of_slots = |range: Range<usize>| Bounds::of(self.placed_in(range));
+        let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(range));
         let bounds = match bounds.filter(|bounds| bounds.has_room_for(slots)) {
             Some(mut bounds) => {
                 for &slot in self.movers.changed() {
@@ -96,7 +95,7 @@ impl World {
             }
             None => BoundsTree::new(slots, of_slots),
         };
-        let local = Local::within(bounds.whole(), self.placed_in(0..slots));
+        let local = LocalOrigins::within(bounds.whole(), self.placed_in(0..slots));
         self.origins.bounds = Some(bounds);
         if local != self.origins.local {
             return self.place_all(local);
@@ -110,9 +109,8 @@ impl World {
         Ok(())
     }
 
-    /// Places all bodies about these origins, and takes note of those whose place or model is
-    /// another one then.
-    fn place_all(&mut self, local: Local) -> Result<(), WorldError> {
+    /// Places all bodies about these origins, and notes those whose place or model changes.
+    fn place_all(&mut self, local: LocalOrigins) -> Result<(), WorldError> {
         for slot in 0..self.ids.slots() {
             if self.ids.present()[slot] && self.place_body(slot, &local)? {
                 self.movers.note(slot, &self.ids);
@@ -122,9 +120,9 @@ impl World {
         Ok(())
     }
 
-    /// Places the body in a slot; whether its place or its model is another one then.
+    /// Places the body in a slot. Returns whether its place or its model has changed.
     #[inline]
-    fn place_body(&mut self, slot: usize, local: &Local) -> Result<bool, WorldError> {
+    fn place_body(&mut self, slot: usize, local: &LocalOrigins) -> Result<bool, WorldError> {
         let (translation, composed) = self.composed(slot);
         let (place, moved) = local.place(slot, translation);
         if !is_within_limit(&place) {
@@ -147,8 +145,8 @@ impl World {
         Ok(is_new || is_moved)
     }
 
-    /// The bodies in some slots, as far as their places are concerned.
-    fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = Placed> + Clone + '_ {
+    /// Number, translation and reach of the bodies in some slots.
+    fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = PlacedBody> + Clone + '_ {
         let slots = slots.start..slots.end.min(self.ids.slots());
         let present = slots.filter(move |&slot| self.ids.present()[slot]);
         present.map(move |slot| {
@@ -159,8 +157,7 @@ impl World {
         })
     }
 
-    /// The translation of the vertices of the body in a slot, and how far from the exact one it may
-    /// be.
+    /// The translation of the vertices of the body in a slot, and the bound of its error.
     fn composed(&self, slot: usize) -> ([f64; 3], f64) {
         let offset = self.shapes[self.shape[slot] as usize].pose_offset;
         offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)
@@ -172,8 +169,8 @@ mod tests {
     use super::*;
 
     /// Bodies of size 1 at these places, in slots that begin at 3.
-    fn local(places: &[[f64; 3]]) -> Local {
-        Local::of(places.iter().zip(3..).map(|(&t, slot)| (slot, t, 1.0)))
+    fn local(places: &[[f64; 3]]) -> LocalOrigins {
+        LocalOrigins::of(places.iter().zip(3..).map(|(&t, slot)| (slot, t, 1.0)))
     }
 
     #[test]

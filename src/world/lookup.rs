@@ -1,5 +1,4 @@
-//! Whether a pair was reported, by a look-up instead of a walk through the list: for engines that
-//! call back pair by pair.
+//! A look-up of whether a pair was reported, for engines that call back pair by pair.
 
 use super::{BodyId, World};
 
@@ -22,13 +21,13 @@ use super::{BodyId, World};
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct PairLookup {
-    /// Where the pairs of each slot start; one more entry than slots.
+    /// The start of each slot's pairs, with one more entry than slots.
     starts: Vec<usize>,
     pairs: Vec<[BodyId; 2]>,
 }
 
 impl PairLookup {
-    /// Takes up the pairs of the world's last cull in place of what was here.
+    /// Replaces its pairs by those of the world's last cull.
     pub fn refill(&mut self, world: &World) {
         self.starts.clear();
         self.starts.resize(world.slots() + 1, 0);
@@ -44,7 +43,7 @@ impl PairLookup {
         }
     }
 
-    /// Whether the pair is among them, in either order. A body that was removed before that cull is
+    /// Whether the pair was reported, in either order. A body that was removed before that cull is
     /// in no pair.
     #[must_use]
     pub fn contains(&self, a: BodyId, b: BodyId) -> bool {

@@ -1,9 +1,9 @@
-//! Few margins for many bodies: each is rounded up to a class, and a shape with a class is one
-//! model of the culler.
+//! Margin classes: each margin is rounded up to a class, and a shape with a class is one model of
+//! the culler, so that many bodies need few models.
 //!
-//! Classes are eight steps an octave, so a body grows by at most an eighth of its margin too much.
-//! Rounding errors of local translations alone have a class in common as long as they are below
-//! 2⁻¹² of the shape.
+//! There are eight classes per octave, so a margin is rounded up by at most an eighth. Without a
+//! margin, rounding errors of local translations share one class as long as they are below 2⁻¹² of
+//! the shape.
 
 use std::collections::HashMap;
 
@@ -11,22 +11,22 @@ use crate::bodies::contract::{ContractError, refuse};
 use crate::rounding::{LIMIT, exp2};
 
 /// Errors of placement up to this share of a shape's size are rounded up to it.
-const FINE: f64 = exp2(-12);
+const SHARED_ERROR_RATIO: f64 = exp2(-12);
 
-/// Classes that are kept without a look at which of them are in use.
-const FEW_CLASSES: usize = 64;
+/// Up to this number of classes, unused ones are kept.
+const MOST_UNSWEPT_CLASSES: usize = 64;
 
-/// The model of each shape in each class in use.
+/// The models of each shape in each used class.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Margins {
     models: HashMap<(u32, u32), u32>,
-    /// How many were in use at the last [`Self::sweep`].
+    /// Number of models in use at the last [`Self::sweep`].
     in_use: usize,
 }
 
 impl Margins {
     /// The model for a shape of size `reach` and with the number `shape` among the models, with a
-    /// margin, placed with an error of at most `moved`; `grow` makes it where it is new.
+    /// margin, placed with an error of at most `moved`. `grow` makes a new one.
     pub fn model(
         &mut self,
         shape: u32,
@@ -39,7 +39,7 @@ impl Margins {
             return shape; // the shape itself is a model, of its own number
         }
         let moved = if moved > 0.0 {
-            moved.max(FINE * f64::from(reach))
+            moved.max(SHARED_ERROR_RATIO * f64::from(reach))
         } else {
             0.0
         };
@@ -50,14 +50,14 @@ impl Margins {
             .or_insert_with(|| grow(shape, f32::from_bits(class)))
     }
 
-    /// Removes the models grown of that of a shape, by `remove`.
+    /// Removes the models grown from a shape's, by `remove`.
     pub fn remove(&mut self, shape: u32, remove: impl FnMut(u32)) {
         self.keep(|of, _| of != shape, remove);
     }
 
-    /// Whether more models than at the last sweep may be out of use than in use.
+    /// Whether more models may be unused than were in use at the last sweep.
     pub fn are_many(&self) -> bool {
-        self.models.len() > FEW_CLASSES + 2 * self.in_use
+        self.models.len() > MOST_UNSWEPT_CLASSES + 2 * self.in_use
     }
 
     /// Removes the models that are not in use.
@@ -66,7 +66,7 @@ impl Margins {
         self.in_use = self.models.len();
     }
 
-    /// Gives back the memory of what was removed.
+    /// Frees the memory of removed models.
     pub fn shrink_to_fit(&mut self) {
         self.models.shrink_to_fit();
     }
@@ -92,8 +92,8 @@ pub(super) fn check_margin(body: usize, reach: f32, margin: f32) -> Result<(), C
     refuse(body, "margin", format!("{margin}"), hint)
 }
 
-/// The bits of the smallest class above `margin` > 0: an f32 of three significant bits behind the
-/// first, so that exponent and bits are one integer that steps through the classes.
+/// The bits of the smallest class above `margin` > 0: an f32 with three significant bits after the
+/// first, so that exponent and bits form one integer that counts the classes.
 fn class_of(margin: f64) -> u32 {
     const STEP: u32 = 1 << 20;
     let above = crate::rounding::up(margin).to_bits();
@@ -104,8 +104,9 @@ fn class_of(margin: f64) -> u32 {
 mod tests {
     use super::*;
 
+    /// A class is above the margin by an eighth at most.
     #[test]
-    fn a_class_is_above_the_margin_by_an_eighth_at_most() {
+    fn class_is_within_an_eighth() {
         for margin in [1.0, 1.0e-3, 0.124_999_99, 7.5, 1.0e12, 3.0e-30] {
             let class = f64::from(f32::from_bits(class_of(margin)));
             assert!(
@@ -117,8 +118,9 @@ mod tests {
         assert!(f32::from_bits(class_of(1.0e-44)) >= 1.0e-44);
     }
 
+    /// Equal classes share a model and none needs none.
     #[test]
-    fn equal_classes_share_a_model_and_none_needs_none() {
+    fn equal_classes_share_a_model() {
         let mut margins = Margins::default();
         let mut made = Vec::new();
         let mut model = |margin: f32, moved: f64| {
@@ -134,15 +136,16 @@ mod tests {
         assert_eq!(model(0.0, 1.0e-7), 102, "below 2⁻¹² of the size");
         assert_eq!(model(0.0, 1.0e-2), 103);
         assert_eq!(made[0], (3, 0.5625));
-        // A larger shape's errors have a class in common as long as they are larger.
+        // A larger shape has one class for its errors up to a larger error.
         let mut model =
             |moved: f64| margins.model(4, 64.0, 0.0, moved, |_, _| moved.to_bits() as u32);
         assert_eq!(model(1.0e-2), model(1.0e-3));
         assert_ne!(model(1.0e-2), model(3.0e-2));
     }
 
+    /// A margin is within the limit with its shape.
     #[test]
-    fn a_margin_is_within_the_limit_with_its_shape() {
+    fn margin_limit_includes_shape() {
         // 2⁶⁰ − 1.25·2⁴⁰ is an f32.
         let margin = 2f32.powi(40);
         let reach = (f64::from(LIMIT) - 1.25 * f64::from(margin)) as f32;

@@ -1,4 +1,4 @@
-//! Long-lived worlds: bodies come and go, and every frame asks who might touch.
+//! Long-lived worlds: bodies come and go, and each frame finds the pairs that might touch.
 //!
 //! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and
 //! masks, contact margins, translations in f64, and pairs as a list or as events. The promise is
@@ -7,8 +7,8 @@
 //! and their groups collide, and the pair isn't [excluded](World::exclude), it is reported.
 //!
 //! A frame costs time for what changes: bodies that were set, inserted or removed, their
-//! neighbours, and the pairs that begin or end ([`World`]). Lists, and their order, depend on the
-//! bodies as they are now, never on the finder, the CPU or threads ([`World::cull`]).
+//! neighbours, and the pairs that begin or end ([`World`]). Lists and their order depend on the
+//! present bodies, never on the finder, the CPU or threads ([`World::cull`]).
 //!
 //! ```
 //! use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
@@ -116,26 +116,26 @@ use crate::{
 /// translations in f64, and pairs as a list or as events.
 ///
 /// A frame costs time for the bodies that were inserted, removed or set to another value since the
-/// last cull, for their neighbours, and for the pairs that change: nothing for all others, however
-/// many there are. All bodies are looked at, and all pairs found anew, where more than an eighth
-/// has changed, under a strategy with a budget, in the first cull, and in the first one after a
-/// world was restored, after [`Self::shrink_to_fit`] and after [`Self::cull_in_portions`]. All are
-/// placed anew, and their pairs kept, in a frame in which local origins change, or in which bodies
-/// are in far-apart regions ([`World::cull`]). Whatever a frame costs, its pairs are those of the
-/// bodies as they are.
+/// last cull, for their neighbours, and for the pairs that change, and nothing for all others. All
+/// pairs are found anew if more than an eighth has changed, with a strategy that has a budget, in
+/// the first cull, and in the first one after a world was restored, after [`Self::shrink_to_fit`]
+/// and after [`Self::cull_in_portions`]. All bodies are placed anew, and their pairs kept, in a
+/// frame in which local origins change, or in which bodies are in far-apart regions
+/// ([`World::cull`]). In every case the pairs are those of the present bodies.
 ///
 /// A body is dynamic, resting or fixed ([`Motion`]). Pairs of two fixed bodies are never reported.
-/// A body at rest keeps its pairs, with others at rest too: putting a body to rest or waking it
-/// ends no pair and begins none.
+/// A body at rest keeps its pairs, also with others at rest: putting a body to rest or waking it
+/// begins and ends no pair.
 ///
-/// A clone goes on as the original would, on threads that it starts for itself.
+/// A clone continues as the original would, on its own threads.
 #[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct World {
     shapes: Vec<ShapeSlot>,
     /// The culler's number of each shape.
     models: Vec<u32>,
-    /// One entry a slot; empty slots keep their last body's. Those that aren't fixed are dynamic.
+    /// One entry per slot; empty slots keep the values of their last body. Bodies that aren't fixed
+    /// are dynamic.
     bodies: Bodies,
     resting: Vec<bool>,
     ids: Ids,
@@ -151,29 +151,29 @@ pub struct World {
     origins: Origins,
     log: LivePairs,
     movers: Movers,
-    /// Whether the culler must take up another set of bodies, or another pose of a static one.
+    /// Whether the set of bodies, or a static body's pose, differs from that in the culler.
     replaced: bool,
-    /// Whether some body has another model than the culler knows.
+    /// Whether a body's model differs from that in the culler.
     remodelled: bool,
     regrouped: bool,
 }
 
 #[cfg(feature = "shapes")]
 impl World {
-    /// A world without bodies, culled with every default ([`Culler::new`]).
+    /// A world without bodies, culled with all defaults ([`Culler::new`]).
     ///
     /// # Errors
-    /// A shape beyond the contract.
+    /// A shape is outside of the contract.
     pub fn new(shapes: Vec<Shape>) -> Result<Self, WorldError> {
         Self::with(shapes, &Culler::builder())
     }
 
-    /// A world without bodies, culled as the builder says. Bodies of interest, where the strategy
-    /// needs them, are set by [`Self::set_interest`].
+    /// A world without bodies, culled with the choices of a builder. If the strategy needs bodies
+    /// of interest, set them by [`Self::set_interest`].
     ///
     /// # Errors
-    /// Settings that can't be carried out, a view cone, a shape beyond the contract, threads that
-    /// the system refuses.
+    /// The settings can't be carried out or include a view cone, a shape is outside of the
+    /// contract, or the system cannot start the threads.
     pub fn with(shapes: Vec<Shape>, culler: &CullerBuilder) -> Result<Self, WorldError> {
         let settings = &culler.settings;
         if let Some(interest) = &settings.interest {
@@ -212,7 +212,7 @@ impl World {
     /// Adds a body.
     ///
     /// # Errors
-    /// A pose, shape or margin outside of the contract.
+    /// The pose, shape or margin is outside of the contract.
     pub fn insert(&mut self, body: Body) -> Result<BodyId, WorldError> {
         let slot = self.ids.next();
         self.check(slot, &body)?;
@@ -233,10 +233,10 @@ impl World {
         Ok(self.ids.id(slot as u32))
     }
 
-    /// Removes a body. Pairs of the last cull still name it; the next cull's don't.
+    /// Removes a body. Pairs of the last cull still contain it; those of the next cull don't.
     ///
     /// # Errors
-    /// A body that has been removed before.
+    /// The body has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
         self.ids.remove(id)?;
         self.shapes[self.shape[id.slot()] as usize].bodies -= 1;
@@ -247,7 +247,7 @@ impl World {
         Ok(())
     }
 
-    /// The body as it is now.
+    /// The present body.
     ///
     /// # Errors
     /// A body that has been removed.
@@ -255,7 +255,7 @@ impl World {
         self.ids.slot(id).map(|slot| self.body_at(slot))
     }
 
-    /// Whether the body is there.
+    /// Whether the body exists.
     #[must_use]
     pub fn contains(&self, id: BodyId) -> bool {
         self.ids.slot(id).is_ok()
@@ -266,16 +266,17 @@ impl World {
         self.ids.iter()
     }
 
-    /// All bodies as they are now, sorted by slot.
+    /// All present bodies, sorted by slot.
     pub fn bodies(&self) -> impl Iterator<Item = (BodyId, Body)> + '_ {
         self.ids().map(|id| (id, self.body_at(id.slot())))
     }
 
-    /// Changes a body in any of its properties. A pose may change by any amount: nothing is assumed
-    /// of the way between two culls. A body that has all properties already costs nothing.
+    /// Changes any properties of a body. A pose may change by any amount: nothing is assumed about
+    /// the motion between two culls. It costs nothing if the properties are equal to the present
+    /// ones.
     ///
     /// # Errors
-    /// A body that has been removed; a pose, shape or margin outside of the contract.
+    /// The body has been removed, or the pose, shape or margin is outside of the contract.
     pub fn set(&mut self, id: BodyId, body: Body) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
         self.check(slot, &body)?;
@@ -295,11 +296,11 @@ impl World {
         Ok(())
     }
 
-    /// Moves a body: a step or a teleport. One that is there already costs nothing, and a body at
-    /// rest stays at rest.
+    /// Moves a body by any distance. It costs nothing if the pose is equal, and a body at rest
+    /// stays at rest.
     ///
     /// # Errors
-    /// A body that has been removed; a pose outside of the contract.
+    /// The body has been removed, or the pose is outside of the contract.
     pub fn set_pose(
         &mut self,
         id: BodyId,
@@ -333,7 +334,7 @@ impl World {
             && translation.map(f64::to_bits) == self.translation[slot].map(f64::to_bits)
     }
 
-    /// The bodies of interest from now on, for the strategies that look for them.
+    /// Sets the bodies of interest, for the strategies that use them.
     ///
     /// # Errors
     /// A body that has been removed.
@@ -353,15 +354,15 @@ impl World {
     }
 
     /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by
-    /// slots. Under every strategy, list and order are a function of the bodies as they are now
-    /// (with [`Order::OldestAnswer`](crate::Order), also of when pairs were refined, and with a
-    /// budget of time, of the clock), whatever the finder, the threads and the calls before. That
-    /// holds for translations that f32 has to round, too: the origins about which they are rounded
-    /// follow from the bodies as they are now.
+    /// slots. Under every strategy, list and order are a function of the present bodies (with
+    /// [`Order::OldestAnswer`](crate::Order), also of when pairs were refined, and with a budget of
+    /// time, of the clock), independent of the finder, of threads and of earlier calls. That holds
+    /// for translations that f32 has to round, too: the origins about which they are rounded follow
+    /// from the present bodies.
     ///
     /// # Errors
-    /// Bodies that can't be placed within 2⁶⁰ of an origin, which takes meshes far from their own
-    /// origins; [`Self::pairs`] are still those of the cull before.
+    /// Bodies can't be placed within 2⁶⁰ of an origin, which happens only if meshes are far from
+    /// their own origins. [`Self::pairs`] are still those of the cull before.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         if !self.cull_changed(usize::MAX) {
             self.cull_all(|culler, bodies| culler.cull(bodies).map(|_| ()))?;
@@ -369,7 +370,7 @@ impl World {
         Ok(self.log.pairs(&self.ids))
     }
 
-    /// Finds all pairs anew by this function of the culler, which leaves them in its list.
+    /// Finds all pairs anew by a function of the culler, which leaves them in its list.
     fn cull_all(
         &mut self,
         cull: impl FnOnce(&mut Culler, &Bodies) -> Result<(), CullError>,
@@ -415,8 +416,8 @@ impl World {
         self.log.pairs(&self.ids).iter()
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round.
-    /// The events are apart from the world: bodies may be removed while they are read. Drop them
+    /// The pairs that began, persisted or ended between the last call of this method and the last
+    /// cull. Events don't borrow the world, so bodies may be removed while they are read. Drop them
     /// before the next cull, which otherwise copies the pairs.
     pub fn events(&mut self) -> Events {
         self.log.events(&self.ids)
@@ -428,19 +429,19 @@ impl World {
         self.ids.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no bodies.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Above every [`BodyId::slot`].
+    /// One more than the largest possible [`BodyId::slot`].
     #[must_use]
     pub fn slots(&self) -> usize {
         self.ids.slots()
     }
 
-    /// The pair finder at work: the one asked for, or what `auto` picked last.
+    /// The pair finder in use: the chosen one, or the last choice of `auto`.
     #[must_use]
     pub fn finder(&self) -> Finder {
         self.culler.finder()
@@ -458,7 +459,7 @@ impl World {
         self.culler.seconds()
     }
 
-    /// Marks the bodies of interest that are still there, and tells the culler of them.
+    /// Marks the present bodies of interest, and passes them to the culler.
     fn look(&mut self) {
         let living = |id: &BodyId| self.ids.slot(*id).is_ok();
         let slots = self.interest.iter().filter(|id| living(id));
@@ -491,7 +492,7 @@ impl World {
         }
     }
 
-    /// Checks a body that is to take a slot.
+    /// Checks a body for a slot.
     fn check(&self, slot: usize, body: &Body) -> Result<(), ContractError> {
         in_default_mode(|| {
             check_number(slot + 1)?;

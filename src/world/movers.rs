@@ -1,27 +1,27 @@
-//! Frames in which few bodies change: these alone are looked for, and the pairs of all others are
-//! kept.
+//! Frames in which few bodies change: only the partners of these are searched, and the pairs of all
+//! others are kept.
 //!
-//! A pair's verdict is a function of its two bodies: where they are, what they are, and whether a
-//! pair of them counts. A body of which any of these has changed since the last cull is in the list
-//! of changed ones, so a pair of two others has the verdict that it had. The partners of each
-//! changed body are found anew by an index of all, compared with those that it had, and the
-//! differences are made at its partners too.
+//! A pair's verdict is a function of its two bodies: their places, their models, and whether their
+//! pair counts. A body of which any of these has changed since the last cull is in the list of
+//! changed ones, so a pair of two others keeps its verdict. The partners of each changed body are
+//! found anew by an index of all, compared with its former ones, and the differences are also made
+//! in the lists of its partners.
 
 use super::{Ids, LivePairs};
 use crate::bodies::PairRules;
 use crate::broad_phase::{BoxIndex, IndexedBox, Search};
 
-/// Changed bodies are looked for one by one while they are at most one in so many: beyond, finding
-/// all pairs anew is faster.
+/// Changed bodies are searched one by one if they are at most one in this number of bodies.
+/// Otherwise finding all pairs anew is faster.
 const BODIES_PER_CHANGE: usize = 8;
 
-/// The same by the boxes that looking for them takes, for each body of the world.
+/// The largest work of such a search, in boxes read per body of the world.
 const WORK_PER_BODY: usize = 8;
 
-/// Bodies that are looked for together.
+/// Bodies that are searched together.
 const SEEKERS_PER_BATCH: usize = 16;
 
-/// How many bodies ahead what is read of one is prefetched.
+/// The number of bodies by which prefetching is ahead.
 const PREFETCH_DISTANCE: usize = 8;
 
 /// An index pays if it serves for so many frames. After one that didn't, or a frame in which
@@ -30,18 +30,18 @@ const PREFETCH_DISTANCE: usize = 8;
 const LEAST_SERVICE: u32 = 8;
 const LONGEST_PAUSE: u32 = 64;
 
-/// Which bodies have changed since the last cull, and where all are.
+/// The bodies that have changed since the last cull, and an index of all.
 #[derive(Clone, Debug)]
 pub(crate) struct Movers {
     changed: Vec<u32>,
     /// By slot.
     is_changed: Vec<bool>,
-    /// So many have changed that the next cull finds all pairs, or the pairs of the last one aren't
-    /// known.
+    /// Whether the next cull finds all pairs, because many bodies have changed or the pairs of the
+    /// last cull aren't known.
     are_many: bool,
-    /// As the bodies were at the last cull. None after one that found all pairs.
+    /// The bodies as of the last cull. `None` after a cull that found all pairs.
     index: Option<BoxIndex>,
-    /// Bodies in the index when it was made, and frames that it has served for.
+    /// Bodies in the index when it was made, and frames in which it was used.
     indexed: usize,
     served: u32,
     /// Frames that still find all pairs, and how many there were after the last attempt.
@@ -49,10 +49,10 @@ pub(crate) struct Movers {
     last_pause: u32,
     /// The changed bodies.
     boxes: Vec<IndexedBox>,
-    /// Partners of the changed bodies, one after the other, and where those of each end.
+    /// Partners of all changed bodies in one list, and the end of each body's part.
     found: Vec<u32>,
     ends: Vec<usize>,
-    /// Those that a body has gained or lost.
+    /// The partners that a body has gained or lost.
     differences: Vec<(u32, bool)>,
     search: Search,
 }
@@ -78,7 +78,7 @@ impl Default for Movers {
 }
 
 impl Movers {
-    /// Notes that a body has changed, come or gone.
+    /// Notes that a body has changed, or was inserted or removed.
     #[inline]
     pub fn note(&mut self, slot: usize, ids: &Ids) {
         if self.are_many {
@@ -93,12 +93,12 @@ impl Movers {
         }
     }
 
-    /// The next cull finds all pairs anew, and knows none before.
+    /// Makes the next cull find all pairs anew, without former pairs.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// Bodies are as a cull that found all pairs has seen them.
+    /// Notes that a cull has found all pairs of the present bodies.
     pub fn all_found(&mut self) {
         self.changed.clear();
         self.is_changed.fill(false);
@@ -106,7 +106,7 @@ impl Movers {
         self.pause = self.pause.saturating_sub(1);
     }
 
-    /// The pairs of the last cull aren't known any more, until [`Self::all_found`].
+    /// Notes that the pairs of the last cull are unknown until [`Self::all_found`].
     pub fn lose_pairs(&mut self) {
         self.are_many = true;
         match self.index.take() {
@@ -121,7 +121,7 @@ impl Movers {
         self.pause = self.last_pause;
     }
 
-    /// Whether the pairs of the last cull can be changed to those of now by what has changed.
+    /// Whether the pairs of the last cull can be updated by the changed bodies.
     pub fn are_few(&self) -> bool {
         !self.are_many && (self.pause == 0 || self.changed.is_empty())
     }
@@ -131,7 +131,7 @@ impl Movers {
         &self.changed
     }
 
-    /// Brings the changed bodies that are gone behind the others; returns how many these are.
+    /// Moves removed bodies to the end of the changed ones, and returns the number of the others.
     #[cfg(feature = "shapes")]
     pub fn put_gone_last(&mut self, ids: &Ids) -> usize {
         let mut present = 0;
@@ -144,13 +144,13 @@ impl Movers {
         present
     }
 
-    /// Whether an index of all bodies is to be made before [`Self::find`].
+    /// Whether an index of all bodies must be made before [`Self::find`].
     pub fn need_index(&self) -> bool {
         let index = self.index.as_ref();
         index.is_none_or(|index| index.len() > 2 * self.indexed)
     }
 
-    /// Takes an index of all bodies as they are now.
+    /// Takes an index of all present bodies.
     pub fn take_index(&mut self, index: BoxIndex) {
         (self.indexed, self.served) = (index.len(), 0);
         self.index = Some(index);
@@ -192,20 +192,20 @@ impl Movers {
         Some(work)
     }
 
-    /// The changed bodies, the partners that were found of them, one after the other, and where
-    /// those of each end.
+    /// The changed bodies, their partners in one list, and the end of each body's part.
     pub fn found(&mut self) -> (&[u32], &mut Vec<u32>, &mut [usize]) {
         (&self.changed, &mut self.found, &mut self.ends)
     }
 
-    /// After some partners were dropped: the bodies from the `count`th on are gone, and have none.
+    /// To be called after some partners were removed: the bodies from number `count` on are gone,
+    /// and have none.
     #[cfg(feature = "shapes")]
     pub fn end_gone(&mut self, count: usize) {
         self.ends[count..].fill(self.found.len());
     }
 
-    /// Gives the changed bodies the partners that were found, and takes note at these: `log` has
-    /// the pairs of now then.
+    /// Gives the changed bodies the partners that were found, and updates the lists of these. Then
+    /// `log` has the present pairs.
     pub fn change_pairs(&mut self, log: &mut LivePairs, ids: &Ids) {
         log.keep_by_body(ids);
         log.extend(ids);
@@ -225,7 +225,7 @@ impl Movers {
             };
             changes.replace(slot, found);
             for &(other, has_begun) in &*differences {
-                // A partner that has changed finds this body by itself.
+                // A changed partner finds this body itself.
                 let finds_itself = self.is_changed.get(other as usize) == Some(&true);
                 if !finds_itself {
                     changes.set_partner(other, slot, has_begun);
@@ -243,7 +243,8 @@ impl Movers {
     }
 }
 
-/// Lists what one sorted list lacks of another (false), and has in addition (true).
+/// Lists the differences of two sorted lists: (n, false) if only `before` has n, (n, true) if only
+/// `now` has it.
 fn compare(before: &[u32], now: &[u32], differences: &mut Vec<(u32, bool)>) {
     differences.clear();
     if before == now {

@@ -1,12 +1,12 @@
-//! Meshes far from their origin: poses refer to it, volumes lie about a point near the mesh.
+//! Meshes far from their origin: poses refer to the origin, volumes to a point near the mesh.
 //!
-//! A pose (q, t) places the vertices' own origin at t + R(q)·offset. That is computed in f64 as any
-//! posed point is, so each coordinate is within 24·2⁻⁵³ of max(|offset|∞, |t|∞), and the place
-//! within √3 times that. The bound joins the body's margin.
+//! A pose (q, t) places the vertices' origin at t + R(q)·offset. That is computed in f64 like any
+//! posed point, so the error of each coordinate is at most 24·2⁻⁵³ of max(|offset|∞, |t|∞), and
+//! that of the place √3 times as much. The bound is added to the body's margin.
 
 use crate::rounding::pose::{OFFSET_ERROR, rotate_of, rotation};
 
-/// Where the origin of a body's vertices lies, and how far from the exact place that may be.
+/// The position of the origin of a body's vertices, and the bound of its error.
 pub(crate) fn compose(q: [f32; 4], t: [f64; 3], offset: [f64; 3]) -> ([f64; 3], f64) {
     if offset == [0.0; 3] {
         return (t, 0.0);
@@ -42,8 +42,8 @@ mod tests {
         assert!(bound > 0.0 && bound < 1.0e-5, "{bound}");
     }
 
-    /// Quaternion and vectors are whole numbers, so that the exact place is a fraction over |q|² in
-    /// i128.
+    /// The error as a share of the bound. The error as a share of the bound. Quaternion and vectors
+    /// are whole numbers, so that the exact place is a fraction over |q|² in i128.
     fn share([q, o, t]: [[i64; 4]; 3]) -> f64 {
         let [x, y, z, w] = q.map(i128::from);
         let n = x * x + y * y + z * z + w * w;

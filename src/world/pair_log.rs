@@ -1,5 +1,4 @@
-//! The pairs that culls have reported: those of the last cull, and those that events were last read
-//! of.
+//! The reported pairs: those of the last cull, and those of the last events.
 
 use std::iter::Zip;
 use std::slice::Iter;
@@ -15,7 +14,7 @@ pub struct WorldPairs<'a> {
     generation: &'a [u32],
 }
 
-/// Pairs of slots, in one of the forms that they are kept in.
+/// Pairs of slots, in one of their two forms.
 #[derive(Clone, Copy, Debug)]
 enum SlotPairs<'a> {
     List(&'a PairList),
@@ -61,8 +60,8 @@ impl<'a> WorldPairs<'a> {
         }
     }
 
-    /// The pairs sorted by slots: the order that the pairs of a world's cull have anyway, and
-    /// portions don't.
+    /// The pairs sorted by slots. The pairs of a world's cull already have this order; portions
+    /// don't.
     #[must_use]
     pub fn sorted(&self) -> Vec<[BodyId; 2]> {
         let mut pairs: Vec<_> = self.iter().collect();
@@ -79,7 +78,7 @@ impl<'a> IntoIterator for WorldPairs<'a> {
     }
 }
 
-/// The pairs of [`WorldPairs`], one after the other.
+/// An iterator over the pairs of [`WorldPairs`].
 #[derive(Clone, Debug)]
 pub struct PairIds<'a> {
     slots: SlotIter<'a>,
@@ -122,7 +121,7 @@ impl Iterator for PairIds<'_> {
 
 impl ExactSizeIterator for PairIds<'_> {}
 
-/// The pairs of one cull by slot, sorted, with the generations that slots had then.
+/// The pairs of one cull by slot, sorted, with the generations of slots at that time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reported {
     pub(super) slots: PairList,
@@ -134,7 +133,7 @@ impl Reported {
         WorldPairs::new(&self.slots, &self.generation)
     }
 
-    /// The same without room for more.
+    /// A copy without spare memory.
     pub(super) fn compacted(&self) -> Self {
         let mut slots = PairList::default();
         slots.append(&self.slots);
@@ -152,21 +151,20 @@ impl Reported {
     }
 }
 
-/// The pairs of the last cull, those at the last look for events, and memory for the next.
+/// The pairs of the last cull, those of the last events, and memory for the next cull.
 ///
-/// Lists are shared with the [`Events`] that are read of them, and none is copied: two lists take
-/// turns.
+/// Lists are shared with [`Events`], and none is copied: two lists are used alternately.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairLog {
     pub(super) last: Arc<Reported>,
     pub(super) watched: Arc<Reported>,
-    /// What was watched before: its memory serves again once nobody reads it.
+    /// The list of events before: its memory is reused once nothing reads it.
     spare: Option<Arc<Reported>>,
     sorter: PairSorter,
 }
 
 impl PairLog {
-    /// The pairs of a cull, and those that events were read of.
+    /// A log of the pairs of a cull, and those of the last events.
     pub(super) fn of(last: Arc<Reported>, watched: Arc<Reported>) -> Self {
         Self {
             last,
@@ -184,7 +182,7 @@ impl PairLog {
         list
     }
 
-    /// The pairs of a cull in any order: sorts them.
+    /// Takes the pairs of a cull in any order, and sorts them.
     pub fn put(&mut self, mut slots: PairList, ids: &Ids) {
         slots.sort(ids.slots(), &mut self.sorter);
         let generation = ids.generation().clone();
@@ -196,7 +194,8 @@ impl PairLog {
         self.last.pairs()
     }
 
-    /// What the last cull reports that it didn't at the last call of this, and the other way round.
+    /// The pairs that began, persisted or ended between the last call of this method and the last
+    /// cull.
     pub fn events(&mut self) -> Events {
         let now = self.last.clone();
         let before = std::mem::replace(&mut self.watched, now.clone());
@@ -204,7 +203,7 @@ impl PairLog {
         Events::between(before, now)
     }
 
-    /// Bytes that lists of pairs hold.
+    /// Bytes of the lists of pairs.
     pub fn bytes(&self) -> usize {
         let Self {
             last,
@@ -219,7 +218,7 @@ impl PairLog {
         lists.sum::<usize>() + sorter.bytes()
     }
 
-    /// Gives back the memory that the pairs don't need.
+    /// Frees the memory that the pairs don't need.
     pub fn shrink_to_fit(&mut self) {
         (self.spare, self.sorter) = Default::default();
         let is_watched = Arc::ptr_eq(&self.last, &self.watched);
@@ -238,7 +237,7 @@ mod tests {
 
     use super::*;
 
-    /// So many bodies.
+    /// Ids of this number of bodies.
     fn ids(bodies: u32) -> Ids {
         let mut ids = Ids::default();
         (0..bodies).for_each(|_| assert!(ids.take()));
@@ -252,8 +251,9 @@ mod tests {
         log.put(list, ids);
     }
 
+    /// Two lists take turns while events are read.
     #[test]
-    fn two_lists_take_turns_while_events_are_read() {
+    fn two_lists_alternate() {
         let (mut log, ids) = (PairLog::default(), ids(3000));
         let mut bytes = Vec::new();
         for frame in 0..6 {
@@ -274,8 +274,9 @@ mod tests {
         assert!(bytes[2] < 4 * one, "two lists and a sort: {bytes:?}");
     }
 
+    /// Memory of a crowd is given back and its pairs stay.
     #[test]
-    fn memory_of_a_crowd_is_given_back_and_its_pairs_stay() {
+    fn crowd_memory_is_freed() {
         let (mut log, ids) = (PairLog::default(), ids(500));
         cull(
             &mut log,
@@ -292,8 +293,9 @@ mod tests {
         drop((crowd, few));
     }
 
+    /// Events tell bodies of one slot apart.
     #[test]
-    fn events_tell_bodies_of_one_slot_apart() {
+    fn events_distinguish_generations() {
         let (mut log, mut ids) = (PairLog::default(), ids(3));
         cull(&mut log, &ids, [[0, 1], [1, 2]]);
         log.events();

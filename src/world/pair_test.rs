@@ -1,10 +1,10 @@
-//! One pair at a time, without a set of bodies: for engines that call back with two shapes and
-//! their relative pose.
+//! Tests one pair at a time, without a set of bodies, for engines that call back with two shapes
+//! and their relative pose.
 //!
 //! A [`World`](super::World) finds the pairs of all bodies and tests them a vector at a time; here
-//! somebody else's broad phase has found a pair, and its or-DOPs are tested alone, by the same
-//! arithmetic. That takes some ten times as long a pair as a world's test, and still a fraction of
-//! a narrow-phase check.
+//! another broad phase has found a pair, and its two or-DOPs are tested by the same arithmetic.
+//! That takes about ten times as long per pair as a world's test, and still a fraction of a
+//! narrow-phase check.
 
 use super::margins::check_margin;
 use crate::bodies::contract::{ContractError, check_pose, check_shape};
@@ -15,7 +15,7 @@ use crate::simd::{ROW, in_default_mode};
 use crate::update::{RowsByNumber, ShapeFrame};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
-/// The or-DOPs of shapes, as they are and grown by margins.
+/// The or-DOPs of shapes, with and without margins.
 ///
 /// ```
 /// use sdop::mesh;
@@ -41,12 +41,12 @@ pub struct PairTest {
 struct Model {
     ordop: OrDop,
     frame: ShapeFrame,
-    /// The row of a body that lies in its own frame: the first of every pair.
+    /// The row of a body at the identity pose: the first of every pair.
     unturned: [f32; ROW],
 }
 
 impl PairTest {
-    /// No shapes yet; all will have slabs along `directions`.
+    /// A test without shapes. All shapes will have slabs along `directions`.
     #[must_use]
     pub fn new(directions: DirectionSet) -> Self {
         Self {
@@ -55,10 +55,10 @@ impl PairTest {
         }
     }
 
-    /// Adds a shape; returns the number that tests know it by.
+    /// Adds a shape and returns its number for tests.
     ///
     /// # Errors
-    /// A shape larger than 2⁶⁰, or far from its origin ([`Shape::pose_offset`]).
+    /// The shape is larger than 2⁶⁰, or far from its origin ([`Shape::pose_offset`]).
     pub fn add(&mut self, shape: &Shape) -> Result<u32, ContractError> {
         check_shape(self.models.len(), 0, std::slice::from_ref(shape))?;
         if shape.is_far() {
@@ -78,12 +78,12 @@ impl PairTest {
         Ok(self.push(ordop, frame))
     }
 
-    /// Adds what a shape is with all points up to `margin` away; returns its number. Each call adds
-    /// one: keep it.
+    /// Adds a shape grown by a margin and returns its number. Each call adds one, so keep the
+    /// number.
     ///
     /// # Errors
-    /// A number that is no shape's, a margin that is negative, not finite or beyond 2⁶⁰ with the
-    /// shape.
+    /// No shape has the number, or the margin is negative, not finite, or larger than 2⁶⁰ together
+    /// with the shape.
     pub fn grown(&mut self, shape: u32, margin: f32) -> Result<u32, ContractError> {
         let Some(model) = self.models.get(shape as usize) else {
             return Err(ContractError {
@@ -101,11 +101,11 @@ impl PairTest {
     }
 
     /// Whether two shapes may touch, the second posed in the frame of the first: false only if
-    /// their meshes, grown by their margins, are apart in exact arithmetic. Numbers that are no
-    /// shapes', or a pose outside of the contract, may touch.
+    /// their meshes, grown by their margins, are apart in exact arithmetic. It returns true for
+    /// numbers without a shape, and for poses outside of the contract.
     ///
     /// `rotation` is a quaternion (x, y, z, w) of any non-zero norm, `translation` the second
-    /// body's origin. A pose that was rounded to f32 needs a margin for what that moved.
+    /// body's origin. If the pose was rounded to f32, use a margin of at least that error.
     #[must_use]
     pub fn may_touch(
         &self,

@@ -1,36 +1,34 @@
-//! One region's f32 coordinates, and how far from the exact ones they are.
+//! The f32 coordinates of a region, and the bound of their error.
 //!
-//! A translation is subtracted twice in f64 and rounded to f32. Its distance from the exact one is
-//! bounded, and the bound joins the body's margin, so that volumes at the rounded place contain
-//! what the exact mesh occupies (theorem T).
+//! A translation is subtracted twice in f64 and rounded to f32. The error is bounded, and the bound
+//! is added to the body's margin, so that volumes at the rounded place contain the exact mesh
+//! (theorem T).
 
 use crate::rounding::exp2;
 
-/// √3·2⁻²⁴ < 2⁻²³: how far rounding the local translation to f64 and then to f32 moves a body, as a
-/// multiple of its largest coordinate.
+/// √3·2⁻²⁴ < 2⁻²³: the largest distance by which rounding the local translation to f64 and then to
+/// f32 moves a body, as a multiple of its largest coordinate.
 const MOVED: f64 = exp2(-23);
 
-/// √3·2⁻¹⁵⁰ < 2⁻¹⁴⁹: the same where f32 underflows.
+/// √3·2⁻¹⁵⁰ < 2⁻¹⁴⁹: the same for f32 that underflows.
 const MOVED_LEAST: f64 = exp2(-149);
 
-/// √3·2⁻⁵³ < 2⁻⁵²: how far rounding the distance from the origin to f64 moves a body, as a multiple
-/// of its largest coordinate.
+/// √3·2⁻⁵³ < 2⁻⁵²: the largest distance by which rounding the difference from the origin to f64
+/// moves a body, as a multiple of its largest coordinate.
 const MOVED_BEFORE: f64 = exp2(-52);
 
-/// Where the f32 coordinates of a region's bodies count from: `origin` in the world becomes
-/// −`corner`.
+/// The origin of the f32 coordinates of a region's bodies: `origin` in the world becomes −`corner`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Region {
     pub origin: [f64; 3],
     pub corner: [f64; 3],
 }
 
-/// A body as far as it matters here: its slot, its translation, and how far the mesh with its
-/// margin reaches from there.
-pub(super) type Placed = (usize, [f64; 3], f64);
+/// A body's slot, its translation, and the reach of the mesh with its margin from there.
+pub(super) type PlacedBody = (usize, [f64; 3], f64);
 
 impl Region {
-    /// The local translation, and how far from the exact one it may be: 0 where no step is rounded.
+    /// The local translation, and the bound of its error: 0 if no step is rounded.
     pub fn place(&self, t: [f64; 3]) -> ([f32; 3], f64) {
         let (mut far, mut near, mut exact) = (0.0_f64, 0.0_f64, true);
         let local = std::array::from_fn(|i| {
@@ -49,7 +47,7 @@ impl Region {
     }
 }
 
-/// a − b in f64, and what rounding lost of it, exactly (Knuth's two-sum).
+/// a − b in f64, and its exact rounding error (Knuth's two-sum).
 fn difference(a: f64, b: f64) -> (f64, f64) {
     let sum = a - b;
     let of_b = sum - a;
@@ -63,7 +61,7 @@ mod tests {
 
     use super::*;
 
-    /// How far rounding moves a body, exactly but for 2⁻⁵⁰ of it, as a share of the bound.
+    /// The distance by which rounding moves a body, accurate to 2⁻⁵⁰, as a share of the bound.
     fn share(region: &Region, t: [f64; 3]) -> f64 {
         let (placed, bound) = region.place(t);
         let moved = |i: usize| {
@@ -101,8 +99,8 @@ mod tests {
         for least in [false, true] {
             let mut worst = 0.0_f64;
             for _ in 0..50_000 {
-                // Sizes of 2⁻⁴⁰ to 2⁴⁰, or the smallest there are; halfway between two f32, and
-                // next to halfway.
+                // Sizes of 2⁻⁴⁰ to 2⁴⁰, or the smallest possible; halfway between two f32, and next
+                // to halfway.
                 let exponent = if least {
                     -149
                 } else {
@@ -133,7 +131,7 @@ mod tests {
         }
     }
 
-    /// A body next to the local origin and far from the region's: what f64 loses counts there.
+    /// A body next to the local origin and far from the region's: there the rounding of f64 counts.
     #[test]
     fn the_bound_covers_both_differences() {
         let region = Region {

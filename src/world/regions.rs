@@ -1,29 +1,29 @@
-//! Regions: bodies that lie so far from all others that they can meet only each other.
+//! Regions: sets of bodies so far from all others that they can meet only each other.
 //!
-//! Space is cut into cells, far wider than two bodies that meet are apart. A region is a connected
-//! set of occupied cells, next to each other along faces, edges or corners; where its bodies are
-//! smaller than those of others, it is cut again into cells of its own. Each region lies in a cube
-//! with room about its bodies. The cubes are packed next to each other along a Morton curve, the
-//! small ones first: f32 coordinates are about as small as those of all cubes that are no larger,
-//! wherever in the world the regions are.
+//! Space is cut into cells, which are far wider than the distance of two bodies that meet. A region
+//! is a connected set of occupied cells, next to each other along faces, edges or corners; if its
+//! bodies are smaller than those of others, it is cut again into smaller cells. Each region is in a
+//! cube with space around its bodies. The cubes are packed next to each other along a Morton curve,
+//! the small ones first. So the f32 coordinates of a region depend on the sizes of the cubes before
+//! it, not on its position in the world.
 //!
 //! Cells are numbered by whole f64, which hold the cell of any f64 translation exactly. They are
 //! compared by differences, since a number's own neighbours are no f64 from 2⁵³ on.
 
 use std::cmp::Ordering;
 
-use super::bounds::{Bounds, Cube};
-use super::region::{Placed, Region};
+use super::bounds::{BodyBounds, Cube};
+use super::region::{PlacedBody, Region};
 use crate::rounding::LIMIT;
 
 /// A cell's number along each axis, a whole number.
-type Cell = [f64; 3];
+type CellNumber = [f64; 3];
 
-/// The rows of cells next to a cell's own that come after it, as steps along x and y; along z a
-/// cell on either side.
-const ROWS: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1.0, 1.0]];
+/// The neighbouring rows of cells that come after a cell's row, as steps along x and y. Each row
+/// has three cells along z.
+const ROWS_AFTER: [[f64; 2]; 5] = [[0.0, 0.0], [0.0, 1.0], [1.0, -1.0], [1.0, 0.0], [1.0, 1.0]];
 
-/// All regions, and which of them each slot belongs to.
+/// All regions, and the region of each slot.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Regions {
     regions: Vec<Region>,
@@ -36,9 +36,8 @@ impl Regions {
     }
 }
 
-/// The regions of these bodies, if f32 coordinates about them are finer than about one origin for
-/// all.
-pub(super) fn regions(mut bodies: Vec<Placed>, whole: Bounds) -> Option<Regions> {
+/// The regions of these bodies, if their f32 coordinates are finer than with one origin for all.
+pub(super) fn regions(mut bodies: Vec<PlacedBody>, whole: BodyBounds) -> Option<Regions> {
     let mut found = Vec::new();
     split(&mut bodies, whole, &mut found);
     let cubes: Vec<Cube> = found.iter().map(|(_, bounds)| bounds.cube()).collect();
@@ -57,8 +56,8 @@ pub(super) fn regions(mut bodies: Vec<Placed>, whole: Bounds) -> Option<Regions>
     Some(Regions { regions, of_slot })
 }
 
-/// Sorts bodies by region, and adds for each region how many they are, and their box.
-fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>) {
+/// Sorts bodies by region, and adds the number of bodies and the box of each region.
+fn split(bodies: &mut [PlacedBody], bounds: BodyBounds, found: &mut Vec<(usize, BodyBounds)>) {
     let cell = bounds.cell();
     if !bounds.is_wide() {
         return found.push((bodies.len(), bounds));
@@ -66,7 +65,7 @@ fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>
     let mut rest = bodies;
     for number in sort_by_set(rest, cell) {
         let (region, others) = rest.split_at_mut(number);
-        let bounds = Bounds::of(region.iter().copied());
+        let bounds = BodyBounds::of(region.iter().copied());
         if bounds.cell() < cell {
             split(region, bounds, found);
         } else {
@@ -76,12 +75,13 @@ fn split(bodies: &mut [Placed], bounds: Bounds, found: &mut Vec<(usize, Bounds)>
     }
 }
 
-/// Sorts bodies by the connected set of cells that they lie in; returns how many each set has.
-fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
+/// Sorts bodies by their connected set of cells, and returns the number of bodies of each set.
+fn sort_by_set(bodies: &mut [PlacedBody], cell: f64) -> Vec<usize> {
     let cell_of = |t: [f64; 3]| t.map(|x| (x / cell).floor() + 0.0); // + 0.0: one zero, not two
-    let mut by_cell: Vec<(Cell, Placed)> = bodies.iter().map(|&b| (cell_of(b.1), b)).collect();
+    let mut by_cell: Vec<(CellNumber, PlacedBody)> =
+        bodies.iter().map(|&b| (cell_of(b.1), b)).collect();
     by_cell.sort_unstable_by(|a, b| compare(&a.0, &b.0));
-    let mut cells: Vec<Cell> = by_cell.iter().map(|&(cell, _)| cell).collect();
+    let mut cells: Vec<CellNumber> = by_cell.iter().map(|&(cell, _)| cell).collect();
     cells.dedup();
     let set_of = connect(&cells);
     let mut at = 0;
@@ -89,7 +89,7 @@ fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
         at += usize::from(cells[at] != cell);
         (set_of[at], body)
     });
-    let mut by_set: Vec<(u32, Placed)> = with_set.collect();
+    let mut by_set: Vec<(u32, PlacedBody)> = with_set.collect();
     by_set.sort_by_key(|&(set, _)| set);
     for (body, &(_, sorted)) in bodies.iter_mut().zip(&by_set) {
         *body = sorted;
@@ -97,10 +97,10 @@ fn sort_by_set(bodies: &mut [Placed], cell: f64) -> Vec<usize> {
     by_set.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).collect()
 }
 
-/// Whether coordinates about these regions are within the contract, and the coarsest of them,
-/// measured by the bodies there, at least twice as fine as about one origin for a box of this half
-/// width.
-fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, Bounds)], half: f64) -> bool {
+/// Whether coordinates about these regions are within the contract, and even the coarsest of them,
+/// relative to the region's bodies, are at least twice as fine as about one origin for a box of
+/// this half width.
+fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, BodyBounds)], half: f64) -> bool {
     let (mut before, mut after) = (0.0_f64, 0.0_f64);
     for ((region, cube), (_, bounds)) in regions.iter().zip(cubes).zip(found) {
         let farthest = region.corner.iter().fold(0.0, |far: f64, x| far.max(-x)) + cube.side;
@@ -114,23 +114,23 @@ fn are_finer(regions: &[Region], cubes: &[Cube], found: &[(usize, Bounds)], half
 }
 
 /// The order of cells: by x, then y, then z.
-fn compare(a: &Cell, b: &Cell) -> Ordering {
+fn compare(a: &CellNumber, b: &CellNumber) -> Ordering {
     let by = |i: usize| a[i].total_cmp(&b[i]);
     by(0).then_with(|| by(1)).then_with(|| by(2))
 }
 
 /// The region of each cell, of sorted cells; regions are numbered in the order of their first
 /// cells.
-fn connect(cells: &[Cell]) -> Vec<u32> {
+fn connect(cells: &[CellNumber]) -> Vec<u32> {
     let mut first: Vec<u32> = (0..cells.len() as u32).collect();
-    for [x, y] in ROWS {
-        // Where the neighbours of a cell in that row begin: never before those of the cell before
-        // it.
+    for [x, y] in ROWS_AFTER {
+        // The first neighbour of a cell in that row: never before that of the previous cell.
         let mut from = 0;
         for (at, cell) in cells.iter().enumerate() {
-            // From this cell to another: exact where it is at most one, whatever the numbers.
-            let step_to = |c: &Cell| -> Cell { std::array::from_fn(|i| c[i] - cell[i]) };
-            let order = |c: &Cell, z: f64| compare(&step_to(c), &[x, y, z]);
+            // The step from this cell to another: exact if it is at most one, for all numbers.
+            let step_to =
+                |c: &CellNumber| -> CellNumber { std::array::from_fn(|i| c[i] - cell[i]) };
+            let order = |c: &CellNumber, z: f64| compare(&step_to(c), &[x, y, z]);
             while from < cells.len() && order(&cells[from], -1.0) == Ordering::Less {
                 from += 1;
             }
@@ -142,7 +142,7 @@ fn connect(cells: &[Cell]) -> Vec<u32> {
     }
     let mut regions = 0;
     for at in 0..first.len() {
-        // A cell's first comes before it, and so has its region's number by now.
+        // The first cell of a set comes before the others, so its region already has a number.
         let leads = first[at] as usize == at;
         first[at] = if leads {
             regions
@@ -154,7 +154,7 @@ fn connect(cells: &[Cell]) -> Vec<u32> {
     first
 }
 
-/// Puts the sets of two cells together; each set is named by its first cell.
+/// Joins the sets of two cells; each set is named by its first cell.
 fn join(first: &mut [u32], a: u32, b: u32) {
     let (a, b) = (first_of(first, a), first_of(first, b));
     first[a.max(b) as usize] = a.min(b);
@@ -169,8 +169,8 @@ fn first_of(first: &mut [u32], mut at: u32) -> u32 {
     at
 }
 
-/// A place for each cube, from the world's origin on: cubes of one side follow one another along a
-/// Morton curve, and the larger ones the smaller ones, in a multiple of their own side.
+/// A place for each cube, starting at the world's origin: cubes of equal side follow one another
+/// along a Morton curve, larger ones come after smaller ones, at multiples of their side.
 fn pack(cubes: &[Cube]) -> Vec<Region> {
     let mut order: Vec<usize> = (0..cubes.len()).collect();
     order.sort_by(|&a, &b| cubes[a].side.total_cmp(&cubes[b].side));
@@ -209,7 +209,7 @@ mod tests {
     use crate::rounding::exp2;
 
     /// The region of each cell, from pairs of cells.
-    fn slowly(cells: &[Cell]) -> Vec<u32> {
+    fn slowly(cells: &[CellNumber]) -> Vec<u32> {
         let mut of: Vec<u32> = (0..cells.len() as u32).collect();
         for (i, a) in cells.iter().enumerate() {
             for (j, b) in cells.iter().enumerate() {
@@ -242,9 +242,10 @@ mod tests {
         let mut seen = [0; 2];
         for round in 0..400_u32 {
             let side = 3 + round % 9;
-            // Some lie where whole f64 are even, so that a cell's neighbours are no f64.
+            // Some are so far away that all f64 are even, so that the numbers of neighbouring cells
+            // aren't f64.
             let base = [0.0, -4.0, 2.0_f64.powi(53), -2.0_f64.powi(55)][round as usize % 4];
-            let mut cells: Vec<Cell> = (0..40)
+            let mut cells: Vec<CellNumber> = (0..40)
                 .map(|_| [(); 3].map(|()| base + f64::from(words.next_u32() % side) + 0.0))
                 .collect();
             cells.sort_unstable_by(compare);
@@ -288,10 +289,11 @@ mod tests {
         }
     }
 
-    /// Small bodies between two giants that are no farther from each other than giants have to be.
+    /// Small bodies between two giants that are as near each other as separate regions of giants
+    /// can be.
     #[test]
-    fn small_bodies_have_cells_of_their_own() {
-        let mut bodies: Vec<Placed> = (0..40)
+    fn small_bodies_have_smaller_cells() {
+        let mut bodies: Vec<PlacedBody> = (0..40)
             .map(|i| {
                 (
                     i,
@@ -301,7 +303,7 @@ mod tests {
             })
             .collect();
         bodies.push((40, [0.1, 0.0, 0.0], 1.0e6));
-        let whole = Bounds::of(bodies.iter().copied());
+        let whole = BodyBounds::of(bodies.iter().copied());
         let regions = regions(bodies.clone(), whole).unwrap();
         assert_eq!(regions.regions.len(), 21);
         for (slot, t, size) in bodies {

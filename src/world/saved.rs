@@ -1,5 +1,4 @@
-//! What the snapshots of both worlds have in common: version, ids, pairs, and what is wrong with
-//! damaged ones.
+//! The common parts of the snapshots of both worlds: version, ids, pairs, and errors.
 
 use std::sync::Arc;
 
@@ -15,26 +14,26 @@ use crate::pairs::PairList;
 /// The version of snapshots that this library writes and reads.
 const VERSION: u32 = 1;
 
-/// A snapshot that a world can't be restored from. The world is as it was before.
+/// The error of a snapshot that can't be restored. The world stays unchanged.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SnapshotError {
-    /// Numbers that no world has written.
+    /// The snapshot is inconsistent.
     #[error("the snapshot is damaged: {problem}")]
     Damaged {
-        /// What is wrong.
+        /// The problem.
         problem: String,
     },
-    /// A body outside of the contract, which no world has held.
+    /// A body is outside of the contract.
     #[error("the snapshot is damaged")]
     Contract(#[from] ContractError),
-    /// A shape of the snapshot that the world lacks.
+    /// The world lacks a shape of the snapshot.
     #[error("shape {shape} of the snapshot is `{name}`, but {found}")]
     Shape {
         /// Its number.
         shape: u32,
         /// Its name.
         name: String,
-        /// What the world has in its place.
+        /// The shape that the world has under this number.
         found: String,
     },
 }
@@ -106,7 +105,7 @@ pub(crate) fn resting_column(at_rest: &[u32], slots: usize) -> Result<Vec<bool>,
     Ok(resting)
 }
 
-/// The version of a snapshot, which comes first in it. Another one isn't read.
+/// The version of a snapshot, which comes first in it. Other versions are rejected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u32", into = "u32")]
 pub(crate) struct Version;
@@ -129,7 +128,7 @@ impl From<Version> for u32 {
     }
 }
 
-/// The slots of a world, and who lives in them.
+/// The slots of a world, and their bodies.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct IdsSnapshot {
     present: Vec<bool>,
@@ -180,11 +179,11 @@ impl IdsSnapshot {
     }
 }
 
-/// The pairs of the last cull, and those that events were last read of.
+/// The pairs of the last cull, and those of the last events.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PairsSnapshot {
     last: [Vec<u32>; 2],
-    /// None: the same.
+    /// `None` if they are the same.
     watched: Option<WatchedSnapshot>,
 }
 

@@ -1,21 +1,21 @@
-//! The shapes of a world, from the call that adds them to the call that removes them.
+//! The shapes of a world: how they are added, replaced and removed.
 //!
-//! A world keeps no meshes: the culler has what it needs of each shape, and a number of a shape
-//! that is gone is given again.
+//! A world keeps no meshes: the culler has the volumes of each shape. The number of a removed shape
+//! is reused.
 
 use super::{World, WorldError};
 use crate::bodies::contract::{ContractError, refuse};
 use crate::volume::Shape;
 
-/// What a world knows of a shape's number.
+/// The data of a shape's number.
 #[derive(Clone, Debug)]
 pub(super) struct ShapeSlot {
     pub name: String,
-    /// No point of the shape is farther from the body origin.
+    /// The largest distance of a point of the shape from the body origin.
     pub reach: f32,
-    /// Where the origin of the shape's vertices lies, seen from the point that poses refer to.
+    /// The position of the origin of the shape's vertices, relative to the point that poses place.
     pub pose_offset: [f64; 3],
-    /// How many bodies have it.
+    /// Number of bodies with this shape.
     pub bodies: usize,
     pub is_present: bool,
     #[cfg(feature = "serde")]
@@ -57,11 +57,11 @@ pub(super) fn check_shape(
 }
 
 impl World {
-    /// Adds a shape. Bodies take it by the returned number: the lowest that no shape has.
+    /// Adds a shape and returns its number, the lowest free one.
     ///
     /// # Errors
-    /// A shape beyond the contract, or with other slab directions than those before; nothing is
-    /// added.
+    /// The shape is outside of the contract, or has other slab directions than the present ones.
+    /// Nothing is added.
     pub fn add_shape(&mut self, shape: Shape) -> Result<u32, WorldError> {
         let model = self.culler.add_shape_about_vertices(&shape)?;
         let slot = ShapeSlot::new(&shape);
@@ -76,11 +76,11 @@ impl World {
         Ok(number as u32)
     }
 
-    /// Removes a shape that no body has. Its number is given to the next shape that is added, and
-    /// its memory serves again.
+    /// Removes a shape that no body uses. Its number and memory are reused for the next shape that
+    /// is added.
     ///
     /// # Errors
-    /// A number that no shape has, a shape that some body has; nothing is removed.
+    /// No shape has the number, or a body uses the shape. Nothing is removed.
     pub fn remove_shape(&mut self, shape: u32) -> Result<(), WorldError> {
         let at = self.shape_at(shape)?;
         if self.shapes[at].bodies > 0 {
@@ -100,12 +100,11 @@ impl World {
         Ok(())
     }
 
-    /// Puts a shape in the place of another: the bodies that have the other one have this one from
-    /// the next cull on.
+    /// Replaces a shape by another: its bodies have the new shape from the next cull on.
     ///
     /// # Errors
-    /// A number that no shape has, a shape beyond the contract, or so large that with the margin of
-    /// some body it is; other slab directions than the other shapes have. Nothing is replaced.
+    /// No shape has the number, the new shape is outside of the contract, alone or with the margin
+    /// of a body, or it has other slab directions than the other shapes. Nothing is replaced.
     pub fn replace_shape(&mut self, number: u32, shape: &Shape) -> Result<(), WorldError> {
         let at = self.shape_at(number)?;
         let with_shape = self.ids.iter().map(|id| id.slot());
@@ -129,7 +128,7 @@ impl World {
         Ok(())
     }
 
-    /// The numbers that shapes have.
+    /// The numbers of all shapes.
     pub fn shapes(&self) -> impl Iterator<Item = u32> + '_ {
         let slots = (0..).zip(&self.shapes);
         slots
@@ -137,7 +136,7 @@ impl World {
             .map(|(number, _)| number)
     }
 
-    /// One above the number of every shape.
+    /// One more than the largest shape number.
     pub(super) fn shape_numbers(&self) -> usize {
         let last = self.shapes.iter().rposition(|slot| slot.is_present);
         last.map_or(0, |last| last + 1)
@@ -149,15 +148,15 @@ impl World {
         slot.map(|_| at).ok_or(WorldError::NoShape(number))
     }
 
-    /// Removes the models that were grown of one.
+    /// Removes the models that were grown from this one.
     fn remove_grown(&mut self, model: u32) {
         let culler = &mut self.culler;
         self.margins
             .remove(model, |grown| culler.remove_grown(grown));
     }
 
-    /// Removes the models of margins that no body has any more, if they are many. Every body has
-    /// the model that it needs.
+    /// Removes the models of margins that no body uses any more, if there are many. Every body
+    /// keeps its model.
     pub(super) fn sweep_margins(&mut self, are_many: bool) {
         if are_many && !self.margins.are_many() {
             return;

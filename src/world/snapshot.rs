@@ -1,5 +1,5 @@
-//! A world saved, and restored or rolled back to: all that decides its pairs, events and ids from
-//! then on.
+//! Snapshots of a world, to save, restore and roll back: everything that decides its future pairs,
+//! events and ids.
 //!
 //! Pairs and their order are a function of the bodies ([`World::cull`]), so no state of a pair
 //! finder is saved. Numbers are saved as their bits, which no text format rounds. Meshes aren't
@@ -21,8 +21,8 @@ use crate::strategy::RefinementRanks;
 
 /// A [`World`] at one moment, to be stored or sent in any format of serde.
 ///
-/// It has a version, and one of another version isn't read. Equal calls leave equal snapshots, so
-/// that two peers can compare theirs.
+/// It has a version, and snapshots of other versions are rejected. Equal calls produce equal
+/// snapshots, so that two peers can compare theirs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorldSnapshot {
     version: Version,
@@ -52,10 +52,10 @@ struct ShapeSnapshot {
 }
 
 impl World {
-    /// The world as it is now, for [`Self::restore`]: bodies with ids, poses, margins and groups,
-    /// excluded pairs, the slots that ids are given from, the bodies of interest, the pairs of the
-    /// last cull and those that events were last read of, and, where a budget is spent on the
-    /// oldest answers first, when pairs were refined. Counters and seconds are not in it.
+    /// The present state of the world, for [`Self::restore`]: bodies with ids, poses, margins and
+    /// groups, excluded pairs, free slots, the bodies of interest, the pairs of the last cull and
+    /// those of the last events, and, if a budget is spent on the oldest answers first, the times
+    /// when pairs were refined. Counters and seconds are not in it.
     ///
     /// ```
     /// # use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
@@ -105,17 +105,16 @@ impl World {
         }
     }
 
-    /// Makes this world the one of a snapshot. From then on the same calls give the same ids, pairs
-    /// and events, in the same order, as they give in the world that it was taken of, as long as
-    /// both are culled by the same strategy with the same settings; finder, threads and tier may
-    /// differ, and so may a budget of time.
+    /// Replaces this world by that of a snapshot. From then on the same calls give the same ids,
+    /// pairs and events, in the same order, as in the world from which it was taken, as long as
+    /// both are culled by the same strategy with the same settings; finder, threads, tier and a
+    /// budget of time may differ.
     ///
-    /// The world must have the snapshot's shapes under the same numbers. Others that it has in
-    /// addition stay.
+    /// The world must have the snapshot's shapes under the same numbers. Additional shapes stay.
     ///
     /// # Errors
-    /// A shape that the world lacks, or that is another one; a snapshot that isn't as it was taken.
-    /// The world stays as it was.
+    /// The world lacks a shape, or has another one under its number, or the snapshot is
+    /// inconsistent. The world stays unchanged.
     pub fn restore(&mut self, snapshot: &WorldSnapshot) -> Result<(), SnapshotError> {
         check_shapes(&snapshot.shapes, &self.shapes)?;
         let ids = snapshot.ids.restored()?;
@@ -205,14 +204,13 @@ fn check_shapes(
     Ok(())
 }
 
-/// Answers of sorted pairs of slots, each once, with ranks no larger than there are pairs.
+/// Answers of sorted pairs of slots, each once, with ranks up to the number of pairs.
 fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<RefinementRanks, SnapshotError> {
     let is_sound = |&([i, j], rank): &([u32; 2], u32)| {
         i < j && (j as usize) < slots && rank as usize <= answers.len()
     };
     let is_sorted = answers.is_sorted_by(|(a, _), (b, _)| a < b);
-    // Ranks are 1, 2, 3 … without a gap, as they are written, and 0 of pairs that were never
-    // refined.
+    // Ranks are 1, 2, 3 … without a gap, and 0 for pairs that were never refined.
     let ranks: BTreeSet<u32> = answers.iter().map(|&(_, rank)| rank).chain([0]).collect();
     let is_dense = ranks.iter().copied().eq(0..ranks.len() as u32);
     if is_sorted && is_dense && answers.iter().all(is_sound) {

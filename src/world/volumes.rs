@@ -1,4 +1,4 @@
-//! What queries know of a world's shapes.
+//! The shapes of a world, for queries.
 
 use super::World;
 use crate::update::ShapeFrame;
@@ -6,12 +6,12 @@ use crate::volume::OrDop;
 
 pub(crate) use super::offset::compose;
 
-/// The volumes of a shape, and where the origin of its vertices lies, seen from the point that
-/// poses refer to.
+/// The volumes of a shape, and the position of its vertices' origin relative to the point that
+/// poses place.
 pub(crate) type ShapeVolumes<'a> = (&'a OrDop, &'a ShapeFrame, [f64; 3]);
 
 impl World {
-    /// The volumes of each number that a shape may have.
+    /// The volumes of each shape number, or `None` if it is free.
     pub(crate) fn shape_volumes(&self) -> impl Iterator<Item = Option<ShapeVolumes<'_>>> {
         let slots = self.shapes.iter().zip(&self.models);
         slots.map(|(slot, &model)| {

@@ -1,9 +1,9 @@
 //! The code's functions, each on inputs that are drawn for it.
 
 use sdop::Aabb;
-use sdop::broad_phase::{BallTest, Bounds, Cells, SlotBodies, SlotTest, TableLayout};
-use sdop::overlap::boxes::Cubes;
-use sdop::overlap::ordop::slabs::Slabs;
+use sdop::broad_phase::{BallBounds, BallTest, Cells, SlotBodies, SlotTest, TableLayout};
+use sdop::overlap::boxes::CubeTest;
+use sdop::overlap::ordop::slabs::LaneSlabs;
 use sdop::overlap::ordop::support::support;
 use sdop::overlap::ordop::table::members_of;
 use sdop::overlap::sphere::Spheres;
@@ -264,7 +264,7 @@ fn cells(inputs: &mut Inputs) -> Case {
         1 => (inputs.share() * scale) as f32,
         _ => (inputs.share() * scale * exp2(-(inputs.below(40) as i32))) as f32,
     };
-    let cells = Cells::fit(&Bounds { lo, hi, widest }, 100, TableLayout::Wrapped);
+    let cells = Cells::fit(&BallBounds { lo, hi, widest }, 100, TableLayout::Wrapped);
     // A centre on a border between cells, or any.
     let share = match inputs.below(2) {
         0 => inputs.share(),
@@ -406,7 +406,7 @@ fn cubes(tier: Tier, inputs: &mut Inputs) -> Case {
     };
     let [low, high] = [0.0, 2.0].map(|at| Aabb::new([at; 3], [at + 1.0; 3]));
     let less = less_than_sure(gap);
-    let hit = |boxes: &[Aabb]| dispatch(tier, Hit(Cubes { slots, boxes, less }));
+    let hit = |boxes: &[Aabb]| dispatch(tier, Hit(CubeTest { slots, boxes, less }));
     // The boxes' own ends are asked only where the cubes don't decide.
     let (apart, surely) = (!hit(&[low, low]), hit(&[low, high]));
     let case = Case::of("cubes")
@@ -428,7 +428,7 @@ impl Kernel for Support {
     fn run<L: Lanes>(self, l: L) -> f32 {
         let e = self.e.map(|x| l.splat(x));
         let ends = self.ends.map(|ends| ends.map(|end| l.splat(end)));
-        let slabs = Slabs { ends };
+        let slabs = LaneSlabs { ends };
         let found = match self.k {
             6 => support::<L, 6>(l, &slabs, e),
             14 => support::<L, 14>(l, &slabs, e),

@@ -27,7 +27,7 @@ const CASES: usize = 600;
 /// The hash of these cases, as `.ci/proofs` has last confirmed them.
 const CONFIRMED: &str = "6ef16122a2062591";
 
-/// Cases of each function in turn, one a line.
+/// Cases of each function in turn, one per line.
 fn cases(tier: Tier, of_each: usize) -> String {
     let mut inputs = Inputs::new(1);
     let mut lines = String::new();
@@ -63,7 +63,7 @@ fn every_tier_computes_what_coq_confirmed() {
 
 /// Decisions go both ways often enough for a wrong one to show.
 #[test]
-fn cases_lie_on_both_sides_of_each_decision() {
+fn cases_are_on_both_sides() {
     let lines = cases(Tier::SCALAR, CASES);
     for name in ["spheres", "stays", "cubes", "ordops"] {
         let outcomes = lines.lines().filter(|line| line.starts_with(name));

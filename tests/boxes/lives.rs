@@ -121,8 +121,9 @@ fn live(world: &mut BoxWorld, kind: Kind, seed: u64, before_frame: fn(&mut BoxWo
     }
 }
 
+/// After any insertions and removals, pairs and events match the definition.
 #[test]
-fn whatever_comes_and_goes_pairs_and_events_are_those_of_the_definition() {
+fn random_histories_match_definition() {
     for (kind, seed) in Kind::ALL.into_iter().zip(10..) {
         live(&mut BoxWorld::new(), kind, seed, |_, _| ());
         for &finder in Finder::ALL {
@@ -221,8 +222,9 @@ fn damaged_snapshots_of_boxes_are_refused() {
     }
 }
 
+/// Crowds of a world come in portions or up to a limit.
 #[test]
-fn crowds_of_a_world_come_in_portions_or_up_to_a_limit() {
+fn crowds_in_portions_or_limited() {
     let mut world = BoxWorld::new();
     for _ in 0..500 {
         world.insert(Aabb::new([0.0; 3], [1.0; 3])).unwrap();
@@ -242,8 +244,9 @@ fn crowds_of_a_world_come_in_portions_or_up_to_a_limit() {
     assert!(world.pair_bytes() >= 8 * pairs);
 }
 
+/// A box at rest that is moved is found where it is.
 #[test]
-fn a_box_at_rest_that_is_moved_is_found_where_it_is() {
+fn moved_resting_box_is_found() {
     let mut world = BoxWorld::new();
     let cube = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
     let still = world
@@ -266,9 +269,9 @@ fn a_box_at_rest_that_is_moved_is_found_where_it_is() {
     assert!(world.pairs().eq([[still, moving]]));
 }
 
-/// The cube about the plate holds all that moves; only its ends tell that nothing touches it.
+/// The cube around the plate contains all moving boxes; only its ends show that nothing touches it.
 #[test]
-fn a_plate_at_rest_is_no_cube_because_those_that_move_are() {
+fn resting_plate_is_no_cube() {
     for &finder in Finder::ALL {
         let mut world = BoxWorld::with(&BoxCuller::builder().finder(finder)).unwrap();
         let plate = Aabb::new([-9.0, -9.0, -0.125], [9.0, 9.0, 0.0]);

@@ -47,8 +47,9 @@ fn assert_exact(kind: Kind, count: usize, frames: usize, step: f32, random: &mut
     }
 }
 
+/// Exactly the pairs of the definition are listed.
 #[test]
-fn exactly_the_pairs_of_the_definition_are_listed() {
+fn pairs_match_definition() {
     let random = &mut Random(1);
     for kind in Kind::ALL {
         for (count, frames) in [(0, 2), (1, 2), (2, 3), (7, 4), (64, 6), (65, 24), (300, 24)] {
@@ -58,8 +59,9 @@ fn exactly_the_pairs_of_the_definition_are_listed() {
     }
 }
 
+/// The pairs of a hundred boxes are exact.
 #[test]
-fn the_pairs_of_a_hundred_boxes_are_exact() {
+fn hundred_boxes_are_exact() {
     let random = &mut Random(6);
     for kind in Kind::ALL {
         assert_exact(kind, 100, 3, 0.05, random);
@@ -69,7 +71,7 @@ fn the_pairs_of_a_hundred_boxes_are_exact() {
 /// The cubes about neighbours touch, and those within don't: each pair is looked up, in runs as in
 /// blocks.
 #[test]
-fn boxes_that_are_nearly_cubes_touch_or_miss_each_other_by_a_step() {
+fn near_cubes_touch_or_miss() {
     let random = &mut Random(7);
     let mut ends = |at: usize| {
         let (lo, hi) = (at as f32, at as f32 + 1.0);
@@ -96,7 +98,7 @@ fn boxes_that_are_nearly_cubes_touch_or_miss_each_other_by_a_step() {
 /// The cubes about long boxes stay as they are where a short side grows, and lists of neighbours
 /// are followed meanwhile.
 #[test]
-fn long_boxes_that_grow_within_their_cubes_are_found() {
+fn growing_long_boxes_are_found() {
     let random = &mut Random(8);
     for by in [0.05_f32, 0.4, 3.0] {
         let (mut ways, mut now) = (ways(), boxes(Kind::Needles, 300, random));
@@ -116,8 +118,9 @@ fn long_boxes_that_grow_within_their_cubes_are_found() {
     }
 }
 
+/// Lists are the same in every tier and on any number of threads.
 #[test]
-fn lists_are_the_same_in_every_tier_and_on_any_number_of_threads() {
+fn lists_equal_in_tiers_and_threads() {
     let random = &mut Random(2);
     for kind in [Kind::Cubes, Kind::Needles, Kind::Nested, Kind::Crowd] {
         let build = |of: BoxCullerBuilder| of.build().unwrap();
@@ -148,8 +151,9 @@ fn lists_are_the_same_in_every_tier_and_on_any_number_of_threads() {
     }
 }
 
+/// Boxes may come and go between frames and groups filter them.
 #[test]
-fn boxes_may_come_and_go_between_frames_and_groups_filter_them() {
+fn boxes_change_between_frames() {
     let random = &mut Random(3);
     let mut culler = BoxCuller::new();
     for kind in Kind::ALL {
@@ -175,8 +179,9 @@ fn boxes_may_come_and_go_between_frames_and_groups_filter_them() {
     }
 }
 
+/// A crowd comes in portions in the order of the list and takes no memory.
 #[test]
-fn a_crowd_comes_in_portions_in_the_order_of_the_list_and_takes_no_memory() {
+fn portions_keep_list_order() {
     let now = vec![boxes(Kind::Crowd, 1, &mut Random(4))[0]; 3000];
     let pairs = 3000 * 2999 / 2;
     for threads in [1, 3] {
@@ -209,8 +214,9 @@ fn a_crowd_comes_in_portions_in_the_order_of_the_list_and_takes_no_memory() {
     }
 }
 
+/// Cubes are answered without a look at many candidates.
 #[test]
-fn cubes_are_answered_without_a_look_at_many_candidates() {
+fn cubes_have_few_candidates() {
     let random = &mut Random(5);
     for (kind, most) in [(Kind::Cubes, 8), (Kind::Needles, 400)] {
         let mut culler = BoxCuller::builder().finder(Finder::Grid).build().unwrap();
@@ -226,8 +232,9 @@ fn cubes_are_answered_without_a_look_at_many_candidates() {
     }
 }
 
+/// Frames of little work stay on the caller's thread.
 #[test]
-fn frames_of_little_work_stay_on_the_caller_s_thread() {
+fn small_frames_stay_on_one_thread() {
     let here = std::thread::current().id();
     let now = boxes(Kind::Nested, 90, &mut Random(6));
     let mut culler = BoxCuller::builder()

@@ -36,8 +36,9 @@ fn wrong() -> Vec<Aabb> {
     slabs.into_iter().flat_map(of).collect()
 }
 
+/// An invalid box is named in the error, and the culler still works.
 #[test]
-fn a_box_that_is_none_is_named_and_leaves_nothing_behind() {
+fn invalid_box_is_named() {
     for &finder in Finder::ALL {
         for count in [1, 40, 300] {
             let sound = boxes(Kind::Cubes, count, &mut Random(count as u64));
@@ -64,8 +65,9 @@ fn a_box_that_is_none_is_named_and_leaves_nothing_behind() {
     }
 }
 
+/// A world rejects invalid boxes and stays unchanged.
 #[test]
-fn a_world_refuses_what_is_no_box_and_stays_as_it_was() {
+fn world_rejects_invalid_boxes() {
     let mut world = BoxWorld::new();
     let cube = Aabb::new([0.0; 3], [1.0; 3]);
     let [a, b] = [(); 2].map(|()| world.insert(cube).unwrap());

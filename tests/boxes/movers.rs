@@ -136,7 +136,7 @@ fn few_movers_leave_exact_pairs() {
 /// Clones, worlds restored by another finder, worlds that have given their memory back, and those
 /// that were culled otherwise.
 #[test]
-fn few_movers_survive_whatever_is_done_to_their_world() {
+fn few_movers_in_random_histories() {
     for (kind, seed) in Kind::ALL.into_iter().zip(200..) {
         History::new(BoxWorld::new(), kind, seed, 80).live(150, |world, frame| match frame % 9 {
             1 => *world = world.clone(),
@@ -195,8 +195,9 @@ fn row(count: u16, motion: Motion) -> (BoxWorld, Vec<BodyId>) {
     (world, ids)
 }
 
+/// Pairs at rest stay until a box leaves.
 #[test]
-fn pairs_at_rest_stay_until_a_box_leaves() {
+fn resting_pairs_end_with_a_box() {
     let (mut world, ids) = row(100, Motion::Dynamic);
     for &id in &ids {
         world.set_motion(id, Motion::Resting).unwrap();
@@ -231,7 +232,7 @@ fn pairs_at_rest_stay_until_a_box_leaves() {
 /// The box was moved after the cull that the snapshot has the pairs of, and the world has seen that
 /// since.
 #[test]
-fn a_world_rolled_back_looks_at_all_boxes() {
+fn rollback_finds_all_anew() {
     let (mut world, ids) = row(100, Motion::Dynamic);
     world.set_bounds(ids[20], cube(20.5)).unwrap();
     let saved = world.snapshot();
@@ -243,8 +244,9 @@ fn a_world_rolled_back_looks_at_all_boxes() {
     }
 }
 
+/// Groups change the pairs of boxes that stay.
 #[test]
-fn groups_change_the_pairs_of_boxes_that_stay() {
+fn groups_change_resting_pairs() {
     let (mut world, ids) = row(100, Motion::Resting);
     let mut body = world.body(ids[30]).unwrap();
     body.groups = Groups { member: 1, mask: 2 };
@@ -308,7 +310,7 @@ fn a_frame_costs_what_changes() {
 /// A giant that moves looks at more than all boxes are worth: then all pairs are found anew, and
 /// they are the same.
 #[test]
-fn giants_that_move_are_no_worse_than_all() {
+fn moving_giants_stay_cheap() {
     let random = &mut Random(6);
     let all = boxes(Kind::Cubes, 2000, random);
     let mut world = BoxWorld::new();

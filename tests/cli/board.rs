@@ -57,8 +57,9 @@ why = "no reason"
     (json, page)
 }
 
+/// A miss has its smallest case on the page.
 #[test]
-fn a_miss_has_its_smallest_case_on_the_page() {
+fn miss_has_smallest_case() {
     let folder = tempfile::tempdir().unwrap();
     let (json, page) = board(folder.path(), r#"\"pairs\":[]"#, "");
     let cell = &json["adapters"][0]["cells"][0];
@@ -90,8 +91,9 @@ fn skipped_cases_are_no_pass() {
     assert_eq!(row["cells"][0]["reasons"]["too small"], 1);
 }
 
+/// Misses outside of a claim are no failure.
 #[test]
-fn misses_outside_of_a_claim_are_no_failure() {
+fn unclaimed_misses_are_no_failure() {
     let folder = tempfile::tempdir().unwrap();
     let unclaimed = "unclaimed = [{ cases = \"box/*\", why = \"its page says so\" }]";
     let (json, _) = board(folder.path(), r#"\"pairs\":[]"#, unclaimed);

@@ -1,4 +1,4 @@
-//! Files: what is written appears whole or not at all, and nothing is read without end.
+//! Files: written files are complete or absent, and endless input is rejected.
 #![cfg(unix)]
 
 use std::fs;
@@ -33,8 +33,9 @@ fn unfinished(path: &Path) -> u64 {
     part.map(|path| fs::metadata(path).unwrap().len()).sum()
 }
 
+/// A run that is interrupted leaves the former record or none.
 #[test]
-fn a_run_that_is_interrupted_leaves_the_former_record_or_none() {
+fn interrupted_run_keeps_former_record() {
     for signal in ["INT", "TERM", "KILL"] {
         for former in [Some("the former record"), None] {
             let (directory, scene) = scene_file(LONG);
@@ -83,7 +84,7 @@ fn ended(mut child: Child, signal: &str) -> ExitStatus {
 
 /// What took long to judge is kept for the user, wherever the command was given.
 #[test]
-fn truths_are_kept_in_the_user_s_cache_and_not_where_one_stands() {
+fn truths_go_to_user_cache() {
     let (directory, scene) = scene_file(&LONG.replace("100000000", "40"));
     let [here, cache] = ["here", "cache"].map(|name| directory.path().join(name));
     fs::create_dir(&here).unwrap();
@@ -107,9 +108,10 @@ fn a_full_disk_is_said() {
     assert!(message.contains("cannot write /dev/full"), "{message}");
 }
 
+/// A link to an endless device ends at the limit.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_link_to_an_endless_device_ends_at_the_limit() {
+fn endless_device_ends_at_limit() {
     let directory = tempfile::tempdir().unwrap();
     let link = |name: &str| {
         let path = directory.path().join(name);

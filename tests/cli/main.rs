@@ -1,4 +1,4 @@
-//! The built binary: exit codes, what stands on standard output, and what messages say.
+//! The built binary: exit codes, standard output and messages.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -56,7 +56,7 @@ fn refusal(args: &[&str]) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// A scene of its own in a directory that lives as long as the test.
+/// A scene file in a directory that exists as long as the test.
 fn scene_file(text: &str) -> (tempfile::TempDir, PathBuf) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("scene.toml");
@@ -68,8 +68,9 @@ fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
+/// Every command has help with an example.
 #[test]
-fn every_command_has_help_with_an_example() {
+fn every_command_has_an_example() {
     let commands = stdout(&["--help"]);
     let listed = commands
         .lines()
@@ -90,8 +91,9 @@ fn every_command_has_help_with_an_example() {
     assert!(number >= 2, "{commands}");
 }
 
+/// A reader that leaves early is no error.
 #[test]
-fn a_reader_that_leaves_early_is_no_error() {
+fn early_reader_is_no_error() {
     let mut child = command(&["mesh", "data/meshes/spot.tri"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -103,8 +105,9 @@ fn a_reader_that_leaves_early_is_no_error() {
     assert_eq!(output.status.code(), Some(0));
 }
 
+/// Invalid input is reported before the long work.
 #[test]
-fn bad_input_is_said_before_the_long_work() {
+fn invalid_input_fails_early() {
     let message = refusal(&["verify", "no-such.toml", "--seeds", "1000000"]);
     assert!(message.contains("no-such.toml"), "{message}");
     let control = ["cost", "data/scenes/paper-50.toml", "--strategy", "none"];

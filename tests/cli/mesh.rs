@@ -4,8 +4,9 @@ use serde_json::Value;
 
 use crate::{json, refusal, stdout, text};
 
+/// Spot is closed and every volume is larger than its hull.
 #[test]
-fn spot_is_closed_and_every_volume_is_larger_than_its_hull() {
+fn spot_volumes_exceed_its_hull() {
     let report = json(&["mesh", "data/meshes/spot.tri"]);
     assert_eq!(report["vertices"], 2930);
     assert_eq!(report["triangles"], 5856);
@@ -39,8 +40,9 @@ fn spot_is_closed_and_every_volume_is_larger_than_its_hull() {
     assert!(words.iter().all(|words| shown.contains(words)), "{shown}");
 }
 
+/// A flat mesh has no size over hull.
 #[test]
-fn a_flat_mesh_has_no_size_over_hull() {
+fn flat_mesh_has_no_hull_ratio() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("flat.obj");
     std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
@@ -50,8 +52,9 @@ fn a_flat_mesh_has_no_size_over_hull() {
     assert!(stdout(&["mesh", text(&path)]).contains("open"));
 }
 
+/// Conversion keeps every vertex to the bit.
 #[test]
-fn conversion_keeps_every_vertex_to_the_bit() {
+fn conversion_keeps_every_bit() {
     let directory = tempfile::tempdir().unwrap();
     let obj = directory.path().join("spot.obj");
     let back = directory.path().join("back.tri");
@@ -78,8 +81,9 @@ fn fewer_triangles_are_written_and_described() {
     assert_eq!(json(&["mesh", text(&small)])["triangles"], triangles);
 }
 
+/// Bad meshes are refused with file line and help.
 #[test]
-fn bad_meshes_are_refused_with_file_line_and_help() {
+fn invalid_meshes_are_rejected() {
     let directory = tempfile::tempdir().unwrap();
     let bad = directory.path().join("bad.obj");
     std::fs::write(&bad, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n").unwrap();

@@ -1,9 +1,11 @@
-//! Started as one of many ranks, without MPI: the launcher is known by its environment alone.
+//! Starting the program as one of many ranks without MPI, which it detects by the launcher's
+//! environment.
 
 use super::command;
 
+/// A command that every rank would do in full refuses many.
 #[test]
-fn a_command_that_every_rank_would_do_in_full_refuses_many() {
+fn unsharable_command_rejects_many_ranks() {
     for size in ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"] {
         let output = command(&["mesh", "data/meshes/spot.tri"])
             .env(size, "3")

@@ -1,5 +1,5 @@
-//! `sdop run --record`: read back by a stranger who knows the format alone, to the same bits as in
-//! the library, and judged by the reference from the recorded numbers alone.
+//! `sdop run --record`: an independent reader gets the same bits as the library, and the reference
+//! judges the recorded numbers.
 
 use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;
@@ -106,8 +106,9 @@ fn bits<const N: usize>(rows: &[[f32; N]]) -> Vec<[u32; N]> {
     rows.iter().map(|row| row.map(f32::to_bits)).collect()
 }
 
+/// A recording reads back to the same bits.
 #[test]
-fn a_recording_reads_back_to_the_same_bits() {
+fn recording_reads_back_exactly() {
     let (header, frames) = record(&[]);
     let (_directory, path) = scene_file(SCENE);
     let scene = SceneFile::read(&path).unwrap().build().unwrap();
@@ -155,8 +156,9 @@ fn a_recording_reads_back_to_the_same_bits() {
     assert_eq!(frames.len(), 6);
 }
 
+/// Counters of the frames add up to those of the run.
 #[test]
-fn counters_of_the_frames_add_up_to_those_of_the_run() {
+fn frame_counters_add_up() {
     let (directory, scene) = scene_file(SCENE);
     let path = directory.path().join("run.ndjson");
     let run = crate::json(&["run", text(&scene), "--record", text(&path)]);
@@ -194,8 +196,9 @@ fn counters_of_the_frames_add_up_to_those_of_the_run() {
     );
 }
 
+/// A record that was not finished leaves no file.
 #[test]
-fn a_record_that_was_not_finished_leaves_no_file() {
+fn unfinished_record_leaves_no_file() {
     let far = SCENE
         .replace("dt = 0.1", "dt = 1e18")
         .replace("walls = \"specular\"\n", "");
@@ -208,8 +211,9 @@ fn a_record_that_was_not_finished_leaves_no_file() {
     assert_eq!(left, [scene.file_name().unwrap()]);
 }
 
+/// The reference finds no pair that the recording lacks.
 #[test]
-fn the_reference_finds_no_pair_that_the_recording_lacks() {
+fn recording_has_every_exact_pair() {
     for (strategy, judged) in [
         ("s-dop-sequential", reference::Strategy::Sequential),
         ("or-dop", reference::Strategy::OrDop),

@@ -1,5 +1,5 @@
-//! Records, their comparison and the pages that quote them: one digit changed by hand is found
-//! wherever it is.
+//! Records, their comparison and the pages that quote them: a digit changed by hand is found
+//! everywhere.
 
 use std::path::Path;
 
@@ -59,15 +59,17 @@ fn adopt(root: &Path, experiment: &str, machine: &str) {
     assert!(adopted.status.success(), "{said}");
 }
 
+/// Pages that agree with whole records pass.
 #[test]
-fn pages_that_agree_with_whole_records_pass() {
+fn consistent_pages_pass() {
     let root = repository();
     let (code, said) = check(root.path());
     assert_eq!(code, Some(0), "{said}");
 }
 
+/// A digit changed in a page is found and rendered again.
 #[test]
-fn a_digit_changed_in_a_page_is_found_and_rendered_again() {
+fn changed_page_digit_is_found() {
     let root = repository();
     let page = root.path().join("README.md");
     edit(&page, "1.5", "1.4");
@@ -79,8 +81,9 @@ fn a_digit_changed_in_a_page_is_found_and_rendered_again() {
     assert_eq!(std::fs::read_to_string(&page).unwrap(), PAGE);
 }
 
+/// A digit changed in a record or its manifest is found.
 #[test]
-fn a_digit_changed_in_a_record_or_its_manifest_is_found() {
+fn changed_record_digit_is_found() {
     let root = repository();
     let record = root.path().join("data/record/other/times");
     edit(&record.join("times.csv"), "3.1", "3.0");
@@ -99,8 +102,9 @@ fn a_digit_changed_in_a_record_or_its_manifest_is_found() {
     assert_eq!(check(root.path()).0, Some(1));
 }
 
+/// A whole page is what its template gives.
 #[test]
-fn a_whole_page_is_what_its_template_gives() {
+fn whole_page_follows_its_template() {
     let root = repository();
     template(
         root.path(),
@@ -119,8 +123,9 @@ fn a_whole_page_is_what_its_template_gives() {
     assert!(said.contains("report.typ:2"), "{said}");
 }
 
+/// Two pages that give one number differently are found.
 #[test]
-fn two_pages_that_give_one_number_differently_are_found() {
+fn inconsistent_numbers_are_found() {
     let root = repository();
     let page = |digits: usize| {
         format!(
@@ -146,7 +151,7 @@ fn two_pages_that_give_one_number_differently_are_found() {
 
 /// The figure and its part of a page appear with the record.
 #[test]
-fn a_figure_is_drawn_from_its_table() {
+fn figure_is_drawn_from_table() {
     let root = repository();
     let path = |name: &str| root.path().join(name);
     std::fs::write(path("data/record/quoted.toml"), "machine = \"box\"\n").unwrap();
@@ -178,7 +183,7 @@ fn a_figure_is_drawn_from_its_table() {
     assert!(said.contains("paper/figures/far.svg"), "{said}");
 }
 
-/// Runs git in a repository of its own.
+/// Runs git in a separate repository.
 fn git(root: &Path, arguments: &[&str]) {
     let status = std::process::Command::new("git")
         .current_dir(root)
@@ -189,8 +194,9 @@ fn git(root: &Path, arguments: &[&str]) {
     assert!(status.unwrap().success(), "git {arguments:?}");
 }
 
+/// A record older than the code must be called so.
 #[test]
-fn a_record_older_than_the_code_must_be_called_so() {
+fn old_record_must_be_named() {
     let root = tempfile::tempdir().unwrap();
     let record = root.path().join("data/record/box/times");
     std::fs::create_dir_all(&record).unwrap();
@@ -310,8 +316,9 @@ fn fresh_results_make_their_pages() {
     assert!(said.contains("paper/figures/costs.svg"), "{said}");
 }
 
+/// Two records compare by counts and by intervals.
 #[test]
-fn two_records_compare_by_counts_and_by_intervals() {
+fn records_compare_counts_and_intervals() {
     let root = repository();
     let records = root.path().join("data/record");
     let [first, second] = ["box/times", "other/times"].map(|name| records.join(name));
@@ -326,8 +333,9 @@ fn two_records_compare_by_counts_and_by_intervals() {
     assert_eq!(none.status.code(), Some(2));
 }
 
+/// A record compares with what a commit had.
 #[test]
-fn a_record_compares_with_what_a_commit_had() {
+fn record_compares_with_a_commit() {
     let root = repository();
     git(root.path(), &["init", "-q"]);
     git(root.path(), &["add", "."]);
@@ -355,8 +363,9 @@ fn a_record_compares_with_what_a_commit_had() {
     );
 }
 
+/// Every record of the repository names its command.
 #[test]
-fn every_record_of_the_repository_names_its_command() {
+fn every_record_names_its_command() {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     let store = Store::new(root.join("data/record")).unwrap();
     for name in store.names() {
@@ -368,14 +377,16 @@ fn every_record_of_the_repository_names_its_command() {
     }
 }
 
+/// The repository's own records and pages agree.
 #[test]
-fn the_repository_s_own_records_and_pages_agree() {
+fn own_records_and_pages_agree() {
     let (code, said) = check(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")));
     assert_eq!(code, Some(0), "{said}");
 }
 
+/// A record names the level that ran.
 #[test]
-fn a_record_names_the_level_that_ran() {
+fn record_names_the_tier() {
     let place = tempfile::tempdir().unwrap();
     let out = ["record", "--name", "here", "--out", text(place.path())];
     let record = |arguments: &[&str]| sdop(&[&out, arguments].concat());

@@ -68,8 +68,9 @@ fn reproduce_writes_tables_and_figures() {
     assert_eq!(results["claims"][0]["checks"].as_array().unwrap().len(), 20);
 }
 
+/// Reproduce in shards gives the same counts.
 #[test]
-fn reproduce_in_shards_gives_the_same_counts() {
+fn sharded_reproduce_counts_alike() {
     let directory = tempfile::tempdir().unwrap();
     let [out, merged] = ["shards", "merged"].map(|name| directory.path().join(name));
     let mut shards = Vec::new();
@@ -113,8 +114,9 @@ fn reproduce_says_what_it_needs() {
     );
 }
 
+/// Cost predicts every term of the strategies asked for.
 #[test]
-fn cost_predicts_every_term_of_the_strategies_asked_for() {
+fn cost_predicts_every_term() {
     let arguments = [
         "cost",
         "data/scenes/paper-50.toml",
@@ -149,8 +151,9 @@ fn cost_predicts_every_term_of_the_strategies_asked_for() {
     assert!((sum / predicted - 1.0).abs() < 1e-12 && predicted > 0.0);
 }
 
+/// Cost covers every strategy that the scene has settings for.
 #[test]
-fn cost_covers_every_strategy_that_the_scene_has_settings_for() {
+fn cost_covers_every_possible_strategy() {
     let csv = stdout(&[
         "cost",
         "data/scenes/paper-50.toml",

@@ -55,8 +55,9 @@ fn json_is_the_documented_object() {
     assert_eq!(report["pairs_digest"].as_str().unwrap().len(), 32);
 }
 
+/// Counters and hashes are the same twice and in every simd level.
 #[test]
-fn counters_and_hashes_are_the_same_twice_and_in_every_simd_level() {
+fn runs_repeat_in_every_tier() {
     let expected = run(&["--simd", "scalar"]);
     for tier in Tier::available() {
         let report = run(&["--simd", tier.name()]);
@@ -69,8 +70,9 @@ fn counters_and_hashes_are_the_same_twice_and_in_every_simd_level() {
     assert_ne!(other_seed["pairs_sha256"], expected["pairs_sha256"]);
 }
 
+/// Threads and finders leave the pairs as they are.
 #[test]
-fn threads_and_finders_leave_the_pairs_as_they_are() {
+fn threads_and_finders_keep_pairs() {
     let expected = run(&["--strategy", "sphere"]);
     for finder in ["all-pairs", "grid", "sweep", "neighbours", "auto"] {
         let one = run(&["--pairs", finder]);
@@ -99,8 +101,9 @@ fn threads_and_finders_leave_the_pairs_as_they_are() {
     }
 }
 
+/// Counters follow from bodies frames and strategy.
 #[test]
-fn counters_follow_from_bodies_frames_and_strategy() {
+fn counters_follow_from_the_scene() {
     let count = |report: &Value, name: &str| report["counters"][name].as_u64().unwrap();
     let sequential = run(&[]);
     // 50 bodies, 10 of them static: 50·49/2 − 10·9/2 pairs and 40 updates a frame.
@@ -125,8 +128,9 @@ fn counters_follow_from_bodies_frames_and_strategy() {
     assert!(counts.values().all(|count| *count == 0), "{counts:?}");
 }
 
+/// Homogeneous volumes have counters of their own.
 #[test]
-fn homogeneous_volumes_have_counters_of_their_own() {
+fn single_volumes_have_own_counters() {
     for (strategy, volume) in [("aabb", "aabb"), ("obb", "obb"), ("k-dop", "kdop")] {
         let counters = &run(&["--strategy", strategy])["counters"];
         for (what, expected) in [("updates", 20 * 40), ("tests", 20 * (1225 - 45))] {
@@ -141,8 +145,9 @@ fn homogeneous_volumes_have_counters_of_their_own() {
     }
 }
 
+/// A frame less is stepped and unlisted effects are not simulated.
 #[test]
-fn a_frame_less_is_stepped_and_unlisted_effects_are_not_simulated() {
+fn unlisted_effects_are_not_simulated() {
     let report = run(&[]);
     let steps = |name: &str| {
         let effects = report["effects"].as_array().unwrap();
@@ -198,8 +203,9 @@ fn flags_override_the_scene() {
     assert_eq!(counters["untested"], counters["sphere_hits"]);
 }
 
+/// Csv is a header and a line of the same values.
 #[test]
-fn csv_is_a_header_and_a_line_of_the_same_values() {
+fn csv_has_the_same_values() {
     let csv = stdout(&[&FAST[..], &["--format", "csv"]].concat());
     let mut reader = csv::Reader::from_reader(csv.as_bytes());
     let header = reader.headers().unwrap().clone();
@@ -220,8 +226,9 @@ fn csv_is_a_header_and_a_line_of_the_same_values() {
     assert_eq!(cell("budget"), "");
 }
 
+/// Bad flags are refused with what would do.
 #[test]
-fn bad_flags_are_refused_with_what_would_do() {
+fn invalid_flags_name_valid_ones() {
     for (flags, messages) in [
         (
             &["--simd", "sse9"][..],
@@ -256,8 +263,9 @@ fn bad_flags_are_refused_with_what_would_do() {
     }
 }
 
+/// A level that this cpu lacks is refused with those it has.
 #[test]
-fn a_level_that_this_cpu_lacks_is_refused_with_those_it_has() {
+fn missing_tier_lists_available_ones() {
     let available: Vec<_> = Tier::available().iter().map(|tier| tier.name()).collect();
     let lacking = Tier::NAMES.iter().find(|name| !available.contains(name));
     // No CPU has both AVX and NEON.
@@ -267,8 +275,9 @@ fn a_level_that_this_cpu_lacks_is_refused_with_those_it_has() {
     assert!(message.contains(&expected), "{message}");
 }
 
+/// Scene errors say where and how to mend.
 #[test]
-fn scene_errors_say_where_and_how_to_mend() {
+fn scene_errors_name_place_and_remedy() {
     let head = "name = \"bad\"\nframes = 2\n";
     for (body, messages) in [
         (
@@ -303,8 +312,9 @@ fn scene_errors_say_where_and_how_to_mend() {
     assert!(message.contains("paper-500.toml"), "{message}");
 }
 
+/// A body that leaves the contract is named with its frame.
 #[test]
-fn a_body_that_leaves_the_contract_is_named_with_its_frame() {
+fn leaving_body_is_named_with_frame() {
     let (_directory, path) = scene_file(
         "name = \"escape\"\nframes = 9\ndt = 1.0\n[effects]\nmotion = true\n[[bodies]]\nshape = \"box\"\n\
          poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 1.0e18, 0, 0]]\nvelocities = [[0, 0, 0], [1.0e17, 0, 0]]\n",
@@ -344,8 +354,9 @@ fn far_poses_are_culled_exactly() {
     );
 }
 
+/// A recording that cannot be written is refused.
 #[test]
-fn a_recording_that_cannot_be_written_is_refused() {
+fn unwritable_recording_is_an_error() {
     let output = sdop(&[&FAST[..], &["--record", "no/such/directory/x.ndjson"]].concat());
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8(output.stderr).unwrap();

@@ -1,4 +1,4 @@
-//! Work shared by many: shards, merged, give the result of one process.
+//! Sharing work: merged shards give the result of one process.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ impl Place {
     }
 }
 
-/// The report without what a clock has said.
+/// The report without measured times.
 fn report(output: &Output) -> Value {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
@@ -153,8 +153,9 @@ fn a_run_cut_short_is_incomplete() {
     assert!(said.contains("INCOMPLETE: "), "{said}");
 }
 
+/// Shards of different work are not merged.
 #[test]
-fn shards_of_different_work_are_not_merged() {
+fn different_work_is_not_merged() {
     let place = Place::new();
     let one = place.shard(1, 2, &[]);
     let told = |other: &Path, told: &str| {
@@ -200,8 +201,9 @@ fn sha256(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// A shard without a unit is refused.
 #[test]
-fn a_shard_without_a_unit_is_refused() {
+fn empty_shard_is_rejected() {
     let place = Place::new();
     let one = place.shard(1, 1, &[]);
     let mut lines = lines(&one);

@@ -1,5 +1,5 @@
-//! Every command whose work can be shared: shards of it, merged, are the work of one process.
-//! `.ci/mpi` shows the same of ranks.
+//! All commands whose work can be shared: merged shards give the result of one process. `.ci/mpi`
+//! shows the same for ranks.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -161,7 +161,7 @@ impl Sweep {
     }
 }
 
-/// A result without what a clock has said. Digests of files that have such parts go with it.
+/// A result without measured times, and without digests of files that have such times.
 fn untimed(value: Value) -> Value {
     match value {
         Value::Object(map) => {
@@ -179,8 +179,9 @@ fn untimed(value: Value) -> Value {
     }
 }
 
+/// Every command that can be shared is judged.
 #[test]
-fn every_command_that_can_be_shared_is_judged() {
+fn every_sharable_command_is_tested() {
     let commands = stdout(&["--help"]);
     let listed = commands
         .lines()
@@ -197,8 +198,9 @@ fn every_command_that_can_be_shared_is_judged() {
     assert_eq!(judged, shared);
 }
 
+/// Shards of every sweep are the work of one process.
 #[test]
-fn shards_of_every_sweep_are_the_work_of_one_process() {
+fn shards_equal_one_process() {
     let (directory, scene) = scene_file(SCENE);
     for sweep in SWEEPS {
         let [alone, out] =
@@ -224,8 +226,9 @@ fn shards_of_every_sweep_are_the_work_of_one_process() {
     }
 }
 
+/// Shards of another scene are no part of a work.
 #[test]
-fn shards_of_another_scene_are_no_part_of_a_work() {
+fn shards_of_other_scenes_are_rejected() {
     let (directory, scene) = scene_file(SCENE);
     let of_scenes = |sweep: &&Sweep| sweep.arguments.contains(&"SCENE");
     for sweep in SWEEPS.iter().filter(of_scenes) {
@@ -246,8 +249,9 @@ fn shards_of_another_scene_are_no_part_of_a_work() {
     }
 }
 
+/// A record is made only from the shards of one plan.
 #[test]
-fn a_record_is_of_its_own_shards_alone() {
+fn record_uses_only_its_shards() {
     let sweep = SWEEPS.iter().find(|sweep| sweep.name == "record").unwrap();
     let (directory, scene) = scene_file(SCENE);
     let out = directory.path().join("out");
@@ -297,8 +301,9 @@ fn an_interrupted_record_is_made_anew() {
     assert!(!out.join(sweep.result).join("left.csv").exists());
 }
 
+/// What has no units is not shared.
 #[test]
-fn what_has_no_units_is_not_shared() {
+fn work_without_units_is_rejected() {
     for (arguments, told) in [
         (
             &["record", "effects", "--shard", "1/2"][..],

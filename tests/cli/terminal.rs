@@ -1,5 +1,5 @@
-//! What a terminal gets: completions, manual pages, numbers for people, and no colour or progress
-//! where nobody asked for any.
+//! Terminal output: completions, manual pages, readable numbers, and no colour or progress in
+//! pipes.
 
 use crate::{command, stdout, text};
 
@@ -15,8 +15,9 @@ fn commands() -> Vec<String> {
         .collect()
 }
 
+/// Every shell completes every command and its flags.
 #[test]
-fn every_shell_completes_every_command_and_its_flags() {
+fn every_shell_completes_all_commands() {
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let script = stdout(&["completions", shell]);
         for name in commands() {
@@ -51,8 +52,9 @@ fn every_command_has_a_manual_page() {
     }
 }
 
+/// Numbers of a mesh are plain decimals, and a flat mesh is reported as flat.
 #[test]
-fn numbers_of_a_mesh_are_plain_and_a_flat_one_is_said_to_be() {
+fn flat_mesh_is_reported() {
     let shown = stdout(&["mesh", "data/meshes/teapot.tri"]);
     assert!(
         shown.contains("volume 32.5362 unit³") && shown.contains("size, unit³"),
@@ -74,8 +76,9 @@ fn numbers_of_a_mesh_are_plain_and_a_flat_one_is_said_to_be() {
     }
 }
 
+/// Piped output has neither colour nor progress.
 #[test]
-fn piped_output_has_neither_colour_nor_progress() {
+fn piped_output_is_plain() {
     let scene = ["run", "data/scenes/paper-50.toml", "--frames", "3"];
     let missing = ["mesh", "no-such-file.tri"];
     for (args, colour) in [

@@ -1,5 +1,5 @@
-//! `sdop view`: what pages hold, and what is said of records that are broken, old or strange. What
-//! a browser makes of a page is tested in `benches/src/view/web/test/`.
+//! `sdop view`: the content of pages, and messages about broken, old or unknown records.
+//! `benches/src/view/web/test/` tests pages in a browser.
 
 use std::path::{Path, PathBuf};
 
@@ -62,8 +62,9 @@ fn view(flags: &[&str]) {
     stdout(&[&["view", "--no-prices"], flags].concat());
 }
 
+/// A page of a scene holds its run.
 #[test]
-fn a_page_of_a_scene_holds_its_run() {
+fn scene_page_contains_its_run() {
     let (directory, scene) = scene_file(SCENE);
     let page = directory.path().join("page.html");
     view(&[text(&scene), "--out", text(&page)]);
@@ -109,8 +110,9 @@ fn a_page_of_a_scene_holds_its_run() {
     }
 }
 
+/// A record shows the same as its scene.
 #[test]
-fn a_record_shows_the_same_as_its_scene() {
+fn record_page_equals_scene_page() {
     let (directory, scene) = scene_file(SCENE);
     let pages = ["scene.html", "record.html"].map(|name| directory.path().join(name));
     let record = record(directory.path(), &scene, "run.ndjson", &[]);
@@ -124,8 +126,9 @@ fn a_record_shows_the_same_as_its_scene() {
     );
 }
 
+/// Recorded truth is used without computing it again.
 #[test]
-fn recorded_truth_is_taken_as_it_stands() {
+fn recorded_truth_is_used() {
     let (directory, scene) = scene_file(SCENE);
     let record = record(directory.path(), &scene, "run.ndjson", &["--truth"]);
     let pages = ["as-is.html", "changed.html"].map(|name| directory.path().join(name));
@@ -151,8 +154,9 @@ fn recorded_truth_is_taken_as_it_stands() {
     );
 }
 
+/// Two strategies or two records stand side by side.
 #[test]
-fn two_strategies_or_two_records_stand_side_by_side() {
+fn two_runs_are_shown_together() {
     let (directory, scene) = scene_file(SCENE);
     let page = directory.path().join("page.html");
     let first = record(directory.path(), &scene, "first.ndjson", &[]);
@@ -204,8 +208,9 @@ fn broken(path: &Path) -> (String, Value) {
     (words, header(&page))
 }
 
+/// A broken record makes a page that says so.
 #[test]
-fn a_broken_record_makes_a_page_that_says_so() {
+fn broken_record_makes_a_page() {
     let (directory, scene) = scene_file(SCENE);
     let record = record(directory.path(), &scene, "run.ndjson", &[]);
     let whole = std::fs::read_to_string(&record).unwrap();
@@ -247,8 +252,9 @@ fn a_broken_record_makes_a_page_that_says_so() {
     assert!(broken(&other).0.contains("this is no record"));
 }
 
+/// An older record lacks counters and shows the rest.
 #[test]
-fn an_older_record_lacks_counters_and_shows_the_rest() {
+fn older_record_lacks_only_counters() {
     let (directory, scene) = scene_file(SCENE);
     let record = record(directory.path(), &scene, "run.ndjson", &[]);
     let old = directory.path().join("old.ndjson");
@@ -279,8 +285,9 @@ fn an_older_record_lacks_counters_and_shows_the_rest() {
     assert!(message.contains("--beside STRATEGY"), "{message}");
 }
 
+/// Hard cases are shown run by run.
 #[test]
-fn hard_cases_are_shown_run_by_run() {
+fn hard_cases_show_single_runs() {
     let directory = tempfile::tempdir().unwrap();
     let page = directory.path().join("case.html");
     let case = "data/hard_cases/contained.toml";
@@ -313,8 +320,9 @@ fn hard_cases_are_shown_run_by_run() {
     );
 }
 
+/// A case is shown with the answers to it.
 #[test]
-fn a_case_is_shown_with_the_answers_to_it() {
+fn case_is_shown_with_answers() {
     let directory = tempfile::tempdir().unwrap();
     let cases = directory.path().join("cases");
     let name = "hard/contained/0000";
@@ -425,7 +433,7 @@ fn silent_from(missed: u64, name: &str) -> Value {
 
 /// The page of a case about boxes has the judged boxes, and opens at the missed pair.
 #[test]
-fn a_counter_example_shows_what_was_judged() {
+fn counter_example_shows_judged_volumes() {
     // The first frame is answered rightly; each pair meets in every other frame.
     let header = silent_from(1, "churn/teleport/0004");
     assert_eq!(header["layers"], serde_json::json!(["boxes"]));

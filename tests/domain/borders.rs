@@ -1,10 +1,10 @@
-//! Hard cases at borders, with the exact reference and one process as judges.
+//! Hard cases at borders between ranks, compared with the exact reference and with one process.
 
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
-use sdop_bench::tradeoff::truth::Judge;
+use sdop_bench::tradeoff::truth::ExactJudge;
 use sdop_judge::ours::compare::settings;
 
 use crate::{pairs_alone, pairs_on, support};
@@ -22,7 +22,7 @@ fn shape(name: &str, radius: f32) -> Shape {
     Shape::build(&mesh, &spec).unwrap()
 }
 
-/// Bodies of shape 0 unless said otherwise, all moving.
+/// Bodies of shape 0 unless noted, all moving.
 fn bodies(of: impl IntoIterator<Item = (u32, [f32; 3])>) -> Bodies {
     let mut columns = Bodies::default();
     for (shape, at) in of {
@@ -34,7 +34,7 @@ fn bodies(of: impl IntoIterator<Item = (u32, [f32; 3])>) -> Bodies {
 /// Every strategy and finder on every number of ranks reports what one process does, once, and
 /// nothing that meets is missing.
 fn judge(what: &str, shapes: &[Shape], frames: &[Bodies]) {
-    let judge = Judge::new(shapes).unwrap();
+    let judge = ExactJudge::new(shapes).unwrap();
     let truth: Vec<_> = frames
         .iter()
         .map(|poses| judge.meetings(poses, None).unwrap())
@@ -127,7 +127,7 @@ fn a_giant_over_all_domains() {
 
 /// All centres in one point: one rank owns all, the others nothing. And fewer bodies than ranks.
 #[test]
-fn all_in_one_domain_and_empty_ranks() {
+fn empty_ranks_are_fine() {
     let shapes = [shape("box", 1.0), shape("icosphere", 0.25)];
     let one_point = (0..20).map(|i| (i % 2, [7.0, -3.0, 0.5]));
     judge("one point", &shapes, &[bodies(one_point)]);
@@ -219,7 +219,7 @@ fn near_touching_pairs_on_either_side() {
 /// Pairs that stand as far apart as the skin lets them be forgotten, and then come to touch, each
 /// by a little less than a skin: the ghosts found before must have been those that are needed now.
 #[test]
-fn pairs_that_come_together_by_a_skin_each() {
+fn pairs_approach_by_a_skin() {
     let ball = shape("icosphere", 1.0);
     let (reach, step) = (ball.ball.radius, 0.4999 * ball.ball.radius);
     let frame = |apart: f32| {

@@ -1,4 +1,4 @@
-//! The corpus of hard cases on ranks: whatever breaks a culler, at borders.
+//! The corpus of hard cases on ranks.
 
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet};
@@ -7,8 +7,9 @@ use sdop_judge::ours::hard::{FILES, Group};
 
 use crate::{pairs_alone, pairs_on};
 
+/// Ranks report the pairs of one process in every group.
 #[test]
-fn ranks_report_the_pairs_of_one_process_in_every_group() {
+fn hard_cases_match_on_ranks() {
     let ways = [
         (Strategy::Sphere, Finder::Grid),
         (Strategy::SDopSequential, Finder::Sweep),

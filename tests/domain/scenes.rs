@@ -14,7 +14,8 @@ const EFFECTS: &str = "
     brownian = { share = 0.05, speed = [1.0, 4.0] }
 ";
 
-/// Boxes, L-shapes about a corner of their file, and a tenth that never moves, placed as said.
+/// Boxes, L-shapes about a corner of their file, and a tenth that never moves, with the given
+/// placement.
 fn scene(radius: &str, placement: &str, box_of: &str) -> Scene {
     let group = |shape: &str, rest: &str| {
         format!(
@@ -64,8 +65,9 @@ fn scenes() -> [(&'static str, Scene); 5] {
     ]
 }
 
+/// The pairs of any number of ranks are those of one process.
 #[test]
-fn the_pairs_of_any_number_of_ranks_are_those_of_one_process() {
+fn any_rank_count_matches() {
     let strategies = Strategy::ALL.iter().filter(|s| !s.scheme().has_budget());
     for (name, mut scene) in scenes() {
         for &strategy in strategies.clone() {
@@ -100,8 +102,9 @@ fn the_pairs_of_any_number_of_ranks_are_those_of_one_process() {
     }
 }
 
+/// One rank counts what one process counts.
 #[test]
-fn one_rank_counts_what_one_process_counts() {
+fn one_rank_counts_like_a_process() {
     for (name, mut scene) in scenes() {
         for &strategy in Strategy::ALL.iter().filter(|s| !s.scheme().has_budget()) {
             for updates in [Updates::Eager, Updates::Lazy] {
@@ -115,8 +118,9 @@ fn one_rank_counts_what_one_process_counts() {
     }
 }
 
+/// A cone that a body looks along sees the same from every rank.
 #[test]
-fn a_cone_that_a_body_looks_along_sees_the_same_from_every_rank() {
+fn view_cone_matches_on_ranks() {
     let mut scene = scene("1.0", "\"uniform\"", "partners = 2.5");
     scene.cull.strategy = Strategy::SDopObjectOfInterest;
     for cone in [
@@ -137,8 +141,9 @@ fn a_cone_that_a_body_looks_along_sees_the_same_from_every_rank() {
     }
 }
 
+/// Ghosts are a skin of the domain and owners are kept while bodies are slow.
 #[test]
-fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
+fn slow_bodies_keep_their_owners() {
     let text = "name = \"many\"\nframes = 24\n[box]\nside = 40.0\n[[bodies]]\nshape = \"box\"\nradius = 0.5\ncount = 8000
         speed = [0.5, 1.0]\n[effects]\nmotion = true\nwalls = \"specular\"\n[cull]\npairs = \"grid\"\n";
     let summary = on(8, &build(text)).unwrap();
@@ -159,8 +164,9 @@ fn ghosts_are_a_skin_of_the_domain_and_owners_are_kept_while_bodies_are_slow() {
     assert_eq!(ghosts(&on(1, &build(text)).unwrap().ranks), 0);
 }
 
+/// Shares hold the bodies of the whole.
 #[test]
-fn shares_hold_the_bodies_of_the_whole() {
+fn shares_partition_the_bodies() {
     for seeding in ["by-group", "by-body"] {
         for placement in ["\"uniform\"", "{ clusters = { number = 5, radius = 2.0 } }"] {
             let group = |shape: &str| {
@@ -200,8 +206,9 @@ fn shares_hold_the_bodies_of_the_whole() {
     }
 }
 
+/// By body each body draws for itself.
 #[test]
-fn by_body_each_body_draws_for_itself() {
+fn seeding_by_body_is_independent() {
     let file = |count: u32| {
         parse(&format!(
             "name = \"own\"\nseeding = \"by-body\"\nframes = 1\n[box]\nside = 20.0\n[[bodies]]\nshape = \"box\"\ncount = {count}\nspeed = [1.0, 2.0]\n"
@@ -221,8 +228,9 @@ fn by_body_each_body_draws_for_itself() {
     assert_eq!(different.len(), 100);
 }
 
+/// What needs one order over all pairs is refused on many ranks.
 #[test]
-fn what_needs_one_order_over_all_pairs_is_refused_on_many_ranks() {
+fn global_orders_are_rejected_on_ranks() {
     let refusal = |file: &Scene| on(2, file).unwrap_err().to_string();
     let mut scene = scene("1.0", "\"uniform\"", "partners = 2.5");
     scene.cull.strategy = Strategy::SDopTimeCritical;
@@ -243,8 +251,9 @@ fn what_needs_one_order_over_all_pairs_is_refused_on_many_ranks() {
     );
 }
 
+/// A body that leaves the contract is named by its number on every rank.
 #[test]
-fn a_body_that_leaves_the_contract_is_named_by_its_number_on_every_rank() {
+fn leaving_body_is_named_on_ranks() {
     let text = "name = \"far\"\nframes = 3\ndt = 1.0\n[[bodies]]\nshape = \"box\"
         poses = [[0, 0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 5, 0, 0], [0, 0, 0, 1, 9, 0, 0], [0, 0, 0, 1, 999999984306749440, 0, 0]]
         velocities = [[0, 0, 0], [0, 0, 0], [0, 0, 0], [1e18, 0, 0]]\n[effects]\nmotion = true\n";

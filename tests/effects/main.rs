@@ -199,8 +199,9 @@ fn walls_mirror_and_turn() {
     assert_eq!(after(&fast, 1).0.translation[0], [-w, -3.75, 1.0]);
 }
 
+/// Bounding spheres stay inside and speeds stay.
 #[test]
-fn bounding_spheres_stay_inside_and_speeds_stay() {
+fn walls_keep_spheres_and_speeds() {
     for walls in ["specular", "reverse"] {
         let scene = crowd(&format!(
             "motion = true\nwalls = \"{walls}\"\nspin = {{ rate = 2 }}"
@@ -229,8 +230,9 @@ fn bounding_spheres_stay_inside_and_speeds_stay() {
     }
 }
 
+/// Spin turns by its rate and keeps the norm.
 #[test]
-fn spin_turns_by_its_rate_and_keeps_the_norm() {
+fn spin_keeps_rate_and_norm() {
     let mut scene = crowd("spin = { rate = [0.5, 2] }");
     // Any norm is a rotation: these two leave f32's range when squared.
     scene.bodies.rotation[0] = [0.0, 0.0, 0.0, 1e-23];
@@ -332,8 +334,9 @@ fn brownian_kicks_its_share() {
     assert!((1..=4).contains(&kicked(&after(&scene, 1).1.linear)));
 }
 
+/// A body that leaves the contract is named at its step.
 #[test]
-fn a_body_that_leaves_the_contract_is_named_at_its_step() {
+fn leaving_body_is_named() {
     let mut scene = crowd("motion = true");
     scene.velocities.linear[37] = [0.0, f32::NAN, 0.0];
     let mut bodies = scene.bodies.clone();

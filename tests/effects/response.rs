@@ -49,8 +49,9 @@ fn respond(scene: &Scene) -> (Vec<[f32; 3]>, usize) {
     (velocity, exchanges)
 }
 
+/// Response is the formula on all pairs.
 #[test]
-fn response_is_the_formula_on_all_pairs() {
+fn response_matches_the_formula() {
     for (seed, radius, side) in [(1, "1", 9), (2, "[0.2, 3]", 14), (3, "[0.1, 1]", 200)] {
         let scene = scene(&format!(
             "seed = {seed}\n[box]\nside = {side}\n\

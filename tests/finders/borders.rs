@@ -1,6 +1,6 @@
 //! Scenes on the borders between cells, to a unit in the last place of f64: three that once lost a
-//! pair or panicked, and a short search for others. `cargo bench --bench finder_borders` is the
-//! long one.
+//! pair or panicked, and a short search for others. `cargo bench --bench finder_borders` runs a
+//! long search.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -67,14 +67,16 @@ fn between(n: usize) -> impl Iterator<Item = f32> {
     (1..=n).map(move |i| ENDS[1] * i as f32 / (n + 1) as f32)
 }
 
+/// Two bars whose extent is just below a border have their cells.
 #[test]
-fn two_bars_whose_extent_is_just_below_a_border_have_their_cells() {
+fn bars_below_a_border_have_cells() {
     let bars = ENDS.map(|x| (0, true, [x, 0.0, 0.0]));
     judge(&scene(&[REACH], bars), Strategy::ALL, "two bars");
 }
 
+/// A moving bar meets the farthest static one.
 #[test]
-fn a_moving_bar_meets_the_farthest_static_one() {
+fn moving_bar_meets_farthest_static() {
     let fixed = ENDS.into_iter().chain(between(100));
     let bars = fixed.map(|x| (0, false, [x, 0.0, 0.0]));
     #[allow(clippy::excessive_precision, reason = "as the culler got it")]
@@ -85,8 +87,9 @@ fn a_moving_bar_meets_the_farthest_static_one() {
     judge(&scene, Strategy::ALL, "static bars");
 }
 
+/// A giant bar meets the farthest small one.
 #[test]
-fn a_giant_bar_meets_the_farthest_small_one() {
+fn giant_bar_meets_farthest_small() {
     // In three dimensions a cell beyond the box is in its table still: nothing panics, and the
     // giant doesn't look there.
     let small = ENDS.into_iter().chain(between(1998)).zip(0..);
@@ -103,8 +106,9 @@ fn a_giant_bar_meets_the_farthest_small_one() {
 const SCENES: usize = 6000;
 const DIVIDED: usize = 100;
 
+/// No pair is lost on a border between cells.
 #[test]
-fn no_pair_is_lost_on_a_border_between_cells() {
+fn borders_lose_no_pair() {
     let mut rng = ChaCha8Rng::seed_from_u64(12);
     let (settings, tiers) = (Borders::settings(), Tier::available());
     let (mut divided, mut pairs) = (0, 0);

@@ -112,8 +112,9 @@ fn compare(found: &[Vec<[u32; 2]>], wanted: &[Vec<[u32; 2]>], what: &str) {
     }
 }
 
+/// Every finder reports what all pairs reports.
 #[test]
-fn every_finder_reports_what_all_pairs_reports() {
+fn every_finder_matches_all_pairs() {
     for scene in hard_scenes() {
         for &strategy in Strategy::ALL {
             let wanted = found(&scene, strategy, Finder::AllPairs, 4);
@@ -129,8 +130,9 @@ fn every_finder_reports_what_all_pairs_reports() {
     }
 }
 
+/// No finder loses a near touching pair.
 #[test]
-fn no_finder_loses_a_near_touching_pair() {
+fn near_touching_pairs_are_found() {
     for seed in 0..30 {
         let (radius, offset) = [(1.0, 0.0), (0.77, -31.0), (1e-3, 0.25)][seed as usize % 3];
         let scene = near_touching(seed, radius, offset);
@@ -153,7 +155,7 @@ fn no_finder_loses_a_near_touching_pair() {
 /// A ball just this side of a border between cells, and one that touches it from as far beyond as
 /// can be: cells a hundred-thousandth too small put a whole cell between them.
 #[test]
-fn no_pair_is_lost_across_a_cell() {
+fn pairs_across_cells_are_found() {
     for axis in 0..3 {
         let mut scene = Scene::new("across a cell", &[1.0], 800, |_, _| [0.0; 3]);
         scene.bodies.dynamic.fill(true);
@@ -182,7 +184,7 @@ fn no_pair_is_lost_across_a_cell() {
 /// Far clusters wrap the table of cells: rows of touching balls lie across its end in some of these
 /// scenes, and so do the tiny ones that other levels look for.
 #[test]
-fn no_pair_is_lost_at_the_end_of_the_table() {
+fn pairs_at_table_end_are_found() {
     for (seeds, rows, radii) in [(80, 20, vec![1.0]), (16, 70, vec![1.0, 0.1])] {
         for seed in 0..seeds {
             let tiny = 8 * (radii.len() - 1);
@@ -216,7 +218,7 @@ fn no_pair_is_lost_at_the_end_of_the_table() {
 /// Cells of far clusters share places in the table, so a giant that looked through more than three
 /// of them each way would come upon some bodies twice.
 #[test]
-fn giants_meet_the_tiny_ones_of_far_clusters_once() {
+fn giants_meet_far_tiny_bodies() {
     let mut scene = Scene::new("giants in far clusters", &[0.02, 0.5], 12_000, |i, rng| {
         let (centre, by) = ([1e4, -3e4, 7e3], uniform(rng, 1.0));
         std::array::from_fn(|k| centre[k] * (i % 5) as f32 + by[k])
@@ -243,8 +245,9 @@ fn trace(
     trace
 }
 
+/// Groups leave of every list the pairs that may collide.
 #[test]
-fn groups_leave_of_every_list_the_pairs_that_may_collide() {
+fn groups_filter_every_list() {
     let scene = Scene::new("groups", &[0.5, 1.0, 4.0], 500, |_, rng| uniform(rng, 22.0));
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     let mut bits = || rng.random_range(0..16u32) & rng.random_range(0..16u32);
@@ -291,7 +294,7 @@ fn groups_leave_of_every_list_the_pairs_that_may_collide() {
 
 /// Enough bodies for threads to share updates and sorts too, which they don't for fewer.
 #[test]
-fn many_bodies_give_the_list_of_one_thread_on_any_number() {
+fn threads_match_for_many_bodies() {
     let scene = Scene::new("many", &[1.0], 40_000, |_, rng| uniform(rng, 96.0));
     for strategy in [Strategy::Sphere, Strategy::SDopSequential] {
         let settings = settings(strategy, Finder::Grid);
@@ -305,8 +308,9 @@ fn many_bodies_give_the_list_of_one_thread_on_any_number() {
     }
 }
 
+/// Auto is one of the others in list and count.
 #[test]
-fn auto_is_one_of_the_others_in_list_and_count() {
+fn auto_equals_its_choice() {
     for (n, side, wanted) in [(60, 9.0, Finder::AllPairs), (400, 16.0, Finder::Neighbours)] {
         let scene = Scene::new("auto", &[1.0], n, |_, rng| uniform(rng, side));
         let [auto, named] = [Finder::Auto, wanted].map(|finder| {
@@ -320,8 +324,9 @@ fn auto_is_one_of_the_others_in_list_and_count() {
     }
 }
 
+/// Lists and counts are the same in every tier and on every number of threads.
 #[test]
-fn lists_and_counts_are_the_same_in_every_tier_and_on_every_number_of_threads() {
+fn tiers_and_threads_match() {
     for scene in hard_scenes()
         .iter()
         .filter(|scene| scene.bodies.shape.len() >= 300)
@@ -349,8 +354,9 @@ fn lists_and_counts_are_the_same_in_every_tier_and_on_every_number_of_threads() 
     }
 }
 
+/// Bodies may gather and part over many frames.
 #[test]
-fn bodies_may_gather_and_part_over_many_frames() {
+fn gathering_bodies_lose_no_pair() {
     // Everybody falls to the middle and flies apart again: levels are planned anew, places
     // reordered.
     let mut scene = Scene::new("gathering", &[0.3, 1.0, 4.0], 400, |_, rng| {

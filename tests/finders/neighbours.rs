@@ -1,5 +1,5 @@
 //! Neighbour lists: whatever bodies do between two lists, each frame's pairs are those of all
-//! pairs, in every tier; and lists are kept, or there would be nothing to see.
+//! pairs, in every tier. The tests also check that lists are actually kept.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -75,7 +75,7 @@ fn couples(apart: impl Fn(usize, f32) -> f32, fixed: bool) -> (Scene, f32) {
 /// Two bodies that a list doesn't hold, since they were just out of its reach, come together in one
 /// frame: by their skins, by a unit in the last place less or more, by half more, and back again.
 #[test]
-fn bodies_that_move_by_their_skins_meet_whom_they_meet() {
+fn skin_moves_lose_no_pair() {
     for fixed in [false, true] {
         let movers = if fixed { 1.0 } else { 2.0 };
         for share in [0.5, 0.9, 0.99, 1.0, 1.01, 1.5, 2.0, 8.0] {
@@ -108,7 +108,7 @@ fn bodies_that_move_by_their_skins_meet_whom_they_meet() {
 /// Small balls next to wide ones come together as above, by a skin of the same length for both: one
 /// of six, since a frame in which all move by half a small one's radius has ended the first list.
 #[test]
-fn small_bodies_and_wide_ones_that_move_by_a_common_length_meet_whom_they_meet() {
+fn common_length_moves_lose_nothing() {
     let mut scene = Scene::new("small beside wide", &[0.1, 1.0], 240, |_, _| [0.0; 3]);
     let balls = [0, 1].map(|shape| f64::from(scene.shapes[shape].ball.radius));
     let mean = |power| 0.5 * balls.iter().map(|r: &f64| r.powi(power)).sum::<f64>();
@@ -143,8 +143,8 @@ fn small_bodies_and_wide_ones_that_move_by_a_common_length_meet_whom_they_meet()
     }
 }
 
-/// Bodies that keep their course, by so many of the radii that `pace` makes of theirs a frame, and
-/// turn round now and then.
+/// Moves bodies on straight courses and turns them round now and then. `speed` is in units of the
+/// radius that `pace` returns for the body's own, per frame.
 fn fly(
     scene: &Scene,
     pace: impl Fn(f32) -> f32,
@@ -171,8 +171,9 @@ fn fly(
     }
 }
 
+/// Lists are followed at any speed and lose nothing.
 #[test]
-fn lists_are_followed_at_any_speed_and_lose_nothing() {
+fn any_speed_loses_no_pair() {
     let scenes = [
         Scene::new("uniform", &[1.0], 500, |_, rng| uniform(rng, 20.0)),
         Scene::new("radii 1:16", &[0.25, 1.0, 4.0], 300, |_, rng| {
@@ -206,7 +207,7 @@ fn lists_are_followed_at_any_speed_and_lose_nothing() {
 
 /// All bodies are equally fast, so that a share of their radius wouldn't last for the small ones.
 #[test]
-fn small_bodies_as_fast_as_wide_ones_are_followed_and_lose_nothing() {
+fn fast_small_bodies_lose_nothing() {
     let scene = Scene::new("radii 1:16", &[0.25, 1.0, 4.0], 400, |_, rng| {
         uniform(rng, 60.0)
     });
@@ -222,8 +223,9 @@ fn small_bodies_as_fast_as_wide_ones_are_followed_and_lose_nothing() {
     }
 }
 
+/// A body that jumps or grows between two lists is found.
 #[test]
-fn a_body_that_jumps_or_grows_between_two_lists_is_found() {
+fn jumping_or_growing_body_is_found() {
     let scene = Scene::new("jumps", &[1.0], 400, |_, rng| uniform(rng, 18.0));
     for seed in 0..4 {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);

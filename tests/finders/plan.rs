@@ -1,6 +1,5 @@
-//! Plans depend on the bodies alone, and stay as recorded: how many candidates a finder hands out,
-//! in which order, of how many bytes and in how many parts. Each change of them is a change of
-//! speed that counts can show, on any machine.
+//! Plans depend only on the bodies and stay as recorded: the number of candidates, their order,
+//! bytes and parts. Counts show a change of speed here on any machine.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -15,7 +14,7 @@ use sdop_bench::hash::PairsHash;
 use super::scenes::{Scene, hard_scenes, uniform};
 use super::{advance, settings};
 
-/// What was recorded, a line a scene and finder; a test that fails prints what it found.
+/// The recorded values, one line per scene and finder; a failing test prints its values.
 const RECORDED: &str = include_str!("plan.txt");
 
 /// More than any finder waits before it reorders places, or looks at its plan again. All pairs have
@@ -142,8 +141,9 @@ fn plans_are_as_recorded() {
     );
 }
 
+/// Bodies stand as given or those that move first.
 #[test]
-fn bodies_stand_as_given_or_those_that_move_first() {
+fn plan_is_independent_of_order() {
     let scene = &hard_scenes()[3];
     let (given, sorted) = (Places::as_given(&scene.bodies), Places::new(&scene.bodies));
     let everyone: Vec<u32> = (0..scene.bodies.len() as u32).collect();

@@ -1,5 +1,5 @@
-//! What frames cost, whatever the bodies' sizes: lists of neighbours must not be searched for where
-//! what they add to every radius is wider than the bodies.
+//! The cost of frames for bodies of any size: no list of neighbours is searched for if the skin's
+//! floor exceeds the bodies' size.
 
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
@@ -119,8 +119,9 @@ fn spheres_of_any_size_are_bounded() {
     cullers_are_bounded(Strategy::Sphere);
 }
 
+/// S dops of any size are bounded.
 #[test]
-fn s_dops_of_any_size_are_bounded() {
+fn s_dop_searches_are_bounded() {
     cullers_are_bounded(Strategy::SDopSequential);
 }
 

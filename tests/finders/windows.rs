@@ -32,8 +32,9 @@ fn batches_equal_sequences(scene: &Scene, finders: &[Finder], tiers: &[Tier]) {
     }
 }
 
+/// Near places share windows in every tier.
 #[test]
-fn near_places_share_windows_in_every_tier() {
+fn near_places_share_windows() {
     let finders = [Finder::Neighbours, Finder::Grid, Finder::Sweep];
     let radii = [1.0, 0.8];
     let scene = many("some static", &radii, 20_000, 72.0, |body| body % 7 != 3);
@@ -45,7 +46,7 @@ fn near_places_share_windows_in_every_tier() {
 /// Wide bodies and small ones have slots of their own, so that those of a pair lie farther apart
 /// than a window is long: those that move, or those that don't.
 #[test]
-fn pairs_whose_places_are_far_apart_are_tested_by_rows_that_are_all_made() {
+fn far_places_use_all_rows() {
     let radii = [0.3, 0.3, 0.3, 0.3, 4.0];
     let moving = many("all moving", &radii, 90_000, 110.0, |_| true);
     let still = many("most static", &radii, 120_000, 120.0, |body| body % 7 == 3);

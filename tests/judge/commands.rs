@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 use super::programs::{RIGHT, answering};
 
-/// The command line, in a directory of its own.
+/// Runs the program in its own directory.
 fn sdop(directory: &Path, arguments: &[&str]) -> (Output, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_sdop"))
         .args(arguments)
@@ -87,8 +87,8 @@ fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_tha
     assert!(sdop(directory.path(), &again).0.status.success());
 }
 
-/// What a culler of boxes that reports nothing is told, by the smallest case; the lines that a
-/// person reads.
+/// Judges a culler of boxes that reports nothing, and returns the lines that a person reads about
+/// the smallest case.
 fn silence(directory: &Path, more: &[&str]) -> (Output, String) {
     let silent = answering(RIGHT);
     let arguments = ["judge", &silent, "--timeout", "60", "--no-fresh"];

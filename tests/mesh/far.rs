@@ -85,8 +85,9 @@ fn soup(mesh: &TriangleMesh) -> Vec<[[f64; 3]; 3]> {
     mesh.triangles.iter().map(corners).collect()
 }
 
+/// A wall on a map keeps its form.
 #[test]
-fn a_wall_on_a_map_keeps_its_form() {
+fn far_wall_keeps_its_form() {
     let size = [5000.0, 200.0, 3000.0];
     let points = corners([500_000_100.0, 4_649_776_200.0, 0.0], size);
     let words: Vec<_> = points.iter().map(|p| p.map(|x| format!("{x}"))).collect();
@@ -181,8 +182,9 @@ fn moved_by(moved: f64) -> TriangleMesh {
     TriangleMesh::from_f64(&points, &BOX).unwrap()
 }
 
+/// A mesh is far from two to the minus twenty on.
 #[test]
-fn a_mesh_is_far_from_two_to_the_minus_twenty_on() {
+fn far_means_rounding_above_limit() {
     for moved in [1.01, 1.5, 40.0] {
         assert!(moved_by(moved).is_far(), "{moved}");
     }
@@ -210,8 +212,9 @@ fn cloud(random: &mut ChaCha8Rng) -> Vec<[f64; 3]> {
 
 const FAN: [[u32; 3]; 3] = [[0, 1, 2], [3, 4, 5], [6, 7, 8]];
 
+/// A written mesh is read as it is.
 #[test]
-fn a_written_mesh_is_read_as_it_is() {
+fn written_mesh_reads_back() {
     let mut random = ChaCha8Rng::seed_from_u64(9);
     let (mut far, mut rounded) = (0, 0);
     for _ in 0..4000 {

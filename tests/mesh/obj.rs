@@ -12,8 +12,9 @@ fn read_text(text: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
     )
 }
 
+/// Groups materials and texture seams leave one mesh.
 #[test]
-fn groups_materials_and_texture_seams_leave_one_mesh() {
+fn obj_groups_make_one_mesh() {
     let text = "# a comment\nmtllib none.mtl\no first\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0\nvt 0 0\nvt 1 1\n\
                 vn 0 0 1\nusemtl red\nf 1/1/1 2/2/1 3/1/1\ng second\nv 0 0 2 2\nusemtl blue\nf 1/2 3 -1\n";
     let mesh = read_text(text).unwrap();
@@ -25,8 +26,9 @@ fn groups_materials_and_texture_seams_leave_one_mesh() {
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
 }
 
+/// Polygons become fans and short faces degenerate triangles.
 #[test]
-fn polygons_become_fans_and_short_faces_degenerate_triangles() {
+fn polygons_become_fans() {
     let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nf 1 2 3 4 5\nf 1 2\nf 5\n";
     let mesh = read_text(text).unwrap();
     assert_eq!(
@@ -35,8 +37,9 @@ fn polygons_become_fans_and_short_faces_degenerate_triangles() {
     );
 }
 
+/// Bad files are refused with their line.
 #[test]
-fn bad_files_are_refused_with_their_line() {
+fn invalid_files_are_rejected() {
     let start = "v 0 0 0\nv 1 0 0\nvt 0 0\nv 0 1 0\n";
     let cases: [(String, &str); 12] = [
         (String::new(), "cube.obj: the mesh has no vertices"),
@@ -93,7 +96,7 @@ fn bad_files_are_refused_with_their_line() {
 
 /// Indices of normals are not read, those of vertices are compared without overflow.
 #[test]
-fn indices_near_the_end_of_their_type_do_no_harm() {
+fn extreme_indices_are_rejected() {
     let text = "v 0 0 0\nvn 0 0 1\nf 1//6148914691236517206 1 1\n";
     assert_eq!(read_text(text).unwrap().triangles, [[0, 0, 0]]);
     let text = "v 0 0 0\nf 9223372036854775807 -9223372036854775808 1\n";
@@ -103,8 +106,9 @@ fn indices_near_the_end_of_their_type_do_no_harm() {
     );
 }
 
+/// The path names the format and the mesh.
 #[test]
-fn the_path_names_the_format_and_the_mesh() {
+fn path_names_format_and_mesh() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("Pyramid.OBJ");
     std::fs::write(&path, "v 0 0 0\nf 1 1 1\n").unwrap();

@@ -55,8 +55,9 @@ fn lines_may_be_broken_anywhere() {
     assert_square("NOFF\n4 1 4\n0 0 0 0 0 1 2 0 0 0 0 1\n2 2 0 0 0 1 0 2 0 0 0 1\n4 0 1 2 3\n");
 }
 
+/// Bad off is refused with its line.
 #[test]
-fn bad_off_is_refused_with_its_line() {
+fn invalid_off_is_rejected() {
     let square = "OFF\n4 1 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2 3\n";
     let with = |from: &str, to: &str| square.replacen(from, to, 1);
     for (text, expected) in [

@@ -38,8 +38,9 @@ fn assert_oriented(mesh: &TriangleMesh) {
     }
 }
 
+/// Every shape is one closed oriented component of its genus.
 #[test]
-fn every_shape_is_one_closed_oriented_component_of_its_genus() {
+fn shapes_are_closed_and_oriented() {
     for name in ProceduralShape::NAMES {
         let mesh = default_mesh(name);
         let topology = Topology::of(&mesh);
@@ -150,8 +151,9 @@ fn sizes_are_kept() {
     assert_eq!(edges, [0.25, 0.5, 4.0]);
 }
 
+/// Sizes that make no shape are refused with what would do.
 #[test]
-fn sizes_that_make_no_shape_are_refused_with_what_would_do() {
+fn invalid_sizes_are_rejected() {
     type Case<'a> = (&'a str, &'a [(&'a str, f64)], &'a str, &'a str);
     let cases: [Case; 9] = [
         (
@@ -220,7 +222,7 @@ fn sizes_that_make_no_shape_are_refused_with_what_would_do() {
 /// The bits of all default shapes: they must not depend on the platform's libm, optimisation or
 /// hash order.
 #[test]
-fn shapes_are_equal_to_the_bit_everywhere() {
+fn shape_bits_are_fixed() {
     let mut bytes = Vec::new();
     for name in ProceduralShape::NAMES {
         let mesh = default_mesh(name);

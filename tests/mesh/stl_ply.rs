@@ -65,8 +65,9 @@ fn binary_stl(header: &[u8], triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
 const FIRST: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 const SECOND: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [-0.0, 1.0, 0.0]];
 
+/// Text stl is welded over all its solids.
 #[test]
-fn text_stl_is_welded_over_all_its_solids() {
+fn text_stl_welds_all_solids() {
     let one = format!("solid a b\n{}{}endsolid a b\n", first(), second());
     let nameless = format!("\nsolid\n\n{}{}endsolid", first(), second());
     let two = format!(
@@ -81,7 +82,7 @@ fn text_stl_is_welded_over_all_its_solids() {
 
 /// Many exporters start the header of a binary file with the word that marks a text file.
 #[test]
-fn the_length_tells_binary_stl_even_with_a_header_that_says_solid() {
+fn length_identifies_binary_stl() {
     for header in ["", "solid plane", "solid plane\n", "exported \u{7}"] {
         assert_eq!(
             stl(binary_stl(header.as_bytes(), &[FIRST, SECOND])).unwrap(),
@@ -90,8 +91,9 @@ fn the_length_tells_binary_stl_even_with_a_header_that_says_solid() {
     }
 }
 
+/// Bad stl is refused with its line.
 #[test]
-fn bad_stl_is_refused_with_its_line() {
+fn invalid_stl_is_rejected() {
     let long = [binary_stl(b"", &[FIRST]), vec![0]].concat();
     let short = binary_stl(b"", &[FIRST])[..133].to_vec();
     let nan = binary_stl(b"", &[FIRST, [[0.0; 3], [0.0, f32::NAN, 0.0], [0.0; 3]]]);
@@ -182,8 +184,9 @@ fn big_endian(bytes: &[u8]) -> Vec<u8> {
     bytes.iter().rev().copied().collect()
 }
 
+/// Text and both binary plys read alike.
 #[test]
-fn text_and_both_binary_plys_read_alike() {
+fn ply_encodings_read_alike() {
     let text = format!("{HEADER}{BODY}");
     assert_eq!(ply(&text).unwrap(), two_triangles());
     assert_eq!(ply(text.replace('\n', "\r\n")).unwrap(), two_triangles());
@@ -201,8 +204,9 @@ fn text_and_both_binary_plys_read_alike() {
     );
 }
 
+/// Ply polygons become fans and other elements are passed over.
 #[test]
-fn ply_polygons_become_fans_and_other_elements_are_passed_over() {
+fn ply_polygons_become_fans() {
     let header = HEADER.replace(
         "element face 2",
         "element edge 1\nproperty int a\nproperty list uint float b\nelement face 4",
@@ -218,8 +222,9 @@ fn ply_polygons_become_fans_and_other_elements_are_passed_over() {
     );
 }
 
+/// Bad ply is refused with its line.
 #[test]
-fn bad_ply_is_refused_with_its_line() {
+fn invalid_ply_is_rejected() {
     let text = |from: &str, to: &str| format!("{HEADER}{BODY}").replacen(from, to, 1).into_bytes();
     let binary = binary_ply("binary_little_endian", little_endian);
     let cut = binary[..binary.len() - 1].to_vec();

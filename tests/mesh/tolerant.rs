@@ -59,7 +59,7 @@ fn names_need_not_be_utf8() {
 
 /// Old Mac, Unix and Windows; a mark of UTF-8; blanks before, between and after words.
 #[test]
-fn line_ends_and_blanks_do_not_matter() {
+fn line_ends_do_not_matter() {
     let tri = "3 1\n0 0 0\n1 0 0\n0 1 0\n0 2 1\n";
     let formats = [
         (MeshFormat::Obj, OBJ, ONE),
@@ -95,8 +95,9 @@ fn marked_utf16_is_text() {
     }
 }
 
+/// Numbers are those of c and fortran.
 #[test]
-fn numbers_are_those_of_c_and_fortran() {
+fn c_and_fortran_numbers_parse() {
     let text = OBJ.replace("v 1 0 0", "v +1.d0 .5 5.E-1");
     let vertex = read(MeshFormat::Obj, text).unwrap().vertices[1];
     assert_eq!(vertex, [1.0, 0.5, 0.5]);
@@ -110,8 +111,9 @@ fn capitals_are_letters_too() {
     assert_triangles(MeshFormat::Ply, PLY.to_uppercase(), ONE);
 }
 
+/// Text stl begins and ends in many ways.
 #[test]
-fn text_stl_begins_and_ends_in_many_ways() {
+fn tolerant_text_stl() {
     let marked = format!("\u{feff}{STL}");
     let comment = format!("# made by hand\n; and again\n\n// and {STL}");
     let end = STL
@@ -146,8 +148,9 @@ fn normals_of_stl_may_be_anything() {
     }
 }
 
+/// A refused stl is called what it is.
 #[test]
-fn a_refused_stl_is_called_what_it_is() {
+fn rejected_stl_is_named_correctly() {
     let message = |bytes: &[u8]| read(MeshFormat::Stl, bytes).unwrap_err().to_string();
     let cut = STL.to_uppercase();
     let cut = &cut[..cut.len() / 2];
@@ -165,8 +168,9 @@ fn a_refused_stl_is_called_what_it_is() {
     );
 }
 
+/// Unused properties of ply may be anything.
 #[test]
-fn unused_properties_of_ply_may_be_anything() {
+fn unused_ply_properties_are_ignored() {
     for value in ["nan", "-nan(ind)", "1.#QNAN", "inf", "?"] {
         assert_triangles(
             MeshFormat::Ply,
@@ -178,7 +182,7 @@ fn unused_properties_of_ply_may_be_anything() {
 
 /// A comment without the word, and columns that the header does not name.
 #[test]
-fn text_ply_may_have_more_than_its_header() {
+fn extra_ply_words_are_ignored() {
     let unmarked = PLY.replacen("comment NAME", "Created by NAME", 1);
     assert_triangles(MeshFormat::Ply, unmarked, ONE);
     let longer = PLY
@@ -196,7 +200,7 @@ fn text_ply_may_have_more_than_its_header() {
 /// The numbers begin after the line feed if the header's other lines end with one, whatever is
 /// before it.
 #[test]
-fn binary_ply_begins_after_the_last_line_end() {
+fn binary_ply_begins_after_header() {
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
                   property float z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
     // The first byte of the data looks like a line end, too.
@@ -224,8 +228,9 @@ fn strips_of_ply_are_unrolled() {
     assert_triangles(MeshFormat::Ply, strips, &[[0, 1, 2], [2, 1, 3], [1, 3, 4]]);
 }
 
+/// Lines of obj are continued and commented.
 #[test]
-fn lines_of_obj_are_continued_and_commented() {
+fn obj_lines_continue_and_comment() {
     let text = "v 0 0 0 # first\nv 1 0 \\\n 0\nV 0 1 0\nf 1/1 2/x/y \\\r\n3//-7#\nf -1 -2 -3";
     assert_triangles(MeshFormat::Obj, text, &[[0, 1, 2], [2, 1, 0]]);
     let later = "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";

@@ -21,8 +21,9 @@ fn closed(topology: &Topology) -> Vec<bool> {
         .collect()
 }
 
+/// Components are joined by vertices and each is closed or open by itself.
 #[test]
-fn components_are_joined_by_vertices_and_each_is_closed_or_open_by_itself() {
+fn components_close_independently() {
     let second = TETRAHEDRON.map(|t| t.map(|i| i + 4));
     let both = topology(9, &[&second[..], &TETRAHEDRON[..3]].concat());
     assert_eq!(closed(&both), [false, true]);
@@ -41,8 +42,9 @@ fn components_are_joined_by_vertices_and_each_is_closed_or_open_by_itself() {
     assert_eq!(at_one_vertex.total().edges, 12);
 }
 
+/// An edge of three faces is not closed.
 #[test]
-fn an_edge_of_three_faces_is_not_closed() {
+fn three_faces_are_not_closed() {
     let fin = topology(5, &[&TETRAHEDRON[..], &[[0, 1, 4]]].concat());
     assert_eq!(closed(&fin), [false]);
     assert_eq!(
@@ -82,7 +84,7 @@ fn degenerate_triangles_are_no_faces() {
 
 /// What data/meshes/README.md says of each file.
 #[test]
-fn the_shipped_meshes_are_what_their_table_says() {
+fn shipped_meshes_match_their_table() {
     let expected = [
         // vertices, unused, triangles, components, closed, boundary edges
         ("spot", [2930, 0, 5856, 1, 1, 0]),

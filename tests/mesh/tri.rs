@@ -64,8 +64,9 @@ fn good_files() -> Vec<(&'static str, String)> {
     ]
 }
 
+/// Each dialect is detected and read.
 #[test]
-fn each_dialect_is_told_apart_and_read() {
+fn each_dialect_is_detected() {
     for (name, text) in good_files() {
         let windows = format!("\u{feff}{}\r\n\r\n", text.replace('\n', "\r\n"));
         for text in [text, windows] {
@@ -116,7 +117,7 @@ fn records_may_run_over_line_ends() {
 
 /// [text, the message's end, names that settle it with what they make of the first triangle].
 #[test]
-fn two_fitting_dialects_are_refused_by_name_and_the_name_decides() {
+fn ambiguous_dialect_needs_a_name() {
     let inner_indices = file("4 1", "", &["1 2 3"]);
     let counted = file("4 1", "", &["3 1 2 3"]);
     let numbers_and_components = file("4 2", "", &["1 3 2 2 3 1", "1 1"]);
@@ -180,8 +181,9 @@ fn bourke_and_labelled_of_equal_counts() {
     );
 }
 
+/// Bad files are refused with their line.
 #[test]
-fn bad_files_are_refused_with_their_line() {
+fn invalid_files_are_rejected() {
     let replace = |from: &str, to: &str| bourke().replacen(from, to, 1);
     let cases: Vec<(Vec<u8>, &str)> = vec![
         (b"".to_vec(), "data/a.tri: the mesh has no vertices"),
@@ -283,7 +285,7 @@ fn bad_files_are_refused_with_their_line() {
 
 /// Whole numbers everywhere make it hard: a cut-off file must not pass for one of another dialect.
 #[test]
-fn a_file_cut_off_anywhere_is_refused() {
+fn truncated_file_is_rejected() {
     let whole = |text: String| text.replace("1.5", "2").replace(".6 .5 .4", "1 1 1");
     let files = good_files()
         .into_iter()
@@ -298,8 +300,9 @@ fn a_file_cut_off_anywhere_is_refused() {
     }
 }
 
+/// A huge count is refused without reserving its memory.
 #[test]
-fn a_huge_count_is_refused_without_reserving_its_memory() {
+fn huge_count_reserves_no_memory() {
     let text = "18446744073709551615 18446744073709551615\n0 0 0\n0 0 0\n";
     assert_eq!(
         message(text),

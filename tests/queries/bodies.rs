@@ -101,8 +101,9 @@ fn add(sum: &mut [usize; 2], [required, found]: [usize; 2]) {
     *sum = [sum[0] + required, sum[1] + found];
 }
 
+/// Meshes that meet a ball are found.
 #[test]
-fn meshes_that_meet_a_ball_are_found() {
+fn ball_finds_meshes() {
     for (scene, mut random) in scenes(1) {
         let mut sum = [0; 2];
         for _ in 0..40 {
@@ -140,8 +141,9 @@ fn box_mesh(size: [f32; 3]) -> sdop_reference::Shape {
     mesh((0..8).map(corner).collect(), faces.into())
 }
 
+/// Meshes that meet a box are found.
 #[test]
-fn meshes_that_meet_a_box_are_found() {
+fn box_finds_meshes() {
     for (scene, mut random) in scenes(2) {
         let mut sum = [0; 2];
         for _ in 0..40 {
@@ -167,8 +169,9 @@ fn meshes_that_meet_a_box_are_found() {
     }
 }
 
+/// Meshes that meet a posed mesh are found.
 #[test]
-fn meshes_that_meet_a_posed_mesh_are_found() {
+fn posed_mesh_finds_meshes() {
     for (scene, mut random) in scenes(3) {
         let asked: Vec<QueryShape> = scene.shapes.iter().map(QueryShape::new).collect();
         let mut sum = [0; 2];
@@ -193,8 +196,9 @@ fn meshes_that_meet_a_posed_mesh_are_found() {
     }
 }
 
+/// Meshes along a line are found before they are met.
 #[test]
-fn meshes_along_a_line_are_found_before_they_are_met() {
+fn line_finds_meshes() {
     for (scene, mut random) in scenes(4) {
         let mut sum = [0; 2];
         for n in 0..60 {

@@ -45,8 +45,9 @@ fn point(boxes: &[Aabb], random: &mut Random) -> [f64; 3] {
     })
 }
 
+/// Boxes that meet a box are found exactly.
 #[test]
-fn boxes_that_meet_a_box_are_found_exactly() {
+fn box_finds_boxes_exactly() {
     let random = &mut Random(1);
     for kind in Kind::ALL {
         let all = boxes(kind, 300, random);
@@ -77,8 +78,9 @@ fn boxes_that_meet_a_box_are_found_exactly() {
     }
 }
 
+/// Boxes that meet a ball are found.
 #[test]
-fn boxes_that_meet_a_ball_are_found() {
+fn ball_finds_boxes() {
     let random = &mut Random(2);
     let (mut met, mut touched) = (0, 0);
     for kind in Kind::ALL {
@@ -112,8 +114,9 @@ fn boxes_that_meet_a_ball_are_found() {
     assert!(met > 1000, "{met} of them meet, {touched} nearly");
 }
 
+/// Boxes along a line are found in order.
 #[test]
-fn boxes_along_a_line_are_found_in_order() {
+fn line_finds_boxes_in_order() {
     let random = &mut Random(3);
     let mut met = 0;
     for kind in Kind::ALL {
@@ -121,7 +124,7 @@ fn boxes_along_a_line_are_found_in_order() {
         let (index, ids) = index_of(&all);
         for round in 0..40 {
             let [from, to] = [point(&all, random), point(&all, random)];
-            let direction: [f64; 3] = std::array::from_fn(|axis| f64::from(random.within(1.0)));
+            let direction: [f64; 3] = std::array::from_fn(|_| f64::from(random.within(1.0)));
             let (line, exact) = if round % 2 == 0 {
                 (Line::Segment { from, to }, ExactLine::segment(from, to))
             } else {
@@ -205,7 +208,7 @@ fn lines_that_graze_are_not_lost() {
 
 /// Balls that touch a corner in exact arithmetic, where the squares are no f64.
 #[test]
-fn balls_that_touch_to_the_bit_are_not_lost() {
+fn exactly_touching_balls_are_found() {
     let random = &mut Random(5);
     let aabb = Aabb::new([0.0; 3], [1.0; 3]);
     let (index, _) = index_of(&[aabb]);
@@ -230,8 +233,9 @@ fn balls_that_touch_to_the_bit_are_not_lost() {
     }
 }
 
+/// Lines from within and points are at zero.
 #[test]
-fn lines_from_within_and_points_are_at_zero() {
+fn inner_lines_start_at_zero() {
     let aabb = Aabb::new([0.0; 3], [1.0; 3]);
     let (index, ids) = index_of(&[aabb, Aabb::new([5.0; 3], [6.0; 3])]);
     for (from, to) in [
@@ -252,7 +256,7 @@ fn lines_from_within_and_points_are_at_zero() {
 
 /// The caller's judgement decides, and is asked about no box beyond the first.
 #[test]
-fn the_first_is_what_the_caller_judges() {
+fn caller_judges_the_first() {
     let row: Vec<Aabb> = (0..300)
         .map(|i| [3.0 * i as f32, 3.0 * i as f32 + 1.0])
         .map(|[from, to]| Aabb::new([from, 0.0, 0.0], [to, 1.0, 1.0]))
@@ -276,8 +280,9 @@ fn the_first_is_what_the_caller_judges() {
     assert_eq!(nothing.unwrap(), None);
 }
 
+/// Batches are the queries one by one.
 #[test]
-fn batches_are_the_queries_one_by_one() {
+fn batches_equal_single_queries() {
     let random = &mut Random(6);
     let all = boxes(Kind::Needles, 500, random);
     let mut world = BoxWorld::new();
@@ -318,8 +323,9 @@ fn batches_are_the_queries_one_by_one() {
     }
 }
 
+/// Queries outside of the contract are refused.
 #[test]
-fn queries_outside_of_the_contract_are_refused() {
+fn invalid_queries_are_rejected() {
     let (index, _) = index_of(&[Aabb::new([0.0; 3], [1.0; 3])]);
     let far = 2.0f64.powi(60).next_up();
     let ball = |centre, radius| QueryVolume::Ball { centre, radius };

@@ -109,9 +109,9 @@ fn an_index_follows_bodies() {
     }
 }
 
-/// What a number of a shape stands for may change while all bodies stay.
+/// The shape of a number may be replaced while all bodies stay.
 #[test]
-fn a_shape_that_is_replaced_is_seen() {
+fn replaced_shape_is_seen() {
     let mut world = World::new(vec![cube()]).unwrap();
     let body = world.insert(Body::default()).unwrap();
     let mut index = QueryIndex::new();

@@ -58,7 +58,7 @@ fn boxes_of_two_sets_meet_exactly() {
 /// Meshes in two worlds, near the origin and far from it, where the boxes of the two are seen from
 /// origins of their own.
 #[test]
-fn meshes_of_two_sets_that_meet_are_found() {
+fn sets_find_meeting_meshes() {
     let random = &mut Random(2);
     let shapes = shapes(DirectionSet::K18);
     let meshes: Vec<_> = shapes.iter().map(reference).collect();

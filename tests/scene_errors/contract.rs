@@ -6,8 +6,9 @@ use sdop_bench::effects::Velocities;
 
 use super::{SOUND, build, posed, refusal};
 
+/// A pose outside of the contract names its body.
 #[test]
-fn a_pose_outside_of_the_contract_names_its_body() {
+fn invalid_pose_names_its_body() {
     let limit = "coordinates are finite and at most 2^60 in size";
     let norm = "a quaternion (x, y, z, w) has a finite norm above zero";
     for (pose, problem, hint) in [
@@ -66,8 +67,9 @@ fn a_pose_outside_of_the_contract_names_its_body() {
     );
 }
 
+/// Bodies of a caller are checked at the border.
 #[test]
-fn bodies_of_a_caller_are_checked_at_the_border() {
+fn caller_bodies_are_checked() {
     let scene = build(SOUND).unwrap();
     let refusal = |change: fn(&mut Bodies)| {
         let mut bodies = scene.bodies.clone();

@@ -1,5 +1,4 @@
-//! What is wrong with a scene file is said with file, line, column and a way to mend it; nothing
-//! panics.
+//! Errors in scene files name file, line, column and a way to mend them; nothing panics.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod contract;

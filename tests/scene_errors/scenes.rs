@@ -5,8 +5,9 @@ use sdop_bench::scene::SceneFile;
 
 use super::{SOUND, changed, posed, refusal};
 
+/// Boxes that hold no bodies are refused.
 #[test]
-fn boxes_that_hold_no_bodies_are_refused() {
+fn too_small_boxes_are_rejected() {
     assert_eq!(
         changed("side = 20", "side = 1.5"),
         "a.toml:3:1: a box of side 1.5 is too small for bodies of radius 1.0000001 | the side must be at least 2.0000002, for room \
@@ -48,8 +49,9 @@ fn boxes_that_hold_no_bodies_are_refused() {
     );
 }
 
+/// Missing and broken meshes are pointed at.
 #[test]
-fn missing_and_broken_meshes_are_pointed_at() {
+fn broken_meshes_are_located() {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("cube.tri"), "1 1\nnonsense").unwrap();
     let refusal = |mesh: &str| {
@@ -82,8 +84,9 @@ fn missing_and_broken_meshes_are_pointed_at() {
     );
 }
 
+/// Effects and culling that the scene cannot have are refused.
 #[test]
-fn effects_and_culling_that_the_scene_cannot_have_are_refused() {
+fn impossible_settings_are_located() {
     let with = |table: &str| refusal(&format!("{}{table}", posed("[0, 0, 0, 1, 5, 0, 0]")));
     assert_eq!(
         with("[effects]\nwalls = \"specular\"\n"),

@@ -2,8 +2,9 @@
 
 use super::{build, changed, posed, refusal};
 
+/// Unknown keys and names suggest the nearest.
 #[test]
-fn unknown_keys_and_names_suggest_the_nearest() {
+fn unknown_keys_suggest_the_nearest() {
     assert_eq!(
         changed("radius", "raduis"),
         "a.toml:8:1: unknown field `raduis`, expected one of `mesh`, `shape`, `sizes`, `scale`, `count`, `poses`, `radius`, \
@@ -35,8 +36,9 @@ fn unknown_keys_and_names_suggest_the_nearest() {
     );
 }
 
+/// Wrong types and impossible values are pointed at.
 #[test]
-fn wrong_types_and_impossible_values_are_pointed_at() {
+fn invalid_values_are_located() {
     assert_eq!(
         changed("frames = 2", "frames = 0"),
         "a.toml:2:10: invalid value: integer `0`, expected a nonzero u32"
@@ -83,8 +85,9 @@ fn wrong_types_and_impossible_values_are_pointed_at() {
     );
 }
 
+/// Text that is no toml is pointed at.
 #[test]
-fn text_that_is_no_toml_is_pointed_at() {
+fn invalid_toml_is_located() {
     assert!(changed("frames = 2", "frames = ").starts_with("a.toml:2:10: "));
     assert!(refusal("").starts_with("a.toml:1:1: missing field"));
     assert!(refusal("\u{feff}\0ö = [").starts_with("a.toml:1:"));
@@ -134,8 +137,9 @@ fn exclusive_keys_are_refused() {
     );
 }
 
+/// Floats read as the nearest f32 of their text.
 #[test]
-fn floats_read_as_the_nearest_f32_of_their_text() {
+fn floats_round_once() {
     // Just above the midpoint of 1 and the next f32: as f64 it is the midpoint itself, and ties to
     // even give 1.
     let text = "1.00000005960464477539062500000000000000001";

@@ -73,8 +73,9 @@ proptest! {
         prop_assert!(ball_contains(&ball, &points));
     }
 
+    /// The order of vertices does not matter.
     #[test]
-    fn the_order_of_vertices_does_not_matter(points in coordinates(), shift in 0..8_usize) {
+    fn vertex_order_does_not_matter(points in coordinates(), shift in 0..8_usize) {
         let mut turned = points.clone();
         turned.rotate_left(shift % points.len());
         let (a, b) = (Ball::smallest(&points), Ball::smallest(&turned));

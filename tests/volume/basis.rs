@@ -54,8 +54,9 @@ proptest! {
     }
 }
 
+/// Quaternions out of range have no basis.
 #[test]
-fn quaternions_out_of_range_have_no_basis() {
+fn large_quaternions_have_no_basis() {
     assert_eq!(Basis::from_integer_quaternion([0; 4]), None);
     assert_eq!(Basis::from_integer_quaternion([2048, 1, 0, 0]), None);
     assert_eq!(Basis::from_integer_quaternion([i32::MIN, 0, 0, 1]), None);

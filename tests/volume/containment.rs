@@ -78,8 +78,9 @@ proptest! {
     }
 }
 
+/// Meshes at the limit and of subnormal size are contained.
 #[test]
-fn meshes_at_the_limit_and_of_subnormal_size_are_contained() {
+fn extreme_meshes_are_contained() {
     for size in [LIMIT / 2.0, 1e-38, 1e-44, f32::from_bits(2)] {
         let corners = box_corners(Vec3::splat(size));
         check(&corners, None).unwrap();

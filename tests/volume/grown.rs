@@ -30,8 +30,9 @@ fn is_far_enough(before: f32, after: f32, margin: f32, length_squared: &IBig) ->
     after >= before && ((&moved * &moved) << 298) >= &margin * &margin * length_squared
 }
 
+/// Slabs grow by the margin to the ulp.
 #[test]
-fn slabs_grow_by_the_margin_to_the_ulp() {
+fn slabs_grow_exactly_by_margin() {
     let mut rng = ChaCha8Rng::seed_from_u64(12);
     let (mut ends, mut close) = (0, 0);
     for (directions, axes) in variants() {
@@ -73,7 +74,7 @@ fn slabs_grow_by_the_margin_to_the_ulp() {
 /// Where the margin nearly cancels an end, the end's own ulps are finer than the roundings of f64
 /// that the margin takes.
 #[test]
-fn an_end_that_the_margin_nearly_cancels_moves_far_enough() {
+fn cancelling_margin_moves_far_enough() {
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
     let spec = ShapeSpec {

@@ -92,8 +92,9 @@ fn a_shape_keeps_what_it_applied() {
     }
 }
 
+/// Directions are exchanged as if built anew.
 #[test]
-fn directions_are_exchanged_as_if_built_anew() {
+fn exchanged_directions_equal_a_rebuild() {
     for &directions in DirectionSet::ALL {
         let built = ShapeSpec {
             directions,

@@ -16,8 +16,9 @@ fn near(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * b.abs()
 }
 
+/// The dops of an octahedron are known solids.
 #[test]
-fn the_dops_of_an_octahedron_are_known_solids() {
+fn octahedron_dops_are_known_solids() {
     let octahedron = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
     // Box, the octahedron itself, rhombic dodecahedron, the octahedron itself.
     for (&directions, expected) in DirectionSet::ALL
@@ -57,8 +58,9 @@ fn flat_volumes_are_zero() {
     }
 }
 
+/// A ball is alike from all sides.
 #[test]
-fn a_ball_is_alike_from_all_sides() {
+fn ball_is_symmetric() {
     let mesh = ProceduralShape::default_of("icosphere")
         .unwrap()
         .build()
@@ -68,8 +70,9 @@ fn a_ball_is_alike_from_all_sides() {
     assert!(near(cube / ball, 6.0 / PI, 0.01), "{}", cube / ball);
 }
 
+/// A turning cube needs its mean box.
 #[test]
-fn a_turning_cube_needs_its_mean_box() {
+fn turning_cube_needs_mean_box() {
     // 3.4087 ± .0012: an average over 4·10⁵ orthonormalised Gaussian frames, made apart from this
     // code.
     let cube = mean_world_aligned_volume(&box_corners(Vec3::ONE), DirectionSet::K6, 4000);

@@ -38,8 +38,9 @@ fn sizes() -> Vec<Shape> {
     shapes
 }
 
+/// A world whose few bodies come and go loses no pair.
 #[test]
-fn a_world_whose_few_bodies_come_and_go_loses_no_pair() {
+fn few_exchanges_lose_no_pair() {
     let shapes = sizes();
     let small = shapes.len() as u32 - 1;
     for strategy in [Strategy::Sphere, Strategy::SDopSequential, Strategy::KDop] {

@@ -121,8 +121,9 @@ fn far_boxes_that_touch_are_reported() {
     assert!(moved > 30, "{moved}");
 }
 
+/// Poses in f32 refuse a far shape.
 #[test]
-fn poses_in_f32_refuse_a_far_shape() {
+fn f32_poses_reject_far_shape() {
     let mesh = tetrahedron([1.0e9, 0.0, 0.0]);
     let far = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
     assert_eq!((far.offset, far.pose_offset), (mesh.offset, mesh.offset));
@@ -182,7 +183,7 @@ fn decimal_meshes_are_told_the_remedy() {
 
 /// The radius scales about the file's own origin, however far that is.
 #[test]
-fn a_scaled_far_mesh_keeps_its_origin() {
+fn scaled_far_mesh_keeps_origin() {
     let mesh = tetrahedron([1.0e6 + 0.1234, 0.1, 0.0]);
     let plain = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
     let spec = ShapeSpec {

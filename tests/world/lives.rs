@@ -7,8 +7,9 @@ use sdop::world::{Body, BodyId, Groups, Motion, PairLookup, World, WorldError};
 
 use super::shapes;
 
+/// What breaks the contract is refused and changes nothing.
 #[test]
-fn what_breaks_the_contract_is_refused_and_changes_nothing() {
+fn invalid_input_changes_nothing() {
     let mut world = World::with(
         shapes(),
         &Culler::builder().settings(&CullSettings::all_pairs()),
@@ -106,8 +107,9 @@ fn ids_are_never_given_again() {
     assert!(d != b && world.body(b).is_err() && world.slots() == 3);
 }
 
+/// An id consists of a slot and a generation.
 #[test]
-fn ids_are_told_by_slot_and_generation() {
+fn ids_have_slot_and_generation() {
     let mut world = World::with(
         shapes(),
         &Culler::builder().settings(&CullSettings::all_pairs()),
@@ -122,8 +124,9 @@ fn ids_are_told_by_slot_and_generation() {
     assert_eq!(told, ["1.0", "2.0", "2.1"]);
 }
 
+/// A body at a pose moves and collides with all.
 #[test]
-fn a_body_at_a_pose_moves_and_collides_with_all() {
+fn default_body_is_dynamic() {
     let (turn, place) = ([0.5, -0.5, 0.5, 0.5], [1.0, -2.0, 3.0]);
     let body = Body {
         shape: 2,
@@ -137,8 +140,9 @@ fn a_body_at_a_pose_moves_and_collides_with_all() {
     assert_ne!(Body::at(2, turn, place).fixed(), body);
 }
 
+/// A world counts its bodies and what its culler does.
 #[test]
-fn a_world_counts_its_bodies_and_what_its_culler_does() {
+fn world_has_counters() {
     let way = CullSettings::all_pairs();
     let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
     assert_eq!((world.is_empty(), world.len()), (true, 0));
@@ -194,8 +198,9 @@ fn interest_ends_with_its_body() {
     assert_eq!(world.set_interest(&[id]), Err(WorldError::Gone(id)));
 }
 
+/// A body that collides with all joins others that do not.
 #[test]
-fn a_body_that_collides_with_all_joins_others_that_do_not() {
+fn ungrouped_body_joins_grouped() {
     let mut world = World::with(
         shapes(),
         &Culler::builder().settings(&CullSettings::all_pairs()),
@@ -216,8 +221,9 @@ fn a_body_that_collides_with_all_joins_others_that_do_not() {
     assert!(world.events().begun().eq([[a, all], [b, all]]));
 }
 
+/// A body that becomes static or is moved as such counts as it is now.
 #[test]
-fn a_body_that_becomes_static_or_is_moved_as_such_counts_as_it_is_now() {
+fn static_changes_take_effect() {
     for way in super::ways().into_iter().step_by(7) {
         let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
         let [here, away] = [0.5, 30.0].map(|x| Body {
@@ -254,8 +260,9 @@ fn a_body_that_becomes_static_or_is_moved_as_such_counts_as_it_is_now() {
     }
 }
 
+/// A body brings its own groups to a slot that another has left.
 #[test]
-fn a_body_brings_its_own_groups_to_a_slot_that_another_has_left() {
+fn reused_slot_has_new_groups() {
     let way = CullSettings::all_pairs();
     let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
     let alone = Body {
@@ -288,8 +295,9 @@ fn a_body_brings_its_own_groups_to_a_slot_that_another_has_left() {
     assert_eq!(world.pairs().len(), 0, "whoever takes its place does not");
 }
 
+/// A shape added late is as good as one from the start.
 #[test]
-fn a_shape_added_late_is_as_good_as_one_from_the_start() {
+fn late_shape_equals_early() {
     // Some bodies have margins, and so take models of their own before the other shapes come.
     let body = |i: u8, shape: u32| Body {
         margin: 0.25 * f32::from(i % 3),
@@ -333,8 +341,9 @@ fn a_shape_added_late_is_as_good_as_one_from_the_start() {
     }
 }
 
+/// The first shape of a world sets the directions.
 #[test]
-fn the_first_shape_of_a_world_sets_the_directions() {
+fn first_shape_sets_directions() {
     for way in super::ways() {
         let mut world = World::with(Vec::new(), &Culler::builder().settings(&way)).unwrap();
         let shapes = shapes()
@@ -354,7 +363,7 @@ fn the_first_shape_of_a_world_sets_the_directions() {
 
 /// Pairs come, stay and go; the look-up knows them in either order, and no other.
 #[test]
-fn pairs_are_looked_up_and_told_apart_from_those_of_the_frame_before() {
+fn lookup_has_current_pairs() {
     let culler = Culler::builder().settings(&CullSettings::all_pairs());
     let mut world = World::with(shapes(), &culler).unwrap();
     let at = |x: f64| [x, 0.0, 0.0];
@@ -363,7 +372,7 @@ fn pairs_are_looked_up_and_told_apart_from_those_of_the_frame_before() {
         .collect();
     let mut before = Vec::new();
     let mut lookup = PairLookup::default();
-    // Which of the places 20 apart each body stands at.
+    // The number of each body's place; places are 20 apart.
     for places in [
         [0, 1, 2, 0, 1, 2, 0, 1, 2],
         [0, 1, 1, 1, 1, 3, 4, 4, 2],
@@ -401,7 +410,7 @@ fn pairs_are_looked_up_and_told_apart_from_those_of_the_frame_before() {
 
 /// Under every way to cull: portions hold the pairs of the list, and a limit is kept.
 #[test]
-fn crowds_come_in_portions_or_up_to_a_limit() {
+fn crowds_in_portions_or_limited() {
     for way in super::ways() {
         let culler = Culler::builder().settings(&way);
         let mut world = World::with(shapes(), &culler).unwrap();
@@ -435,7 +444,7 @@ fn crowds_come_in_portions_or_up_to_a_limit() {
 /// What bodies have can't be removed; what they had is given again, and has its new form at once,
 /// for those at rest too.
 #[test]
-fn shapes_go_when_no_body_has_them() {
+fn unused_shapes_are_removed() {
     for way in super::ways() {
         let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
         let [wide, narrow] = [9.0, 0.5].map(|x| {

@@ -133,8 +133,9 @@ fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) 
         .collect()
 }
 
+/// A world reports what a culler made for the moment would.
 #[test]
-fn a_world_reports_what_a_culler_made_for_the_moment_would() {
+fn world_equals_new_culler() {
     let shapes = shapes();
     for way in ways() {
         let deterministic = way.strategy != Strategy::SDopTimeCritical;
@@ -184,7 +185,7 @@ fn a_world_reports_what_a_culler_made_for_the_moment_would() {
     }
 }
 
-/// Bodies teleport and change, and come and go in some frames; both worlds are told the same.
+/// Moves, changes, inserts and removes bodies in some frames, in both worlds alike.
 fn change(
     random: &mut Random,
     bodies: &mut HashMap<BodyId, Body>,
@@ -233,7 +234,7 @@ fn change(
 
 /// Two unit cubes, one next to the other with a gap, under every strategy.
 #[test]
-fn margins_reach_as_far_as_they_say_and_little_farther() {
+fn margins_have_stated_reach() {
     let form = ProceduralShape::Box {
         x: 2.0,
         y: 2.0,
@@ -283,7 +284,7 @@ fn margins_reach_as_far_as_they_say_and_little_farther() {
 /// Spheres of f64 translations far out that touch exactly, by Pythagorean quadruples: sizes of
 /// thousands, 10⁹ away, where f32 steps by 64.
 #[test]
-fn touching_spheres_meet_wherever_f64_puts_them() {
+fn touching_spheres_meet_in_f64() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(3));
     let form = ProceduralShape::Icosphere {
         radius: 1.0,
@@ -349,9 +350,9 @@ fn touching_spheres_meet_wherever_f64_puts_them() {
     assert!(rounded > tried / 2, "{rounded}: f32 alone would do");
 }
 
-/// What doesn't move stands elsewhere, as seen from an origin that does.
+/// A static body has other local coordinates after the origin has moved.
 #[test]
-fn a_static_body_is_met_when_the_origin_comes_to_it() {
+fn static_body_follows_origin() {
     for way in ways().into_iter().step_by(7) {
         let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
         let there = |x: f64| Body {

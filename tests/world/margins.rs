@@ -53,7 +53,7 @@ fn farthest(n: u64, reach: f64) -> f64 {
     steps as f64 / step
 }
 
-/// Below each stands a class of margins, to which the culler rounds up: here by one ulp.
+/// Just below each is a class of margins, to which the culler rounds up: here by one ulp.
 const CLASSES: [f32; 3] = [0.5, 0.171875, 1.75];
 
 /// Whether a direction set has a slab across the contact in `n` coordinates.
@@ -62,8 +62,9 @@ fn sees(k: DirectionSet, n: usize) -> bool {
     k.coefficients().iter().any(has)
 }
 
+/// Bodies that touch to the ulp once grown are reported.
 #[test]
-fn bodies_that_touch_to_the_ulp_once_grown_are_reported() {
+fn grown_bodies_touch_to_the_ulp() {
     let mut too_far = 0;
     for (k, axes) in variants() {
         let shape = cube(k, axes);
@@ -111,7 +112,7 @@ fn bodies_that_touch_to_the_ulp_once_grown_are_reported() {
 /// them away from the other by all but its last half step in every coordinate: 2²⁵ away, 2 each. A
 /// giant at the origin is wide enough that all are one region.
 #[test]
-fn touching_bodies_are_reported_though_rounding_moves_them_apart() {
+fn rounded_touching_bodies_are_reported() {
     let first = 2_f64.powi(25) + 2.0;
     assert_eq!(
         [first, first + 2.0].map(|x| x as f32 - first as f32),
@@ -155,8 +156,9 @@ fn touching_bodies_are_reported_though_rounding_moves_them_apart() {
     }
 }
 
+/// A margin that changes counts from the next cull on.
 #[test]
-fn a_margin_that_changes_counts_from_the_next_cull_on() {
+fn changed_margin_counts_next_cull() {
     let (k, axes) = (DirectionSet::K18, Axes::Principal);
     let shape = cube(k, axes);
     // Too far for the spheres, 2·√3.

@@ -270,7 +270,7 @@ fn through_text(world: &World) -> WorldSnapshot {
 /// Clones, worlds restored by another finder, worlds that have given their memory back, and those
 /// that were culled otherwise.
 #[test]
-fn few_movers_survive_whatever_is_done_to_their_world() {
+fn few_movers_in_random_histories() {
     for (seed, places) in (200..).zip(PLACES) {
         for strategy in [
             Strategy::SDopBatch,
@@ -326,8 +326,9 @@ fn moved(world: &mut World, id: BodyId, x: f64) {
         .unwrap();
 }
 
+/// Pairs at rest stay until a body leaves.
 #[test]
-fn pairs_at_rest_stay_until_a_body_leaves() {
+fn resting_pairs_end_with_a_body() {
     let (mut world, ids) = row(100, Motion::Dynamic, &CullSettings::default());
     for &id in &ids {
         world.set_motion(id, Motion::Resting).unwrap();
@@ -420,7 +421,7 @@ fn an_origin_comes_with_the_first_body_that_needs_it() {
 /// Whatever a verdict depends on is changed alone, of bodies that stay where they are. A needle is
 /// as wide as half a unit along the row.
 #[test]
-fn a_verdict_changes_with_each_of_its_reasons() {
+fn each_input_changes_verdict() {
     let (mut world, ids) = row(100, Motion::Resting, &CullSettings::default());
     let mut set = |change: fn(&mut Body), pairs: usize| {
         let mut body = world.body(ids[30]).unwrap();
@@ -489,7 +490,7 @@ fn interest_alone_changes_pairs() {
 /// A budget of one test refines the first pair. When its first body leaves, the next pair is
 /// refined, although none of its bodies has changed; when it comes back, it isn't any more.
 #[test]
-fn a_pair_that_a_budget_left_out_is_not_kept_as_refined() {
+fn unrefined_pair_is_not_kept() {
     let way = CullSettings {
         strategy: Strategy::SDopTimeCritical,
         budget: Some(Budget::Tests(1)),

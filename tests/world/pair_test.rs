@@ -9,8 +9,9 @@ use super::{Random, shapes};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
+/// A pair has the same verdict as in a world of two bodies.
 #[test]
-fn a_pair_is_judged_as_in_a_world_of_its_own() {
+fn pair_test_equals_world() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(11));
     let mut seen = [0; 2];
     for &k in DirectionSet::ALL {

@@ -77,7 +77,7 @@ fn carry_out(world: &mut World, call: &Call) -> Answer {
     }
 }
 
-/// The calls of the next frame of a world that stands so.
+/// The calls of the next frame of a world in this state.
 fn drawn(random: &mut Random, world: &World, moves_only: bool) -> Vec<Call> {
     let mut calls = Vec::new();
     let shapes: Vec<u32> = world.shapes().collect();
@@ -249,7 +249,7 @@ fn restored_worlds_go_on_alike() {
 /// The same bodies, put into new worlds in one order, are reported in one order, whatever the
 /// finder and the past.
 #[test]
-fn finders_and_threads_report_in_one_order() {
+fn order_is_independent_of_finder() {
     for settings in strategies() {
         let builders = builders(&settings);
         let make = |builder| World::with(shapes(), builder).unwrap();
@@ -303,7 +303,7 @@ fn budgeted() -> CullSettings {
 /// Each number of a snapshot's text in turn becomes another, each list shorter or longer: an error,
 /// or a world that culls.
 #[test]
-fn damaged_snapshots_are_refused_and_change_nothing() {
+fn damaged_snapshots_are_rejected() {
     let world = lived(&budgeted());
     let whole = serde_json::to_value(world.snapshot()).unwrap();
     assert!(!whole["answers"].as_array().unwrap().is_empty());

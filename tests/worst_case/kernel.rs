@@ -4,7 +4,7 @@
 use glam::Vec3;
 use sdop::mesh::TriangleMesh;
 use sdop::overlap::ordop::edges;
-use sdop::overlap::ordop::slabs::Slabs;
+use sdop::overlap::ordop::slabs::LaneSlabs;
 use sdop::overlap::ordop::support::support;
 use sdop::overlap::ordop::table::members_of;
 use sdop::overlap::ordop::{OrDopColumns, SlabTables};
@@ -41,7 +41,7 @@ impl Kernel for Equals<'_> {
     fn run<L: Lanes>(self, l: L) -> bool {
         let e = self.e.map(|x| l.splat(x));
         let ends = self.ends.map(|ends| ends.map(|end| l.splat(end)));
-        let ends = Slabs { ends };
+        let ends = LaneSlabs { ends };
         let found = match self.k {
             6 => support::<L, 6>(l, &ends, e),
             14 => support::<L, 14>(l, &ends, e),

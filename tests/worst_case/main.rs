@@ -19,8 +19,9 @@ use sdop::simd::Tier;
 /// Steps of each short search.
 const EVALUATIONS: u64 = 400_000;
 
+/// No search exceeds its bound and every search has teeth.
 #[test]
-fn no_search_exceeds_its_bound_and_every_search_has_teeth() {
+fn searches_stay_below_bounds() {
     let mut failures = Vec::new();
     for bound in bounds::all() {
         let found = (bound.search)(1, EVALUATIONS);
@@ -53,8 +54,9 @@ fn a_lower_floor_or_factor_misses() {
     assert!((1..4).any(|seed| spheres::touching_with(seed, EVALUATIONS, naive) > 0.0));
 }
 
+/// The searches attack the cullers own arithmetic.
 #[test]
-fn the_searches_attack_the_cullers_own_arithmetic() {
+fn searches_use_the_cullers_arithmetic() {
     kernel::supports_agree::<false>(Tier::SCALAR);
     kernel::supports_agree::<true>(Tier::SCALAR_FLUSH);
     kernel::decisions_agree::<false>(Tier::detect());

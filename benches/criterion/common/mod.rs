@@ -1,4 +1,5 @@
-//! Seeded scenes and the stage clock that every bench shares with the calibration of `sdop cost`.
+//! Seeded scenes and timing of single stages, shared by all benches and the calibration of
+//! `sdop cost`.
 
 #![allow(dead_code, reason = "each bench uses its own part")]
 #![allow(clippy::unwrap_used, reason = "a bench without its scene can't go on")]
@@ -17,10 +18,10 @@ use sdop_bench::cost::design;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::simulate::Trajectory;
 
-/// Frames that a bench goes round in.
+/// Frames that a bench repeats in a cycle.
 pub const FRAMES: usize = 32;
 
-/// The strategies of one volume alone, whose stages are the volume's own.
+/// The strategies with a single volume, whose stages belong to that volume.
 pub fn one_volume() -> impl Iterator<Item = (Strategy, TestedVolume)> {
     Strategy::ALL.iter().filter_map(|&strategy| {
         let mut volumes = strategy.scheme().volumes();
@@ -61,8 +62,8 @@ pub fn frames(scene: &Scene) -> Vec<Bodies> {
     frames.collect::<Result<_, _>>().unwrap()
 }
 
-/// Times one stage of a strategy, frame after frame of the scene. Throughput is the stage's count a
-/// frame, so that the time an element is the stage's price if it had only one.
+/// Times one stage of a strategy, frame after frame of the scene. Throughput is the stage's count
+/// per frame, so that the time per element is the stage's price if it has only one.
 pub fn stage(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: BenchmarkId,

@@ -1,5 +1,5 @@
-//! Bodies for pair finders: 1.5 sphere partners each, which move a tenth of the smallest radius per
-//! frame unless said.
+//! Bodies for benches of pair finders, with 1.5 sphere partners each. They move a tenth of the
+//! smallest radius per frame unless noted.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -9,13 +9,13 @@ use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
-/// Frames before anything is timed: the order of places has settled, and buffers have grown.
+/// Warm-up frames, after which the order of places has settled and buffers have grown.
 const WARM_UP: usize = 64;
 
-/// Where bodies are, and how their radii spread.
+/// How bodies and their radii are distributed.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
-    /// Evenly, all of one radius.
+    /// Uniformly, all of one radius.
     Uniform,
     /// On a plane.
     Plane,
@@ -27,10 +27,10 @@ pub enum Kind {
     Wild,
 }
 
-/// Bodies that sway about their homes.
+/// Bodies that move to and fro about fixed positions.
 pub struct Swarm {
     shapes: Vec<Shape>,
-    /// Where they are by now.
+    /// Their present poses.
     pub bodies: Bodies,
     step: Vec<[f32; 3]>,
     frame: usize,
@@ -42,8 +42,7 @@ impl Swarm {
         Self::moving(kind, n, 0.1)
     }
 
-    /// `n` bodies of a kind whose coordinates change by up to so many of the smallest radii per
-    /// frame.
+    /// `n` bodies of a kind whose coordinates change by up to `most` smallest radii per frame.
     pub fn moving(kind: Kind, n: usize, most: f32) -> Self {
         let octaves = match kind {
             Kind::Mixed => 4,
@@ -103,7 +102,7 @@ impl Swarm {
         }
     }
 
-    /// One more frame: sixteen to, sixteen fro.
+    /// Advances one frame: sixteen frames in one direction, then sixteen back.
     pub fn sway(&mut self) {
         let sign = if (self.frame / 16).is_multiple_of(2) {
             1.0
@@ -118,12 +117,12 @@ impl Swarm {
         self.frame += 1;
     }
 
-    /// A culler of the bodies' spheres that is used to them.
+    /// A culler of the bodies' spheres that has culled the warm-up frames.
     pub fn culler(&mut self, finder: Finder, threads: usize) -> Culler {
         self.culler_by(Strategy::Sphere, finder, threads)
     }
 
-    /// The same by another strategy.
+    /// As [`Self::culler`], with another strategy.
     pub fn culler_by(&mut self, strategy: Strategy, finder: Finder, threads: usize) -> Culler {
         let settings = CullSettings {
             strategy,

@@ -1,4 +1,4 @@
-//! What every engine is handed: world-aligned boxes, as the lower and upper end on each axis.
+//! The input of every engine: world-aligned boxes, as lower and upper ends on each axis.
 //!
 //! Intervals are closed: boxes that touch are a pair. The ends are fl(t − r) and fl(t + r), the
 //! same bits for everyone.
@@ -7,7 +7,7 @@ use sdop::Aabb;
 use sdop::bodies::Bodies;
 use sdop::volume::Shape;
 
-/// The slabs [lo, hi] of a box on the world axes.
+/// A world-aligned box as [lo, hi] on each axis.
 pub type Slabs = [[f32; 2]; 3];
 
 /// One frame of a scene.
@@ -15,8 +15,7 @@ pub type Slabs = [[f32; 2]; 3];
 pub struct Frame {
     /// The box of every body.
     pub boxes: Vec<Slabs>,
-    /// The same as corners, for engines that take those; each is handed the boxes in the order that
-    /// it wants.
+    /// The boxes as corners, for engines that take those.
     pub corners: Vec<Aabb>,
     /// The radius of every body.
     pub radii: Vec<f32>,
@@ -33,14 +32,19 @@ impl Frame {
         self.set_boxes(boxes);
     }
 
-    /// Takes over the poses; boxes are [`LONG`] in place of balls, the sides in an order that the
-    /// body's shape tells.
+    /// Copies the poses and makes boxes with [`LONG_SIDES`] instead of balls; the body's shape
+    /// number selects the order of the sides.
     pub fn fill_long(&mut self, bodies: &Bodies, shapes: &[Shape]) {
         self.take(bodies, shapes);
         let boxes = bodies.translation.iter().zip(&bodies.shape);
         let boxes = boxes.map(|(t, &shape)| {
             let order = ORDERS[shape as usize % ORDERS.len()];
-            [0, 1, 2].map(|axis| [t[axis] - LONG[order[axis]], t[axis] + LONG[order[axis]]])
+            [0, 1, 2].map(|axis| {
+                [
+                    t[axis] - LONG_SIDES[order[axis]],
+                    t[axis] + LONG_SIDES[order[axis]],
+                ]
+            })
         });
         self.set_boxes(boxes.collect());
     }
@@ -61,7 +65,7 @@ impl Frame {
 }
 
 /// Half sides of a long box, 1 : 8 : 64, with the volume of a cube of half side 1.
-pub const LONG: [f32; 3] = [0.125, 1.0, 8.0];
+pub const LONG_SIDES: [f32; 3] = [0.125, 1.0, 8.0];
 
 /// All orders of three sides.
 pub const ORDERS: [[usize; 3]; 6] = [
@@ -83,7 +87,7 @@ pub fn upper(slabs: &Slabs) -> [f32; 3] {
     slabs.map(|[_, hi]| hi)
 }
 
-/// Whether closed boxes meet. Without a branch: engines that ask have mostly sifted before.
+/// Whether closed boxes meet. Without a branch, because callers have already rejected most pairs.
 #[inline(always)]
 pub fn meet(a: &Slabs, b: &Slabs) -> bool {
     let on = |axis: usize| (a[axis][0] <= b[axis][1]) & (b[axis][0] <= a[axis][1]);

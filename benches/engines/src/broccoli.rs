@@ -1,5 +1,5 @@
-//! broccoli: a k-d tree of sweeps in two dimensions, built anew each frame; the third is compared
-//! pair by pair.
+//! broccoli: a k-d tree of sweeps in two dimensions, built again in each frame; the third dimension
+//! is compared pair by pair.
 //!
 //! Its intervals are closed, as ours.
 

@@ -1,4 +1,4 @@
-//! The pairs of engines that say only what began and what ended.
+//! The pairs of engines that only report which pairs began and ended.
 
 use std::collections::HashMap;
 
@@ -29,8 +29,9 @@ impl Changes {
 mod tests {
     use super::*;
 
+    /// What ended is gone and what began twice shows.
     #[test]
-    fn what_ended_is_gone_and_what_began_twice_shows() {
+    fn ended_pairs_leave_the_sum() {
         let mut changes = Changes::default();
         for (pair, begins) in [
             ([2, 1], true),

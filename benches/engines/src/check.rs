@@ -1,4 +1,4 @@
-//! Every engine's pairs against the oracle's, before anything is timed and once more at the end.
+//! Comparing every engine's pairs with the oracle's, before anything is timed and again at the end.
 
 use miette::Diagnostic;
 use sdop::rounding::U;
@@ -8,15 +8,15 @@ use crate::boxes::{Frame, meet};
 use crate::entry::{Entry, Work};
 use crate::oracle;
 
-/// What the pairs of a frame must be.
-pub struct Truth<'a> {
+/// The pairs that a frame must have.
+pub struct ExpectedPairs<'a> {
     frame: &'a Frame,
     number: usize,
     boxes: Vec<[u32; 2]>,
     spheres: Vec<[u32; 2]>,
 }
 
-/// An engine's pairs aren't the frame's.
+/// The error for an engine whose pairs differ from the expected ones.
 #[derive(Debug, Error, Diagnostic)]
 #[error("{engine}, frame {frame}: the pair ({i}, {j}) is {fault}", i = pair[0], j = pair[1])]
 #[diagnostic(help("the boxes are {boxes}; nothing is timed while answers differ"))]
@@ -28,7 +28,7 @@ pub struct Mismatch {
     boxes: String,
 }
 
-impl<'a> Truth<'a> {
+impl<'a> ExpectedPairs<'a> {
     /// The truth about a frame.
     pub fn of(frame: &'a Frame, number: usize) -> Self {
         let boxes = oracle::pairs(&frame.boxes);
@@ -57,7 +57,7 @@ impl<'a> Truth<'a> {
     /// number.
     ///
     /// # Errors
-    /// The first pair that is missing, too much or there twice.
+    /// The first pair that is missing, wrong or listed twice.
     pub fn judge(&self, entry: &Entry, mut pairs: Vec<[u32; 2]>) -> Result<usize, Mismatch> {
         pairs.iter_mut().for_each(|pair| pair.sort_unstable());
         pairs.sort_unstable();
@@ -157,20 +157,22 @@ mod tests {
     }
 
     fn fault(work: Work, pairs: &[[u32; 2]]) -> Option<String> {
-        let judged = Truth::of(&row(), 7).judge(&engine(work), pairs.to_vec());
+        let judged = ExpectedPairs::of(&row(), 7).judge(&engine(work), pairs.to_vec());
         judged.err().map(|mismatch| mismatch.to_string())
     }
 
+    /// Touching boxes are a pair either way round.
     #[test]
-    fn touching_boxes_are_a_pair_either_way_round() {
+    fn touching_boxes_pair_in_either_order() {
         for work in [Work::Boxes, Work::Spheres, Work::SDop] {
             assert_eq!(fault(work, &[[1, 0]]), None);
         }
         assert_eq!(fault(Work::SDop, &[]), None);
     }
 
+    /// A fault names engine frame and pair.
     #[test]
-    fn a_fault_names_engine_frame_and_pair() {
+    fn mismatch_names_engine_frame_pair() {
         let expect = |pairs: &[[u32; 2]], end: &str| {
             let text = fault(Work::Boxes, pairs);
             assert_eq!(text, Some(format!("engine, frame 7: the pair {end}")));

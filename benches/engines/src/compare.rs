@@ -1,11 +1,10 @@
-//! One scene, everyone on the same frames: checked, then timed in turns.
+//! Comparing engines on one scene: all get the same frames, are checked, and then timed in turns.
 //!
 //! Turns are those of every measurement here ([`Turns`]). Frames are made between turns and never
 //! timed. A time is the mean of a turn's frames, a ratio theirs over ours *on the same frames*;
 //! both are medians over turns.
 //!
-//! Where a limit is given, an engine that takes longer than that for a frame is left out, and
-//! named.
+//! If there is a limit, an engine that exceeds it for a frame is left out and listed.
 
 use std::time::Instant;
 
@@ -14,13 +13,13 @@ use sdop_bench::measure::turns::{Quartiles, median};
 use serde::Serialize;
 
 use crate::boxes::Frame;
-use crate::check::Truth;
+use crate::check::ExpectedPairs;
 use crate::entry::{Engine, Entry, OURS, Setup};
 use crate::memory::{self, Memory};
 use crate::scenes::{Course, EXPECTED, Order, Schedule, Spread};
 use crate::turns::{Timed, take_turns};
 
-/// One scene on so many threads.
+/// A scene and a number of threads.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Case {
     /// How bodies are spread.
@@ -143,7 +142,7 @@ fn check<'a>(case: Case, entries: &[&'a Entry], limit_ms: f64) -> miette::Result
     for frame in &mut frames {
         course.next_frame(frame)?;
     }
-    let sampled = [0, 1, count - 1].map(|number| Truth::of(&frames[number], number));
+    let sampled = [0, 1, count - 1].map(|number| ExpectedPairs::of(&frames[number], number));
     definition_holds(case, &sampled[0])?;
     let setup = Setup {
         scene: &course.scene,
@@ -206,7 +205,7 @@ fn course(case: Case) -> miette::Result<Course> {
     Course::new(case.spread, case.bodies, case.order, case.schedule.warm_up)
 }
 
-fn definition_holds(case: Case, first: &Truth<'_>) -> miette::Result<()> {
+fn definition_holds(case: Case, first: &ExpectedPairs<'_>) -> miette::Result<()> {
     let known = EXPECTED
         .iter()
         .find(|(spread, bodies, _)| (*spread, *bodies) == (case.spread, case.bodies));
@@ -234,7 +233,7 @@ fn timed(case: Case, entries: &[&Entry]) -> miette::Result<(Vec<Timed>, Vec<usiz
         let timed = |entry: &&Entry| Ok(Timed::new((entry.new)(&setup)?, entry.ages, case.threads));
         entries.iter().map(timed).collect()
     })?;
-    let truth = Truth::of(&last, schedule.warm_up + schedule.timed - 1);
+    let truth = ExpectedPairs::of(&last, schedule.warm_up + schedule.timed - 1);
     let judged = entries.iter().zip(&timed);
     let judged = judged.map(|(entry, timed)| truth.judge(entry, timed.engine.pairs()));
     let pairs = judged.collect::<Result<Vec<_>, _>>()?;

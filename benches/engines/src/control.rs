@@ -1,10 +1,10 @@
-//! What a second thread is worth: ours on one and on several threads, in turns with two control
-//! loops that divide without a rest, one bound by arithmetic and one by memory.
+//! The gain of more threads: our cullers on one and on several threads, in turns with two control
+//! loops that parallelise perfectly, one limited by arithmetic and one by memory.
 //!
-//! speed-up = t(one thread) / t(several) of the same frames, the median over turns; a control's is
-//! what the machine has to give at the time, and ours is quoted as a share of it. The loops run on
-//! the same pool, in as many pieces, with as much work or as many bytes per body as the culler, so
-//! that waking threads costs them what it costs us.
+//! speed-up = t(one thread) / t(several threads) for the same frames, as the median over turns. A
+//! control loop's speed-up is what the machine can give at that time, and ours is quoted relative
+//! to it. The loops run on the same pool, in as many pieces, and with as much work or as many bytes
+//! per body as the culler, so that waking threads costs them the same.
 
 use std::fmt::Write as _;
 use std::hint::black_box;
@@ -27,7 +27,7 @@ use crate::record::digits;
 use crate::scenes::{Course, Order, Schedule, Spread};
 use crate::turns::{Timed, take_turns};
 
-/// Measures what more threads gain us, next to loops that divide perfectly
+/// Measure the gain of more threads, compared with loops that parallelise perfectly
 #[derive(clap::Args)]
 pub struct Args {
     /// Numbers of bodies
@@ -36,7 +36,7 @@ pub struct Args {
     /// Threads next to one
     #[arg(long, default_value_t = 2)]
     threads: usize,
-    /// What else runs on the machine, for the record
+    /// Other load on the machine, for the record
     #[arg(long, default_value = "nothing said of other work")]
     note: String,
     /// Write control.csv, control.json and control.md here

@@ -1,4 +1,4 @@
-//! What an engine must offer to stand in the comparison.
+//! The interface of an engine in the comparison.
 //!
 //! A new engine is a file with a `Contestant` of [`Frame`]s and its [`Entry`], and a line in
 //! `roster.rs`.
@@ -9,11 +9,11 @@ use sdop_judge::contestant::Contestant;
 
 use crate::boxes::Frame;
 
-/// An engine with the bodies of one scene. What is timed goes from the frame's boxes to a complete
-/// answer in its own memory.
+/// An engine with the bodies of one scene. The timed work is from the frame's boxes to a complete
+/// answer in the engine's memory.
 pub type Engine = Box<dyn Contestant<Frame>>;
 
-/// What is found.
+/// The kind of pairs that an engine finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
     /// All pairs of boxes: the same work for all.
@@ -40,7 +40,7 @@ impl Work {
         }
     }
 
-    /// What a pair must be reported for.
+    /// The claim by which the engine is judged.
     pub fn claim(self) -> Claim {
         match self {
             Self::Boxes => Claim::Aabb,
@@ -73,8 +73,8 @@ pub struct Entry {
     pub work: Work,
     /// The most threads that it can use.
     pub threads: usize,
-    /// Whether it keeps anything but buffers from frame to frame. What starts from nothing each
-    /// frame has no age, and joins for the last of the frames before the clock counts.
+    /// Whether it keeps state other than buffers between frames. An engine that starts from nothing
+    /// in each frame only joins for the last warm-up frames.
     pub ages: bool,
     /// Builds it.
     pub new: fn(&Setup<'_>) -> miette::Result<Engine>,

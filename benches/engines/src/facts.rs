@@ -1,5 +1,4 @@
-//! What must be known to read a measurement: the command that makes it again, the machine and what
-//! else ran on it.
+//! The circumstances of a measurement: the command to repeat it, the machine, and its other load.
 
 use std::fmt::{self, Display, Formatter};
 use std::fs;
@@ -133,8 +132,9 @@ pub fn write(
 mod tests {
     use super::quoted;
 
+    /// A command can be given to a shell.
     #[test]
-    fn a_command_can_be_given_to_a_shell() {
+    fn command_survives_a_shell() {
         assert_eq!(quoted("--out".to_owned()), "--out");
         assert_eq!(quoted("500,10000".to_owned()), "500,10000");
         assert_eq!(quoted("PhysX ABP".to_owned()), "'PhysX ABP'");

@@ -1,5 +1,5 @@
-//! What criterion has measured, as one table: nanoseconds an element, the median with its
-//! confidence interval.
+//! Criterion's estimates as one table: nanoseconds per element, the median with its confidence
+//! interval.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::facts;
 /// Gathers criterion's estimates into one table
 #[derive(clap::Args)]
 pub struct Args {
-    /// Where criterion has left them
+    /// Directory of criterion's estimates
     #[arg(long, default_value = "target/criterion")]
     from: PathBuf,
     /// The file to write
@@ -51,11 +51,11 @@ struct Throughput {
 /// `estimates.json`.
 #[derive(Deserialize)]
 struct Estimates {
-    median: Estimate,
+    median: CriterionEstimate,
 }
 
 #[derive(Deserialize)]
-struct Estimate {
+struct CriterionEstimate {
     point_estimate: f64,
     confidence_interval: Interval,
 }

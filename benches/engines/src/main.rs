@@ -1,5 +1,5 @@
-//! `sdop-peers`: what users would pick instead of sdop, on the same frames, checked to find the
-//! same pairs.
+//! `sdop-peers`: other engines on the same frames as sdop, checked to find the same pairs and
+//! timed.
 
 mod boxes;
 mod broccoli;
@@ -40,10 +40,9 @@ use miette::miette;
 use record::Record;
 use scenes::{Order, Schedule, Spread};
 
-/// Finds the same pairs with sdop and with its peers, checks that they agree, and times them in
-/// turns
+/// Compare sdop with other engines: check that they find the same pairs, and time them in turns
 ///
-/// Exit codes: 0 all is well, 1 an engine's pairs differ or an engine failed, 2 bad arguments.
+/// Exit codes: 0 success, 1 an engine's pairs differ or an engine failed, 2 invalid arguments.
 #[derive(Parser)]
 #[command(
     after_help = "Example: sdop-peers --sizes 500,10000 --scenes uniform --order random --threads 1 --out results"
@@ -65,22 +64,22 @@ struct Cli {
     /// In which order bodies are numbered
     #[arg(long, value_delimiter = ',', default_value = "random,sorted")]
     order: Vec<Order>,
-    /// Threads that each engine may use; engines without threads sit out above 1
+    /// Threads that each engine may use; engines without threads only run with 1
     #[arg(long, value_delimiter = ',', default_value = "1,2")]
     threads: Vec<usize>,
-    /// Engines, by the beginning of their names; absent: all that were compiled in
+    /// Engines, by the beginning of their names [default: all that are compiled in]
     #[arg(long, value_delimiter = ',')]
     peers: Option<Vec<String>>,
-    /// Frames before the clock counts, instead of what the size asks for
+    /// Warm-up frames [default: by the number of bodies]
     #[arg(long)]
     warm_up: Option<usize>,
-    /// Milliseconds a frame beyond which an engine is left out, and named; ours never is
+    /// Milliseconds per frame beyond which an engine is left out and listed; ours never is
     #[arg(long, default_value_t = f64::INFINITY)]
     limit_ms: f64,
-    /// Frames that are timed, instead of what the size asks for
+    /// Timed frames [default: by the number of bodies]
     #[arg(long)]
     timed: Option<usize>,
-    /// What else runs on the machine, for the record
+    /// Other load on the machine, for the record
     #[arg(long, default_value = "nothing said of other work")]
     note: String,
     /// Write peers.csv, peers.json and peers.md here
@@ -128,7 +127,7 @@ fn main() -> miette::Result<()> {
     Ok(())
 }
 
-/// Ours, and those whose names begin as wished.
+/// Ours, and the engines whose names begin as requested.
 fn chosen(wished: Option<&[String]>) -> miette::Result<Vec<Entry>> {
     let all = roster::roster();
     let Some(wished) = wished else {

@@ -1,7 +1,7 @@
-//! What an engine keeps in memory: bytes held and the most held at once, by everything that
-//! allocates through this process's allocator, and by glibc's own books for engines in C++.
+//! An engine's memory: bytes held and the most held at once, counted by this process's allocator,
+//! and from glibc's statistics for engines in C++.
 //!
-//! The allocator counts only while asked to, in passes that aren't timed.
+//! The allocator counts only in passes that are not timed.
 
 #![allow(
     unsafe_code,
@@ -16,10 +16,10 @@ static HELD: AtomicIsize = AtomicIsize::new(0);
 static PEAK: AtomicIsize = AtomicIsize::new(0);
 
 /// The system's allocator, with a count of bytes.
-pub struct Counted;
+pub struct CountingAllocator;
 
 #[global_allocator]
-static ALLOCATOR: Counted = Counted;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 fn count(bytes: isize) {
     if COUNTING.load(Relaxed) {
@@ -29,7 +29,7 @@ fn count(bytes: isize) {
 }
 
 // SAFETY: every call is passed on to the system's allocator as it came; counting allocates nothing.
-unsafe impl GlobalAlloc for Counted {
+unsafe impl GlobalAlloc for CountingAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size() as isize);
         // SAFETY: the caller keeps `alloc`'s contract.
@@ -55,7 +55,7 @@ unsafe impl GlobalAlloc for Counted {
     }
 }
 
-/// Bytes that a piece of work left behind, and the most that it had at once.
+/// The bytes that a piece of work still holds at its end, and the most that it held at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
     /// Held at the end.
@@ -80,7 +80,7 @@ pub fn measure<T>(work: impl FnOnce() -> T) -> (T, Memory) {
     (result, Memory { held, peak })
 }
 
-/// Bytes in use by glibc's books, over all arenas and mapped blocks.
+/// Bytes in use by glibc's statistics, over all arenas and mapped blocks.
 fn in_use() -> u64 {
     // SAFETY: no arguments, no state but glibc's own.
     let books = unsafe { libc::mallinfo2() };
@@ -91,8 +91,9 @@ fn in_use() -> u64 {
 mod tests {
     use super::*;
 
+    /// Held and peak are what was allocated.
     #[test]
-    fn held_and_peak_are_what_was_allocated() {
+    fn allocator_counts_held_and_peak() {
         // Other tests allocate meanwhile, but not as much.
         const MEGABYTE: usize = 1 << 20;
         let (kept, memory) = measure(|| {

@@ -1,9 +1,9 @@
-//! Cp: what a real narrow phase costs for each pair that culling leaves, in nanoseconds, for pairs
-//! that it finds to touch and pairs that it doesn't.
+//! Cp: the price of a narrow-phase check in nanoseconds per pair that culling leaves, for pairs
+//! that touch and pairs that don't.
 //!
-//! Pairs of one answer are timed together, since one alone takes less than reading a clock is good
-//! for. Every answer is held against the exact one: `missed` are pairs that meet exactly and are
-//! denied, which a conservative method never has.
+//! Pairs with the same answer are timed together, because one check is shorter than the clock's
+//! resolution. Every answer is compared with the exact one: `missed` are pairs that meet but are
+//! rejected, which a conservative method never has.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -27,7 +27,7 @@ use serde::Serialize;
 use crate::boxes::Frame;
 use crate::entry::{Engine, Entry, Setup, Work};
 
-/// Measures narrow phases on the pairs that culling leaves
+/// Measure narrow phases on the pairs that culling leaves
 #[derive(clap::Args)]
 pub struct Args {
     /// Scene files
@@ -56,11 +56,11 @@ struct MethodTiming {
 }
 
 /// Whether two bodies touch, for one method.
-type Judge<'a> = Box<dyn Fn(&Bodies, [u32; 2]) -> miette::Result<bool> + 'a>;
+type PairVerdict<'a> = Box<dyn Fn(&Bodies, [u32; 2]) -> miette::Result<bool> + 'a>;
 
-const PARRY: &str = "0.31.1";
+const PARRY_VERSION: &str = "0.31.1";
 
-/// Tests of single pairs, asked for all of them: judged next to engines, and timed here alone.
+/// Tests of single pairs, applied to all pairs: judged like engines, and timed only here.
 pub const ENTRIES: [Entry; 3] = [
     entry(
         "sdop GJK on hulls",
@@ -68,10 +68,13 @@ pub const ENTRIES: [Entry; 3] = [
         Work::Hulls,
         |setup| Ok(Box::new(AllPairs::new(hulls(&setup.scene.shapes)))),
     ),
-    entry("parry3d GJK on hulls", PARRY, Work::Hulls, |setup| {
-        Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, convex)?)))
-    }),
-    entry("parry3d meshes", PARRY, Work::Meshes, |setup| {
+    entry(
+        "parry3d GJK on hulls",
+        PARRY_VERSION,
+        Work::Hulls,
+        |setup| Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, convex)?))),
+    ),
+    entry("parry3d meshes", PARRY_VERSION, Work::Meshes, |setup| {
         Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, mesh)?)))
     }),
 ];
@@ -94,12 +97,12 @@ const fn entry(
 
 /// A test of single pairs as an engine.
 struct AllPairs {
-    test: Judge<'static>,
+    test: PairVerdict<'static>,
     pairs: Vec<[u32; 2]>,
 }
 
 impl AllPairs {
-    fn new(test: Judge<'static>) -> Self {
+    fn new(test: PairVerdict<'static>) -> Self {
         Self {
             test,
             pairs: Vec::new(),
@@ -167,7 +170,7 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<M
         .map(|sample| Ok(culler.cull(&sample.bodies).or_report()?.sorted()))
         .collect::<miette::Result<_>>()?;
     let bodies = || samples.iter().map(|sample| &sample.bodies);
-    let ask = |judge: &Judge<'_>| -> miette::Result<Vec<Vec<bool>>> {
+    let ask = |judge: &PairVerdict<'_>| -> miette::Result<Vec<Vec<bool>>> {
         let frames = bodies().zip(&survivors);
         frames
             .map(|(bodies, pairs)| pairs.iter().map(|&pair| judge(bodies, pair)).collect())
@@ -218,7 +221,10 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<M
 }
 
 /// The median over repeats of the mean over pairs; none without pairs.
-fn nanoseconds(pairs: &[(&Bodies, [u32; 2])], judge: &Judge<'_>) -> miette::Result<Option<f64>> {
+fn nanoseconds(
+    pairs: &[(&Bodies, [u32; 2])],
+    judge: &PairVerdict<'_>,
+) -> miette::Result<Option<f64>> {
     if pairs.is_empty() {
         return Ok(None);
     }
@@ -234,7 +240,7 @@ fn nanoseconds(pairs: &[(&Bodies, [u32; 2])], judge: &Judge<'_>) -> miette::Resu
     Ok(Some(means[REPEATS / 2]))
 }
 
-fn exact(shapes: &[Shape]) -> miette::Result<Judge<'static>> {
+fn exact(shapes: &[Shape]) -> miette::Result<PairVerdict<'static>> {
     let mesh = |shape: &Shape| Mesh::new(&shape.vertices, &shape.triangles).into_diagnostic();
     let meshes = shapes
         .iter()
@@ -257,7 +263,7 @@ fn exact(shapes: &[Shape]) -> miette::Result<Judge<'static>> {
     }))
 }
 
-fn hulls(shapes: &[Shape]) -> Judge<'static> {
+fn hulls(shapes: &[Shape]) -> PairVerdict<'static> {
     let graphs: Vec<_> = shapes.iter().map(HullGraph::new).collect();
     Box::new(move |bodies, pair| {
         let [a, b] = pair.map(|body| PosedHull::of(&graphs, bodies, body as usize));
@@ -268,7 +274,7 @@ fn hulls(shapes: &[Shape]) -> Judge<'static> {
 fn parry(
     shapes: &[Shape],
     solid: fn(&Shape) -> miette::Result<Box<dyn Solid>>,
-) -> miette::Result<Judge<'static>> {
+) -> miette::Result<PairVerdict<'static>> {
     let solids = shapes
         .iter()
         .map(solid)

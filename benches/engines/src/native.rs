@@ -1,4 +1,4 @@
-//! Engines behind a shim in C++: `native/peer.h` has the four functions that each offers.
+//! Engines in C++: `native/peer.h` declares the four functions that each one has.
 
 #![allow(unsafe_code, reason = "the other side is C++")]
 

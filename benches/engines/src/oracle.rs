@@ -1,8 +1,8 @@
-//! The pairs that every engine must report, found by no engine: columns of cells over y and z, a
-//! sweep along x in each.
+//! The oracle: the pairs that every engine must report, found independently of all engines by
+//! columns of cells over y and z with a sweep along x in each.
 //!
-//! A box stands in every column that it reaches into. A pair is taken in the column that holds the
-//! larger of both lower ends on y and on z: there is exactly one, and both boxes reach into it.
+//! A box is in every column that it overlaps. A pair is reported in the column of the larger of
+//! both lower ends on y and on z: there is exactly one such column, and both boxes overlap it.
 
 use crate::boxes::{Slabs, meet};
 

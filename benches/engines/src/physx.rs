@@ -1,6 +1,6 @@
 //! PhysX's broad phase, driven alone through its low-level interface: automatic box pruning (ABP).
 //!
-//! Objects are dynamic, each in a group of its own, with no contact distance. Results are what
+//! Objects are dynamic, each in a separate group, without a contact distance. Results are what
 //! began and what ended. ABP compares ends as they are.
 
 #![allow(unsafe_code, reason = "PhysX is C++")]

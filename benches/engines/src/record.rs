@@ -1,4 +1,4 @@
-//! What is written of a comparison: rows as CSV and JSON, and a page with a table per case.
+//! The record of a comparison: rows as CSV and JSON, and a page with a table per case.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The engines that stand in the comparison.
+//! The list of engines in the comparison.
 
 use crate::entry::Entry;
 #[cfg(feature = "physx")]

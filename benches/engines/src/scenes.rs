@@ -1,9 +1,8 @@
-//! The scenes that everyone is measured on, made by the library's own scene code: the same frames
-//! for all.
+//! The scenes of the comparison, built by the bench's scene code: the same frames for all engines.
 //!
 //! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a
-//! unit radius per frame, mirrored at walls. The paper's scene stands in for the smallest uniform
-//! one: 500 bodies in a box of 16.1.
+//! unit radius per frame, mirrored at walls. The paper's scene, 500 bodies in a box of 16.1, is
+//! used as the smallest uniform one.
 
 use std::path::Path;
 
@@ -173,7 +172,7 @@ fn definition(spread: Spread, bodies: usize) -> String {
             "1.0",
             format!("placement = {{ clusters = {{ number = {clusters}, radius = 10.0 }} }}"),
         ),
-        // Three partners a box in the mean, as boxes of balls have that meet 1.5 spheres.
+        // Three partners per box on average, as boxes of balls have that meet 1.5 spheres.
         Spread::Long => (format!("side = {:?}", 0.72 * side), "1.0", String::new()),
     };
     // A shape for each order of the sides; what they look like matters to nobody.
@@ -230,8 +229,9 @@ mod tests {
 
     use super::*;
 
+    /// Sorting renumbers bodies and changes nothing else.
     #[test]
-    fn sorting_renumbers_bodies_and_changes_nothing_else() {
+    fn sorting_only_renumbers_bodies() {
         let frames = |order| {
             let mut course = Course::new(Spread::Mixed, 300, order, 5).unwrap();
             let mut frame = Frame::default();

@@ -38,7 +38,7 @@ pub fn claim_caller() -> miette::Result<()> {
 }
 
 /// Does the work on a thread that is no pool's. [`claim_caller`] makes the caller's one of rayon's,
-/// and on such a thread a culler with threads of its own starts another one for each section of a
+/// and on such a thread a culler with its own threads starts another one for each section of a
 /// frame, lest it take up the pool's other jobs while it waits.
 pub fn outside_of_pools<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let done = std::thread::scope(|scope| scope.spawn(work).join());
@@ -51,8 +51,9 @@ mod tests {
 
     use super::*;
 
+    /// What is done outside is no pool's work.
     #[test]
-    fn what_is_done_outside_is_no_pool_s_work() {
+    fn outside_work_leaves_the_pool() {
         let threads = Threads::new(2).unwrap();
         let number = rayon::current_thread_index;
         let [inside, outside] = threads.run(|| [number(), outside_of_pools(number)]);

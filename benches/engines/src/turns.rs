@@ -1,4 +1,4 @@
-//! Engines on the same frames in turns: the one loop that times them.
+//! The loop that times engines in turns on the same frames.
 
 use sdop_bench::measure::turns::Turns;
 
@@ -43,8 +43,8 @@ fn means(ms: &[f64], turn: usize) -> Vec<f64> {
     ms.chunks(turn).map(mean).collect()
 }
 
-/// Builds engines on the first frame of a course, and times them in turns on those behind it.
-/// Returns them with the last frame.
+/// Builds engines with the first frame of a course, and times them in turns on the following
+/// frames. Returns them with the last frame.
 pub fn take_turns(
     mut course: Course,
     schedule: Schedule,
@@ -87,8 +87,9 @@ pub fn take_turns(
 mod tests {
     use super::*;
 
+    /// A turn counts with its mean and the last one may be shorter.
     #[test]
-    fn a_turn_counts_with_its_mean_and_the_last_one_may_be_shorter() {
+    fn last_turn_may_be_shorter() {
         let ms = [1.0, 1.0, 7.0, 2.0, 2.0, 2.0, 5.0];
         assert_eq!(means(&ms, 3), [3.0, 2.0, 5.0]);
     }

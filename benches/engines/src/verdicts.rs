@@ -1,5 +1,5 @@
-//! Every engine under judgement by the cases of what it claims, each case in a process of its own,
-//! since an engine that crashes must not end the others' trial.
+//! Judging every engine by the cases of its claim. Each case runs in a separate process, so that a
+//! crashing engine does not affect the others.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -20,7 +20,7 @@ use crate::facts::{self, Facts};
 use crate::narrow;
 use crate::roster::roster;
 
-/// Answer one case as an engine does: read it from standard input, print the pairs of each frame
+/// Answer one case with an engine: read it from standard input, print the pairs of each frame
 #[derive(clap::Args)]
 pub struct AnswerArgs {
     /// The engine's name
@@ -30,16 +30,16 @@ pub struct AnswerArgs {
 /// Judge every engine by the cases of its claim
 #[derive(clap::Args)]
 pub struct Args {
-    /// The seed of the cases next to the published ones
+    /// The seed of the fresh cases
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Seconds that an engine has for a case
+    /// Time limit per case, in seconds
     #[arg(long, default_value_t = 20)]
     timeout: u64,
-    /// Seconds for making the scene of a miss smaller
+    /// Time limit for reducing the scene of a miss, in seconds
     #[arg(long, default_value_t = 20)]
     shrink: u64,
-    /// What else runs on the machine, for the record
+    /// Other load on the machine, for the record
     #[arg(long, default_value = "nothing said of other work")]
     note: String,
     /// Write verdicts.csv, verdicts.json and verdicts.md here

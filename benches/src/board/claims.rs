@@ -1,5 +1,5 @@
-//! `benches/adapters/claims.toml`: the adapters, what each library says of itself, and the verdict
-//! that it is known to get.
+//! Reads `benches/adapters/claims.toml`: the adapters, the claim of each library, and its known
+//! verdict.
 
 use std::collections::BTreeMap;
 
@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Claims {
-    /// The command of an adapter by its language; `{folder}` stands for the adapter's.
+    /// The command of an adapter by its language; `{folder}` is the adapter's folder.
     pub run: BTreeMap<String, String>,
     /// The adapters, in the board's order.
     pub adapter: Vec<Adapter>,
-    /// Libraries that nobody has run here.
+    /// Libraries that were not run.
     #[serde(default)]
     pub not_run: Vec<NotRun>,
 }
@@ -24,45 +24,45 @@ pub struct Claims {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Adapter {
-    /// What the board calls it.
+    /// Its name on the board.
     pub name: String,
     /// Its folder in `benches/adapters/`.
     pub folder: String,
     /// Arguments of its program.
     #[serde(default)]
     pub arguments: String,
-    /// Which of the commands in `run` it takes.
+    /// Its language, which selects the command in `run`.
     pub language: String,
     /// The library's package.
     pub package: String,
     /// The version that the verdict is about.
     pub version: String,
-    /// The property that it is judged by.
+    /// The property by which it is judged.
     pub claim: Claim,
-    /// What the library's documentation says.
+    /// The library's documentation of that property.
     pub says: String,
     /// How it is used.
     pub settings: String,
-    /// Whether it says that pairs that only touch count.
+    /// Whether it documents that touching pairs are reported.
     #[serde(default = "yes")]
     pub touching: bool,
-    /// Cases that are outside of its claim.
+    /// Cases outside of its claim.
     #[serde(default)]
     pub unclaimed: Vec<Unclaimed>,
-    /// The verdict that it is known to get.
+    /// Its known verdict.
     pub verdict: String,
     /// Whether it is part of the short run.
     #[serde(default)]
     pub quick: bool,
 }
 
-/// Cases that a library does not claim to get right.
+/// Cases for which a library makes no claim.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Unclaimed {
-    /// Their names, as a pattern.
+    /// A pattern of their names.
     pub cases: String,
-    /// Where the library says so.
+    /// The library's statement.
     pub why: String,
 }
 
@@ -84,7 +84,8 @@ impl Claims {
     /// Reads the table.
     ///
     /// # Errors
-    /// Text that is no such table, with line and column; an adapter whose language has no command.
+    /// The text is not such a table (with line and column), or an adapter's language has no
+    /// command.
     pub fn parse(text: &str) -> Result<Self, String> {
         let claims: Self = toml::from_str(text).map_err(|error| error.to_string())?;
         let is_unknown = |adapter: &&Adapter| !claims.run.contains_key(&adapter.language);
@@ -107,7 +108,7 @@ impl Claims {
 }
 
 impl Adapter {
-    /// Why the library does not claim to get a case right, if it says so.
+    /// The reason why a case is outside of the library's claim, if it is.
     #[must_use]
     pub fn disclaims(&self, case: &str) -> Option<&str> {
         let is_about = |unclaimed: &&Unclaimed| matches(&unclaimed.cases, case);

@@ -2,9 +2,9 @@
 //!
 //! > `claims.toml` ([`claims`]) → each adapter judged, a [`Row`] of [`Cell`]s ([`row`]) → one page ([`page`])
 //!
-//! An adapter is a program on the judge's wire that makes another library answer
-//! (`benches/adapters/`). Its cells are the families of cases that its claim has: the first word of
-//! a case's name, so that a new group of cases is a new column by itself.
+//! An adapter is a program that answers the judge's cases with another library
+//! (`benches/adapters/`). Its cells are the families of its claim's cases: the first word of a
+//! case's name, so that a new family automatically gets a column.
 
 mod claims;
 mod page;
@@ -21,10 +21,10 @@ use serde::Serialize;
 /// All rows.
 #[derive(Clone, Debug, Serialize)]
 pub struct Board {
-    /// The version that judged.
+    /// The version of the judge.
     pub code: String,
     /// One row for each adapter.
     pub adapters: Vec<Row>,
-    /// Libraries that nobody has run here.
+    /// Libraries that were not run.
     pub not_run: Vec<NotRun>,
 }

@@ -1,7 +1,7 @@
 //! The board as one HTML page that opens from disk.
 //!
-//! `board.html` is its template. The viewer's page is in it once; a counter-example has its data
-//! alone, and the browser puts the two together when it is opened.
+//! `board.html` is its template. The page has the viewer's page once and only the data of each
+//! counter-example; the browser joins the two when one is opened.
 
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
@@ -16,7 +16,7 @@ const TEMPLATE: &str = include_str!("board.html");
 /// The page.
 ///
 /// # Errors
-/// None that a board can cause: the template is tested.
+/// Never for a board: the template is tested.
 pub fn page(board: &Board) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
@@ -55,7 +55,7 @@ fn plain(value: &impl serde::Serialize) -> Value {
     Value::from(Serde(serde_json::to_value(value).unwrap_or_default()))
 }
 
-/// A value as JSON that no element can end in.
+/// A value as JSON that can't end the element that contains it.
 fn script(value: &(impl serde::Serialize + ?Sized)) -> String {
     serde_json::to_string(value)
         .unwrap_or_default()
@@ -67,17 +67,17 @@ fn script(value: &(impl serde::Serialize + ?Sized)) -> String {
 struct Time<'a> {
     #[serde(flatten)]
     speed: &'a Speed,
-    /// The time as people read it.
+    /// The time with its unit.
     time: String,
-    /// The recall as people read it: 100 % is no rounding.
+    /// The recall in percent; 100 % is never a rounded value.
     percent: String,
-    /// How far its bar goes, in percent: equal steps are equal ratios.
+    /// The length of its bar in percent, on a logarithmic scale.
     bar: f64,
     /// Whether it is one of this project's cullers.
     is_ours: bool,
 }
 
-/// Every contestant once, by claim and then by time.
+/// Every contestant once, sorted by claim and then by time.
 fn times<'b>(board: &'b Board) -> Vec<Time<'b>> {
     let mut all: Vec<&Speed> = board.adapters.iter().flat_map(|row| &row.speed).collect();
     all.sort_by_key(|speed| (speed.claim.name(), speed.median_ns));

@@ -1,4 +1,4 @@
-//! One adapter judged: a cell for each family of cases that its claim has.
+//! Judges one adapter: a cell for each family of its claim's cases.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -21,14 +21,15 @@ use super::claims::Adapter;
 use super::speed::Speed;
 use crate::view::{Page, Show};
 
-/// What a case has before it is given up; libraries that compile at their first call need it.
+/// Time limit of a case; libraries that compile at their first call need it.
 const TIMEOUT: Duration = Duration::from_secs(120);
-/// How long a failing case is made smaller.
+/// Time for reducing a failing case.
 const SHRINK: Duration = Duration::from_secs(4);
-/// How often a failing case is run again to see its misses: an answer may vary from run to run.
+/// How many times a failing case is repeated to see its misses, since answers may vary from run to
+/// run.
 const TRIES: usize = 20;
 
-/// How a library did in one family of cases, or in all of them.
+/// The verdict on a library in one family of cases, or in all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CellVerdict {
@@ -36,16 +37,16 @@ pub enum CellVerdict {
     Pass,
     /// No pair was missed in the cases that the library can represent; the others were skipped.
     Partial,
-    /// All that was missed, if anything, is outside of what the library says of itself.
+    /// All misses, if any, are outside of the library's claim.
     DoesNotClaim,
-    /// A pair was missed that the library says it reports.
+    /// A pair was missed that the library claims to report.
     Fail,
-    /// It crashed, or its answer was none.
+    /// It crashed, or its answer was invalid.
     Error,
 }
 
 impl CellVerdict {
-    /// What the board prints.
+    /// Its text on the board.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -58,17 +59,17 @@ impl CellVerdict {
     }
 }
 
-/// An adapter's line.
+/// An adapter's row.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// What was judged.
+    /// The judged adapter.
     #[serde(flatten)]
     pub adapter: Adapter,
     /// The version that answered, as the adapter names it; empty if it could not be run.
     pub found: String,
     /// The verdict over all cells.
     pub outcome: CellVerdict,
-    /// What kept it from being run, if anything did.
+    /// The reason why it could not be run, if it could not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub how: Option<String>,
     /// Cases and pairs over all cells.
@@ -84,13 +85,14 @@ pub struct Row {
 pub struct Cell {
     /// The first word of its cases' names.
     pub family: String,
-    /// How the library did.
+    /// The verdict.
     pub outcome: CellVerdict,
     /// Cases and pairs.
     pub total: GroupVerdict,
     /// The same by group.
     pub groups: Vec<GroupVerdict>,
-    /// Why cases were skipped, are outside of its claim or ended in an error; how many.
+    /// Reasons why cases were skipped, are outside of its claim or ended in an error, with their
+    /// numbers of cases.
     pub reasons: BTreeMap<String, usize>,
     /// The cases in which pairs were missed.
     pub missed_in: Vec<String>,
@@ -102,11 +104,11 @@ pub struct Cell {
 /// A counter-example.
 #[derive(Clone, Debug, Serialize)]
 pub struct Counter {
-    /// The case that it was made from.
+    /// The case from which it was reduced.
     pub from: String,
-    /// What meets, where and how deep, a line each.
+    /// The missed pairs with place and depth, one per line.
     pub says: Vec<String>,
-    /// The case, with the pairs that were reported, as `sdop judge --replay` takes it.
+    /// The case with the reported pairs, in the format of `sdop judge --replay`.
     pub case: String,
     /// The data of the viewer's page.
     #[serde(skip)]
@@ -116,7 +118,7 @@ pub struct Counter {
 /// Judges one adapter by the published cases whose names match a pattern.
 ///
 /// # Errors
-/// A case that can't be made.
+/// A case can't be made.
 pub fn judge(
     adapter: &Adapter,
     command: &str,
@@ -147,7 +149,7 @@ pub fn judge(
     let options = Options {
         claim: adapter.claim,
         pattern: cases.to_owned(),
-        // Each cell has a smallest case of its own.
+        // Each cell has its own smallest case.
         shrink_time: Duration::ZERO,
         ..Options::default()
     };
@@ -176,7 +178,7 @@ pub fn judge(
     Ok(row)
 }
 
-/// What the adapter says to `--version`.
+/// The output of the adapter for `--version`.
 fn version(command: &str) -> Result<String, String> {
     let run = Command::new("sh")
         .arg("-c")
@@ -230,7 +232,7 @@ fn over_all(cells: impl Iterator<Item = (CellVerdict, bool)> + Clone) -> CellVer
 }
 
 impl Cell {
-    /// What can be counted: the outcome takes every miss for a failure.
+    /// The counts, and an outcome for which every miss is a failure.
     fn of(family: String, cases: &[&CaseVerdict], groups: Vec<GroupVerdict>) -> Self {
         let total = total(groups.iter());
         let mut reasons = BTreeMap::new();
@@ -262,8 +264,8 @@ impl Cell {
         }
     }
 
-    /// Which misses are outside of the library's claim, and the smallest case of one that is not,
-    /// or of any.
+    /// Finds the misses outside of the library's claim, and the smallest case of another one, or of
+    /// any.
     fn explained(
         mut self,
         adapter: &Adapter,
@@ -291,7 +293,7 @@ impl Cell {
             self.outcome = CellVerdict::DoesNotClaim;
         }
         let shown = if claimed.is_empty() { others } else { claimed };
-        // The case with the fewest pairs has the shortest way to a small one.
+        // The case with the fewest pairs is the fastest to reduce.
         let shown = shown.into_iter().min_by_key(Case::pairs);
         self.smallest = shown.and_then(|case| {
             let mut tries = (0..TRIES).map(|_| shrink(subject, &case, SHRINK));
@@ -311,13 +313,13 @@ impl Cell {
     }
 }
 
-/// The published case of a name.
+/// The published case with a name.
 fn named(claim: Claim, name: &str) -> Result<Case, JudgeError> {
     let mut found = select(claim, name, None)?;
     Ok(found.swap_remove(0).case()?) // its name came from there
 }
 
-/// Whether every pair that is missed in a case is parted by a shift of one f32 step.
+/// Whether every missed pair of a case is separated by a shift of one f32 step.
 fn only_touch(subject: &dyn Subject, case: &Case) -> bool {
     let Ok(truth) = Truth::new(case.claim, &case.shapes) else {
         return false;
@@ -366,7 +368,7 @@ impl Counter {
     }
 }
 
-/// The viewer's data of a counter-example; empty where it can't be shown.
+/// The viewer's data of a counter-example; empty if it can't be shown.
 fn picture(smallest: &Smallest, adapter: &Adapter) -> String {
     let pairs = Some(smallest.pairs.clone());
     let source = Path::new("missed-pair.ndjson");

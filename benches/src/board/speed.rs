@@ -13,29 +13,29 @@ use crate::outsiders::timing::{TimingError, ours, strategy};
 /// The clock of programs.
 pub(super) const SELF_REPORTED: &str = "self-reported";
 
-/// What a contestant takes for a frame, and how much of what it has to report it does.
+/// The time of a contestant per frame, and its recall.
 #[derive(Clone, Debug, Serialize)]
 pub struct Speed {
     /// Who.
     pub name: String,
     /// The claim.
     pub claim: Claim,
-    /// Who held the clock.
+    /// Whose clock measured.
     pub clock: &'static str,
     /// Median over frames, without the first one, in nanoseconds.
     pub median_ns: u64,
-    /// Reported of required pairs, over all frames.
+    /// Reported pairs / required pairs, over all frames.
     pub recall: f64,
     /// Reported pairs, over all frames.
     pub reported: usize,
 }
 
 impl Speed {
-    /// A program by the times that it reports; none where it skips the scene, fails to answer it or
-    /// reports no time.
+    /// A program, with the times that it reports. `None` if it skips the scene, doesn't answer it
+    /// or reports no time.
     ///
     /// # Errors
-    /// A frame that the reference refuses.
+    /// The reference rejects a frame.
     pub fn of(name: &str, subject: &dyn Subject, case: &Case) -> Result<Option<Self>, TimingError> {
         match subject.answer(case) {
             Ok(answers) => Self::judged(name, SELF_REPORTED, case, &answers),
@@ -47,7 +47,7 @@ impl Speed {
     /// more than boxes or poses.
     ///
     /// # Errors
-    /// A frame that the reference or our culler refuses.
+    /// The reference or our culler rejects a frame.
     pub fn ours(case: &Case) -> Result<Option<Self>, TimingError> {
         let (name, answers) = match strategy(case.claim) {
             Some(strategy) => (format!("sdop {strategy}"), ours(strategy, case)?),

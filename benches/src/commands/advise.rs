@@ -8,26 +8,26 @@ use super::Outcome;
 use super::output::{Format, emit, rows};
 use super::scene_args::{MachineArgs, SceneArgs};
 
-/// What a narrow-phase check is taken to cost when nothing is said of it, in nanoseconds.
-const CHECK: f64 = 1000.0;
+/// The default price of a narrow-phase check, in nanoseconds.
+const DEFAULT_CHECK_NANOSECONDS: f64 = 1000.0;
 
 /// Which volume, axes and finder to use for a scene, with the settings to paste
 ///
-/// Times every finder, then spheres, boxes, S-DOP at each k along both kinds of axes, and hulls, on
-/// the scene's first frames, counts the pairs that each leaves to the narrow phase, and adds both
-/// up. Every volume reports all pairs that meet: they differ in time and in false pairs. --pairs
-/// and --axes narrow down what is tried.
+/// Measures every finder, then spheres, boxes, S-DOP at each k with both kinds of axes, and hulls,
+/// on the scene's first frames. For each volume it adds the culling time and the narrow phase's
+/// time for the pairs that are left. Every volume reports all pairs that meet; they differ in time
+/// and in false pairs. --pairs and --axes restrict what is tried.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop advise data/scenes/paper-500.toml --narrow-ns 200")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// What the narrow phase takes for a pair that doesn't meet, in nanoseconds
-    #[arg(long, value_name = "X", default_value_t = CHECK, value_parser = nanoseconds)]
+    /// Price of a narrow-phase check of a pair that doesn't meet, in nanoseconds
+    #[arg(long, value_name = "X", default_value_t = DEFAULT_CHECK_NANOSECONDS, value_parser = nanoseconds)]
     narrow_ns: f64,
     #[command(flatten)]
     machine: MachineArgs,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -35,7 +35,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// A bad scene.
+/// An invalid scene.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let file = args.scene.read()?;
     let tried = Tried {
@@ -186,7 +186,7 @@ mod tests {
     use super::*;
     use sdop::settings::{Axes, DirectionSet, Finder, Overlap};
 
-    /// What is printed is code that compiles: this text is compiled here.
+    /// Compiles the printed code, to check that it is valid.
     macro_rules! compiled {
         ($($code:tt)*) => {{
             let _ = $($code)*;

@@ -1,4 +1,4 @@
-//! `sdop bench --exec`: a program beside ours on the same frames.
+//! `sdop bench --exec`: times another program and ours on the same frames.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -13,10 +13,10 @@ use sdop_judge::{Claim, Outcome as CaseOutcome};
 use super::output::{Format, emit, rows};
 use super::{Outcome, one_of};
 
-/// Time a program beside ours on a scene's frames
+/// Compare the time of a program with ours on a scene's frames
 ///
 /// Every frame is judged before its time counts. A program's time is the `ns` that it reports with
-/// each answer, and the table says so: self-reported. Ours is the wall time around the call. They
+/// each answer, which the table marks as self-reported. Ours is the wall time of the call. The two
 /// take turns.
 #[derive(clap::Args)]
 #[command(
@@ -25,25 +25,25 @@ use super::{Outcome, one_of};
 pub struct Args {
     /// The scene
     scene: PathBuf,
-    /// The program: a line for the shell that reads cases and answers with pairs
+    /// The program: a shell command that reads cases and answers with pairs
     #[arg(long, value_name = "CMD")]
     exec: String,
-    /// What it claims never to miss
+    /// What the program claims never to miss
     #[arg(long, value_name = "CLAIM", default_value_t = Claim::Mesh, value_parser = one_of::<Claim>(Claim::NAMES))]
     claims: Claim,
-    /// How frames are written for it
+    /// Encoding of the program's input and output
     #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
     /// Frames
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     frames: u32,
-    /// Turns that each takes
+    /// Turns per program
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
-    /// Seconds that it has for a turn, and one more for each megabyte of input
+    /// Time limit per turn, in seconds, plus one second per megabyte of input
     #[arg(long, value_name = "S", default_value_t = 60)]
     timeout: u64,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     Ok(outcome(&table))
 }
 
-/// A contestant that is wrong counts before one that skips the scene.
+/// A contestant that fails takes precedence over one that skips the scene.
 fn outcome(table: &[ContestantTiming]) -> Outcome {
     let mut skipped = None;
     for ContestantTiming { name, outcome, .. } in table {

@@ -1,4 +1,4 @@
-//! `sdop board`: other libraries judged, as a record and as one page.
+//! `sdop board`: judges other libraries, and writes a record and one page.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -14,29 +14,29 @@ use super::Outcome;
 use super::files;
 use super::output::{print, progress, rows};
 
-/// Judge other libraries by the adapters of benches/adapters, and write a page of who misses what
+/// Judge other libraries with the adapters of benches/adapters, and write a page of their misses
 ///
 /// Every adapter is judged on the published cases of its claim. `benches/adapters/install` installs
-/// the libraries that the adapters need. board.json has every number, board.html is one page that
-/// opens from disk: each cell opens its groups, and the smallest case of a miss.
+/// the libraries that the adapters need. board.json has every number. board.html is one page that
+/// opens from disk; each of its cells shows its groups and the smallest case of a miss.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop board --out target/board\n          sdop board rtree coal --check\n          sdop board --quick --check"
 )]
 pub struct Args {
-    /// The adapters of these names; without one, all
+    /// Names of adapters (default: all)
     #[arg(value_name = "NAME")]
     names: Vec<String>,
-    /// Only those that install and run in little time
+    /// Only adapters that are quick to install and run
     #[arg(long)]
     quick: bool,
-    /// Cases of these names only: * stands for any text, ? for one character
+    /// Only cases with these names: * matches any text, ? one character
     #[arg(long, value_name = "GLOB", default_value = "*")]
     case: String,
-    /// Where board.json and board.html are written
+    /// Directory for board.json and board.html
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Exit with 1 when a verdict or a version is another than the table of claims has
+    /// Exit with 1 if a verdict or a version differs from the table of claims
     #[arg(long)]
     check: bool,
     /// The table of claims
@@ -46,7 +46,7 @@ pub struct Args {
         default_value = "benches/adapters/claims.toml"
     )]
     claims: PathBuf,
-    /// A scene on which all are timed
+    /// Scene on which all are timed
     #[arg(long, value_name = "SCENE")]
     timed: Option<PathBuf>,
 }
@@ -57,7 +57,7 @@ const FRAMES: u32 = 6;
 /// Runs the command.
 ///
 /// # Errors
-/// A table that can't be read, no adapter of a name, files that can't be written.
+/// The table can't be read, an adapter doesn't exist, or files can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let claims = Claims::parse(&files::read(&args.claims)?)
         .map_err(|problem| miette!("{}: {problem}", args.claims.display()))?;
@@ -119,7 +119,7 @@ fn scene(path: &Path) -> miette::Result<Scene> {
     Ok(SceneFile::read(path)?.build()?)
 }
 
-/// An adapter and our culler on the same frames. A process of its own, which has no case before.
+/// Times an adapter and our culler on the same frames. The adapter runs in a new process.
 fn times(adapter: &Adapter, command: String, scene: &Scene) -> miette::Result<Vec<Speed>> {
     let program = Program {
         command,
@@ -155,7 +155,7 @@ fn line(row: &Row) -> Vec<String> {
     ]
 }
 
-/// What is other than the table of claims has it.
+/// The difference from the table of claims, if there is one.
 fn changed(row: &Row) -> Option<String> {
     let (adapter, name) = (&row.adapter, &row.adapter.name);
     if let Some(how) = &row.how {

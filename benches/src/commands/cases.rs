@@ -1,4 +1,4 @@
-//! `sdop cases`: the cases as files, for programs that are judged later or elsewhere.
+//! `sdop cases`: writes the cases as files, for programs that are judged later or elsewhere.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -13,35 +13,35 @@ use sdop_judge::wire::Wire;
 use super::output::{print, progress};
 use super::{Outcome, files, one_of};
 
-/// Write the cases that cullers are judged by as files
+/// Write the cases of the judge as files
 ///
-/// One file a case, named like the case. A program reads it and answers each frame with a line;
-/// `sdop check CASE --pairs FILE` judges the answers.
+/// Writes one file per case, named after the case. A program reads it and answers each frame with
+/// one line; `sdop check CASE --pairs FILE` judges the answers.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cases --out cases --claims mesh\n          sdop cases --case exact/tip-to-tip/0003 --out - | ./mine | sdop check cases/exact/tip-to-tip/0003.ndjson --pairs -"
 )]
 pub struct Args {
-    /// Where they are written; - is standard output, for one case
+    /// Output directory; - is standard output, for one case
     #[arg(long, value_name = "DIR", required_unless_present = "vectors")]
     out: Option<PathBuf>,
-    /// Write small cases of two bodies with the answers to all claims into this directory instead
+    /// Instead, write small cases of two bodies with the answers for all claims into this directory
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "claims", "case", "fresh", "wire"])]
     vectors: Option<PathBuf>,
-    /// What is claimed
+    /// The claim whose cases are written
     #[arg(long, value_name = "CLAIM", default_value_t = Claim::Mesh, value_parser = one_of::<Claim>(Claim::NAMES))]
     claims: Claim,
-    /// Cases of these names only: * stands for any text, ? for one character
+    /// Only cases with matching names: * matches any text, ? one character
     #[arg(long, value_name = "GLOB", default_value = "*")]
     case: String,
-    /// Fresh cases of this seed in place of the published ones
+    /// Fresh cases with this seed instead of the published ones
     #[arg(long, value_name = "SEED")]
     fresh: Option<u64>,
-    /// Write Broadmark's recordings (.aabbs) in place of text; for the claim aabb, without cases
-    /// whose bodies change
+    /// Write Broadmark's recordings (.aabbs) instead of text; for the claim aabb, without cases in
+    /// which the set of bodies changes
     #[arg(long, conflicts_with = "wire")]
     aabbs: bool,
-    /// How they are written
+    /// Encoding of the cases
     #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
 }

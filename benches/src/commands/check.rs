@@ -1,4 +1,4 @@
-//! `sdop check`: answers that are there already, judged.
+//! `sdop check`: judges existing answers.
 
 use std::path::PathBuf;
 
@@ -12,10 +12,10 @@ use super::files::ReadArgs;
 use super::judge::{ReportFormat, emit_verdict, read_case};
 use super::{Outcome, one_of};
 
-/// Judge the pairs of a record, or a program's answers to a case
+/// Judge the pairs in a record, or a program's answers to a case
 ///
-/// Without --pairs the record's own pairs are judged. The exact reference decides: a pair that
-/// meets and isn't there ends in exit code 1, a record without all of its frames in exit code 3.
+/// Without --pairs, the record's own pairs are judged by the exact reference. The exit code is 1 if
+/// a pair that meets is missing, and 3 if frames of the record are missing.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop check run.ndjson --claims mesh\n          ./mine < cases/touch/vertex/0000.ndjson | sdop check cases/touch/vertex/0000.ndjson --pairs -"
@@ -23,26 +23,26 @@ use super::{Outcome, one_of};
 pub struct Args {
     /// A case of `sdop cases`, or a record of `sdop run --record`
     record: PathBuf,
-    /// The answers, one line a frame; - is standard input
+    /// The answers, one line per frame; - is standard input
     #[arg(long, value_name = "FILE")]
     pairs: Option<PathBuf>,
-    /// What is claimed; absent: the first that the case is about, meshes for a record
+    /// The claim [default: the case's first claim; mesh for a record]
     #[arg(long, value_name = "CLAIM", value_parser = one_of::<Claim>(Claim::NAMES))]
     claims: Option<Claim>,
-    /// How the answers are written
+    /// Encoding of the answers
     #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
     #[command(flatten)]
     files: ReadArgs,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: ReportFormat,
 }
 
-/// Answers that were given before.
-struct Given(Result<Vec<Answer>, Stop>);
+/// A contestant that returns answers from a file.
+struct StoredAnswers(Result<Vec<Answer>, Stop>);
 
-impl Subject for Given {
+impl Subject for StoredAnswers {
     fn answer(&self, _case: &Case) -> Result<Vec<Answer>, Stop> {
         self.0.clone()
     }
@@ -67,9 +67,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         }
         None => Ok(recorded(args, read.pairs)?),
     };
-    let mut verdict = examine_given(&Given(answers), &options, read.case).into_diagnostic()?;
+    let mut verdict =
+        examine_given(&StoredAnswers(answers), &options, read.case).into_diagnostic()?;
     if let Some(why) = read.lacks {
-        // A miss in the frames that are there is one all the same.
+        // A miss in the existing frames counts even if others are missing.
         for case in &mut verdict.cases {
             if case.outcome == CaseOutcome::Pass {
                 let why = why.clone();
@@ -93,7 +94,7 @@ fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Ve
     })
 }
 
-/// What a file holds, or standard input for `-`: at most `most` bytes.
+/// The content of a file, or of standard input for `-`: at most `most` bytes.
 ///
 /// # Errors
 /// It can't be read.
@@ -107,10 +108,10 @@ pub fn text(path: &std::path::Path, most: u64) -> miette::Result<Vec<u8>> {
         .wrap_err_with(|| format!("cannot read {}", path.display()))
 }
 
-/// The answers in a text, one a line.
+/// The answers in a text, one per line.
 ///
 /// # Errors
-/// A line that is no answer, or more lines than frames.
+/// A line that is not a valid answer, or more lines than frames.
 pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop> {
     let lines = text
         .split(|byte| *byte == b'\n')

@@ -1,11 +1,11 @@
-//! `sdop cmp`: two records side by side.
+//! `sdop cmp`: compares two records.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use miette::{IntoDiagnostic as _, WrapErr as _};
-use sdop_bench::report::{Change, Code, Comparison, compare};
+use sdop_bench::report::{CodeVersion, MeasuredChange, RecordComparison, compare};
 use tempfile::TempDir;
 
 use super::Outcome;
@@ -13,9 +13,9 @@ use super::output::{csv_text, json_with_reason, print, rows};
 
 /// Compare two records: counts must be equal, times are ratios with intervals
 ///
-/// Rows that both have are compared; one line counts those that only one of them has. Counts that
-/// differ are named. Times are listed as the second over the first, the largest change first, the
-/// control last; "same" where the intervals of both meet, "?" where a record has no intervals.
+/// Compares the rows that both records have; one line counts the rows that only one of them has.
+/// Counts that differ are listed. Times are shown as second / first, the largest change first and
+/// the control last: "same" if the intervals overlap, "?" if a record has no intervals.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \
@@ -23,24 +23,24 @@ use super::output::{csv_text, json_with_reason, print, rows};
                   Exit codes: 0 counts are equal, 1 counts differ or a time grew by more than --fail-slower, 2 bad input."
 )]
 pub struct Args {
-    /// The first record: a directory, or COMMIT:DIRECTORY as it was in a commit of this repository
+    /// The first record: a directory, or COMMIT:DIRECTORY for a state in this repository's history
     first: String,
     /// The second record
     second: String,
-    /// Exit with 1 when a time has grown by more than so many percent and its interval says so
+    /// Exit with 1 if a time has grown by more than this many percent, confirmed by its interval
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     fail_slower: Option<f64>,
-    /// Rows of times that are listed
+    /// How many rows of times to list
     #[arg(long, value_name = "N", default_value_t = 15)]
     most: usize,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: ComparisonFormat,
 }
 
 /// How a comparison is printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum ComparisonFormat {
     /// For people.
     #[default]
     Table,
@@ -55,23 +55,25 @@ enum Format {
 /// Runs the command.
 ///
 /// # Errors
-/// A directory that holds no whole record; two experiments.
+/// A directory without a complete record; records of different experiments.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let [first, second] = [place(&args.first)?, place(&args.second)?];
     let comparison = compare(first.path(), second.path())?;
     let why = why(&comparison, args.fail_slower);
     let text = match args.format {
-        Format::Table => table(&comparison, args.most),
-        Format::Markdown => markdown(&comparison, args.most),
-        Format::Json => json_with_reason(&comparison, why.as_deref())?,
-        Format::Csv => csv_text(serde_json::to_value(&comparison.changes).into_diagnostic()?)?,
+        ComparisonFormat::Table => table(&comparison, args.most),
+        ComparisonFormat::Markdown => markdown(&comparison, args.most),
+        ComparisonFormat::Json => json_with_reason(&comparison, why.as_deref())?,
+        ComparisonFormat::Csv => {
+            csv_text(serde_json::to_value(&comparison.changes).into_diagnostic()?)?
+        }
     };
     print(text.trim_end())?;
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
 /// What differs that should not.
-fn why(comparison: &Comparison, fail_slower: Option<f64>) -> Option<String> {
+fn why(comparison: &RecordComparison, fail_slower: Option<f64>) -> Option<String> {
     let (differences, slowest) = (comparison.differences.len(), 100.0 * comparison.slowest());
     if differences > 0 {
         return Some(format!("{differences} results differ that should be equal"));
@@ -83,13 +85,13 @@ fn why(comparison: &Comparison, fail_slower: Option<f64>) -> Option<String> {
 }
 
 /// Where a record can be read.
-enum Place {
+enum RecordLocation {
     Directory(PathBuf),
     /// A copy out of a commit.
     Copy(TempDir),
 }
 
-impl Place {
+impl RecordLocation {
     fn path(&self) -> &Path {
         match self {
             Self::Directory(path) => path,
@@ -99,17 +101,17 @@ impl Place {
 }
 
 /// A directory, or what a commit had there.
-fn place(named: &str) -> miette::Result<Place> {
+fn place(named: &str) -> miette::Result<RecordLocation> {
     let directory = PathBuf::from(named);
     match named.split_once(':') {
         Some((commit, path)) if !directory.exists() => {
             let copy = tempfile::tempdir().into_diagnostic()?;
-            Code::extract(Path::new("."), commit, path, copy.path())
+            CodeVersion::extract(Path::new("."), commit, path, copy.path())
                 .into_diagnostic()
                 .wrap_err_with(|| format!("cannot read {path} of commit {commit}"))?;
-            Ok(Place::Copy(copy))
+            Ok(RecordLocation::Copy(copy))
         }
-        _ => Ok(Place::Directory(directory)),
+        _ => Ok(RecordLocation::Directory(directory)),
     }
 }
 
@@ -120,7 +122,7 @@ fn percent(text: &str) -> Result<f64, String> {
     }
 }
 
-fn verdict(change: &Change) -> &'static str {
+fn verdict(change: &MeasuredChange) -> &'static str {
     match change.same {
         Some(true) => "same",
         Some(false) if change.ratio > 1.0 => "slower",
@@ -129,7 +131,7 @@ fn verdict(change: &Change) -> &'static str {
     }
 }
 
-fn cells(change: &Change) -> Vec<String> {
+fn cells(change: &MeasuredChange) -> Vec<String> {
     let interval = change
         .interval
         .map_or_else(String::new, |[low, high]| format!("{low:.2} to {high:.2}"));
@@ -142,7 +144,7 @@ fn cells(change: &Change) -> Vec<String> {
     ]
 }
 
-fn head(comparison: &Comparison) -> String {
+fn head(comparison: &RecordComparison) -> String {
     let [a, b] = &comparison.ids;
     let mut out = format!(
         "{a} and {b}: {} files equal to the bit{}",
@@ -167,20 +169,24 @@ fn head(comparison: &Comparison) -> String {
             difference.file, difference.row, difference.first, difference.second
         );
     }
-    for note in comparison.notes.iter().take(NOTES) {
+    for note in comparison.notes.iter().take(MOST_NOTES) {
         let _ = writeln!(out, "note: {note}");
     }
-    if comparison.notes.len() > NOTES {
-        let _ = writeln!(out, "and {} notes more", comparison.notes.len() - NOTES);
+    if comparison.notes.len() > MOST_NOTES {
+        let _ = writeln!(
+            out,
+            "and {} notes more",
+            comparison.notes.len() - MOST_NOTES
+        );
     }
     out
 }
 
 /// Notes that are shown.
-const NOTES: usize = 10;
+const MOST_NOTES: usize = 10;
 
 /// How many times are listed of how many.
-fn tail(comparison: &Comparison, most: usize) -> String {
+fn tail(comparison: &RecordComparison, most: usize) -> String {
     let same = comparison
         .changes
         .iter()
@@ -198,7 +204,7 @@ const HEADER: [&str; 5] = [
     "verdict",
 ];
 
-fn table(comparison: &Comparison, most: usize) -> String {
+fn table(comparison: &RecordComparison, most: usize) -> String {
     let listed = &comparison.changes[..most.min(comparison.changes.len())];
     let mut out = head(comparison);
     if !listed.is_empty() {
@@ -208,7 +214,7 @@ fn table(comparison: &Comparison, most: usize) -> String {
     out + &tail(comparison, most)
 }
 
-fn markdown(comparison: &Comparison, most: usize) -> String {
+fn markdown(comparison: &RecordComparison, most: usize) -> String {
     let mut out = head(comparison) + "\n| " + &HEADER.join(" | ") + " |\n|---|---|--:|---|---|\n";
     for change in comparison.changes.iter().take(most) {
         out.push_str("| ");

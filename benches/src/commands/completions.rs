@@ -1,4 +1,4 @@
-//! `sdop completions`: what a shell needs to complete commands and flags.
+//! `sdop completions`: a script with which a shell completes commands and flags.
 
 use clap::CommandFactory as _;
 use clap_complete::{Shell, generate};

@@ -1,4 +1,4 @@
-//! `sdop cost`: the formula per strategy, predicted against measured.
+//! `sdop cost`: the formula's predicted time and the measured time, per strategy.
 
 pub mod lines;
 
@@ -11,8 +11,8 @@ use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::cost::design;
 use sdop_bench::cost::level::CacheLevel;
 use sdop_bench::cost::predict::Terms;
-use sdop_bench::cost::study::{Plan, Report, possible, study};
-use sdop_bench::cost::table::{Compared, Cost, NEAR, PriceRow};
+use sdop_bench::cost::study::{CostPlan, CostReport, possible, study};
+use sdop_bench::cost::table::{Compared, Cost, MOST_RIGHT_RESIDUAL, PriceRow};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::Estimate;
 
@@ -22,37 +22,36 @@ use super::reproduce::draw_costs;
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::{Outcome, prices};
 
-/// Frames of a pass when neither the scene nor a flag wants fewer.
-const FRAMES: u32 = 200;
+/// Frames per pass, unless the scene or a flag has fewer.
+const DEFAULT_FRAMES: u32 = 200;
 const EFFORT: Effort = Effort {
     turns: 1,
     builds: 9,
 };
 
-/// What each strategy costs: predicted by the formula against measured
+/// Predict each strategy's cost by the formula, and measure it
 ///
 /// T = Co + Nu·Cu + F + Nv·Cv: construction, updates, pair finding, tests. The paper's equation has
-/// no F. Counts are those of the scene's runs. Prices belong to the machine, the volume and the
+/// no F. Counts come from the scene's runs. Prices belong to the machine, the volume and the
 /// regime: warm frames, which follow one another, or cold ones, before which other cullers ran, and
-/// the cache that holds the working set. They come from calibration scenes that are made of the
-/// scene's shapes alone, so that the formula predicts, and are the same for all scenes of one kind.
-/// The residual is measured over predicted, less one; where it is more than 5 %, the assumption
-/// that fails is named. Without --strategy, every strategy is measured that the scene has settings
-/// for.
+/// the cache that holds the working set. They come from calibration scenes that are made from the
+/// scene's shapes alone, so that T is a true prediction, and are the same for all scenes of one
+/// kind. The residual is measured / predicted - 1; above 5 %, the assumption that fails is named.
+/// Without --strategy, all strategies are measured for which the scene has settings.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Passes to measure, apart in time: the scene's seed and those after it
+    /// Passes to measure, at different times: with the scene's seed and those after it
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: u64,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Draw the terms and the measured times into this SVG file
+    /// Draw the terms and the measured times to this SVG file
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// How the result is printed; CSV has a line a term
+    /// Output format; CSV has one line per term
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -74,7 +73,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-fn measure(args: &Args) -> miette::Result<Report> {
+fn measure(args: &Args) -> miette::Result<CostReport> {
     let file = args.scene.read()?;
     let scene = file.build()?;
     let strategies = match args.scene.strategy() {
@@ -87,10 +86,13 @@ fn measure(args: &Args) -> miette::Result<Report> {
         Some(strategy) => vec![strategy],
         None => possible(&scene),
     };
-    let plan = Plan {
+    let plan = CostPlan {
         strategies,
         passes: args.seeds,
-        frames: args.scene.frames().unwrap_or(FRAMES.min(scene.frames)),
+        frames: args
+            .scene
+            .frames()
+            .unwrap_or(DEFAULT_FRAMES.min(scene.frames)),
         effort: EFFORT,
         tier: args.machine.tier(),
     };
@@ -100,22 +102,22 @@ fn measure(args: &Args) -> miette::Result<Report> {
     Ok(report)
 }
 
-fn of(report: &Report, regime: Regime) -> impl Iterator<Item = &Cost> {
+fn of(report: &CostReport, regime: Regime) -> impl Iterator<Item = &Cost> {
     report
         .costs
         .iter()
         .filter(move |cost| cost.regime == regime)
 }
 
-fn text(report: &Report) -> String {
+fn text(report: &CostReport) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write_text(&mut text, report);
     text
 }
 
-fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
-    let Report {
+fn write_text(out: &mut String, report: &CostReport) -> std::fmt::Result {
+    let CostReport {
         scene,
         bodies,
         frames,
@@ -184,14 +186,14 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
 }
 
 /// The predictions that are off, each with the assumption that fails.
-fn write_failures(out: &mut String, report: &Report, regime: Regime) -> std::fmt::Result {
+fn write_failures(out: &mut String, report: &CostReport, regime: Regime) -> std::fmt::Result {
     for cost in of(report, regime) {
         if let Some(assumption) = cost.fails {
             writeln!(
                 out,
                 "{}: more than {:.0} % off. What fails: {assumption}.",
                 cost.variant,
-                100.0 * NEAR
+                100.0 * MOST_RIGHT_RESIDUAL
             )?;
         }
     }
@@ -205,7 +207,7 @@ fn title(regime: Regime) -> &'static str {
     }
 }
 
-fn strategy_rows(report: &Report, regime: Regime) -> Table {
+fn strategy_rows(report: &CostReport, regime: Regime) -> Table {
     let mut rows = table(&[
         "strategy",
         "Nu·Cu",
@@ -241,7 +243,7 @@ fn strategy_rows(report: &Report, regime: Regime) -> Table {
     rows
 }
 
-fn total_rows(report: &Report) -> Table {
+fn total_rows(report: &CostReport) -> Table {
     let mut rows = table(&[
         "strategy",
         "Co predicted",
@@ -272,8 +274,8 @@ fn percents(residual: &Estimate) -> [String; 2] {
     ]
 }
 
-/// What each volume of each strategy counts, and the terms that follow.
-fn volume_rows(report: &Report) -> Table {
+/// The counts of each volume of each strategy, and the resulting terms.
+fn volume_rows(report: &CostReport) -> Table {
     let mut rows = table(&[
         "strategy",
         "volume",

@@ -1,4 +1,4 @@
-//! Curves over one quantity with a legend: what the figures of several commands share.
+//! Draws curves over one quantity with a legend, for the figures of several commands.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -13,9 +13,9 @@ pub const FONT: &str = "sans-serif";
 
 /// Points of each curve, by its name.
 pub type Curves = BTreeMap<String, Vec<(f64, f64)>>;
-pub type Drawn = Result<(), Box<dyn Error>>;
+pub type DrawResult = Result<(), Box<dyn Error>>;
 
-/// How a curve is drawn: several may have one colour.
+/// The style of a curve: several may have one colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stroke {
     pub colour: RGBColor,
@@ -52,7 +52,7 @@ pub struct Chart<'a, X, Y> {
     pub titles: [&'a str; 2],
     pub x: X,
     pub y: Y,
-    /// How numbers along the x axis are written.
+    /// The text of numbers along the x axis.
     pub ticks: &'a dyn Fn(&f64) -> String,
     pub legend: SeriesLabelPosition,
 }
@@ -66,13 +66,13 @@ pub fn plain(number: &f64) -> String {
 /// Draws every curve by its stroke.
 ///
 /// # Errors
-/// What can't be drawn.
+/// Drawing fails.
 pub fn draw<X, Y>(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
     curves: &Curves,
     stroke: impl Fn(usize, &str) -> Stroke,
     chart: Chart<'_, X, Y>,
-) -> Drawn
+) -> DrawResult
 where
     X: AsRangedCoord<Value = f64>,
     Y: AsRangedCoord<Value = f64>,
@@ -127,10 +127,10 @@ where
 /// Draws on a white page and returns the SVG.
 ///
 /// # Errors
-/// What can't be drawn.
+/// Drawing fails.
 pub fn page(
     size: (u32, u32),
-    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, Shift>) -> Drawn,
+    draw: impl FnOnce(&DrawingArea<SVGBackend<'_>, Shift>) -> DrawResult,
 ) -> miette::Result<String> {
     let mut text = String::new();
     let area = SVGBackend::with_string(&mut text, size).into_drawing_area();

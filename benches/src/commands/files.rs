@@ -1,4 +1,4 @@
-//! Results as files, how large a file may be, and the command that makes results again.
+//! Writing results, the size limit of input files, and the command that repeats a run.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use miette::{IntoDiagnostic as _, WrapErr as _};
 
 use super::sweep;
 
-/// How much is read of a file.
+/// The size limit of files.
 #[derive(clap::Args)]
 pub struct ReadArgs {
-    /// Refuse scenes and meshes, and lines of records, of more MiB than this
+    /// Largest allowed scene, mesh or line of a record, in MiB
     #[arg(long, value_name = "MIB", default_value_t = sdop::files::MAX_BYTES >> 20)]
     max_file_size: u64,
 }
@@ -21,10 +21,10 @@ impl ReadArgs {
     }
 }
 
-/// Writes a file whole, and its directory when there is none.
+/// Writes a file whole, and creates its directory if needed.
 ///
 /// # Errors
-/// The system refuses.
+/// The system's error.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> miette::Result<()> {
     let write = || {
         if let Some(directory) = path.parent() {
@@ -47,11 +47,12 @@ pub fn read(path: &Path) -> miette::Result<String> {
         .wrap_err_with(|| format!("cannot read {}", path.display()))
 }
 
-/// The variable in which `sdop record` names itself to what it runs.
+/// The environment variable by which `sdop record` passes its own command line to the programs that
+/// it runs.
 pub const COMMAND: &str = "SDOP_COMMAND";
 
-/// The command that makes these results again: `sdop record`'s, or this one's. Absolute paths are
-/// this machine's own business, and who shared the work changes no result.
+/// The command that repeats these results: `sdop record`'s, or this one. Absolute paths are
+/// replaced by `DIR`, and flags that only share out work are dropped.
 pub fn command() -> String {
     if let Ok(command) = std::env::var(COMMAND) {
         return command;

@@ -10,7 +10,7 @@ use super::files::write;
 use super::output::print;
 use super::{Cli, Outcome};
 
-/// Write manual pages, one a command, from the same text as --help
+/// Write one manual page per command, with the text of --help
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop man --out ~/.local/share/man/man1 && man sdop-run")]
 pub struct Args {
@@ -25,7 +25,7 @@ pub struct Args {
 /// A page that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let mut program = Cli::command().disable_help_subcommand(true);
-    // Has each command know its whole name, `sdop run`.
+    // Gives each command its full name, such as `sdop run`.
     program.build();
     let commands = program.get_subcommands().cloned();
     let pages: Vec<clap::Command> = std::iter::once(program.clone()).chain(commands).collect();

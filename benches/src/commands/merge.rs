@@ -1,4 +1,4 @@
-//! `sdop merge`: the files of shards become the result that one process would have given.
+//! `sdop merge`: joins the files of shards to the result of one process.
 
 use std::path::PathBuf;
 
@@ -7,21 +7,21 @@ use sdop_bench::sweep::{Units, merge};
 use super::output::Format;
 use super::{Outcome, reproduce, tradeoff, verify};
 
-/// Put the shards of a sweep together
+/// Join the shards of a sweep
 ///
-/// What --shard left behind, by whatever machines, becomes the result of the command run whole: the
-/// same counts, hashes and pages. Shards of other code, settings or scenes are refused, and so are
-/// missing ones and those that come twice.
+/// Joins the files that --shard wrote, on any machines, to the result of the whole command: the
+/// same counts, hashes and pages. Shards with different code, settings or scenes, duplicate shards
+/// and missing shards are errors.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop merge shards/verify-*.units -o target/verify")]
 pub struct Args {
     /// The shards' files, all of them
     #[arg(required = true)]
     shards: Vec<PathBuf>,
-    /// Where the result's files go
+    /// Output directory
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -29,7 +29,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// Files that can't be read or don't make a whole.
+/// Files that can't be read or don't belong together.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let mut files = Vec::new();
     for path in &args.shards {

@@ -1,5 +1,4 @@
-//! `sdop mesh`: what a mesh is, how tight each volume is about it, and conversion to another
-//! format.
+//! `sdop mesh`: describes a mesh and how tightly each volume fits it, or converts it.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -18,43 +17,42 @@ use super::{Outcome, one_of};
 
 /// Describe a mesh and its bounding volumes, or convert it
 ///
-/// Prints counts, whether the mesh is closed, its smallest enclosing ball and the size of every
-/// volume over that of the convex hull. World-aligned volumes (aabb, k-dop) are re-fitted when a
-/// body turns: theirs is the mean over 64 rotations. Vertices that no triangle uses are left out of
-/// ball, hull and volumes.
+/// Prints counts, whether the mesh is closed, its smallest enclosing ball, and the size of every
+/// volume relative to the convex hull. World-aligned volumes (aabb, k-dop) change when a body
+/// turns; their size is the mean over 64 rotations. Vertices that no triangle uses are ignored.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop mesh data/meshes/spot.tri\n          sdop mesh model.obj --to model.tri\n          sdop mesh model.obj --triangles 4000 --to coarse.tri"
 )]
 pub struct Args {
-    /// The mesh; the extension names its format
+    /// The mesh file; its extension selects the format
     file: PathBuf,
-    /// Write the mesh to this file, in the format that its extension names
+    /// Write the mesh to this file, in the format of its extension
     #[arg(long, value_name = "FILE")]
     to: Option<PathBuf>,
-    /// Collapse edges first, until the mesh has at most so many triangles
+    /// First collapse edges until the mesh has at most this many triangles
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     triangles: Option<u32>,
-    /// The dialect of a .tri file, where several fit
+    /// The dialect of a .tri file, if several fit
     #[arg(long, value_name = "DIALECT", value_parser = one_of::<TriFormat>(TriFormat::NAMES))]
     tri_format: Option<TriFormat>,
     #[command(flatten)]
     files: ReadArgs,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
 /// What is printed.
 #[derive(Serialize)]
-struct Report {
+struct MeshReport {
     name: String,
     file: String,
     written: Option<String>,
     vertices: usize,
     unused_vertices: usize,
     triangles: usize,
-    /// Without area: a repeated index, two equal corners, or three on a line.
+    /// Triangles without area: a repeated index, two equal corners, or three corners on a line.
     degenerate_triangles: usize,
     components: usize,
     closed_components: usize,
@@ -63,7 +61,8 @@ struct Report {
     /// Smallest enclosing ball (x, y, z, r) in the file's coordinates, of the vertices that
     /// triangles use, as all that follows.
     ball: [f64; 4],
-    /// Where the vertices' origin lies in them: zero unless the mesh is far from its origin.
+    /// The origin of the vertices in the file's coordinates: zero unless the mesh is far from its
+    /// origin.
     offset: [f64; 3],
     hull_vertices: usize,
     hull_volume: f64,
@@ -91,7 +90,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
+fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<MeshReport> {
     let topology = Topology::of(mesh);
     let total = topology.total();
     let spec = ShapeSpec {
@@ -102,7 +101,7 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
     let hull = Hull::of(&shape.vertices);
     let centre = shape.ball.centre;
     let [x, y, z] = std::array::from_fn(|i| shape.offset[i] + f64::from(centre[i]));
-    Ok(Report {
+    Ok(MeshReport {
         name: mesh.name.clone(),
         file: args.file.display().to_string(),
         written: args.to.as_ref().map(|path| path.display().to_string()),
@@ -122,7 +121,7 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<Report> {
     })
 }
 
-/// The mesh without the vertices that no triangle uses: no surface of it reaches there.
+/// The mesh without the vertices that no triangle uses.
 fn of_used_vertices(mesh: &TriangleMesh) -> TriangleMesh {
     let mut used = mesh.triangles.as_flattened().to_vec();
     used.sort_unstable();
@@ -142,14 +141,14 @@ fn of_used_vertices(mesh: &TriangleMesh) -> TriangleMesh {
     mesh
 }
 
-fn text(report: &Report) -> String {
+fn text(report: &MeshReport) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write_text(&mut text, report);
     text
 }
 
-fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
+fn write_text(out: &mut String, report: &MeshReport) -> std::fmt::Result {
     let (closed, all) = (report.closed_components, report.components);
     let state = match closed {
         _ if closed == all => "closed".to_owned(),
@@ -174,7 +173,7 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
             "ball, hull and volumes are of the vertices that triangles use; culled shapes contain all vertices"
         )?;
     }
-    // What is far below the ball's size is rounding.
+    // Numbers far below the ball's size are rounding errors.
     let at = |x: f64| decimal(if x.abs() < 1e-6 * r { 0.0 } else { x });
     writeln!(
         out,
@@ -220,13 +219,13 @@ fn write_text(out: &mut String, report: &Report) -> std::fmt::Result {
     }
 }
 
-/// Whether a volume is nothing beside the ball's.
-fn is_flat(volume: f64, report: &Report) -> bool {
+/// Whether a volume is negligible compared with the ball's.
+fn is_flat(volume: f64, report: &MeshReport) -> bool {
     let radius = report.ball[3];
     volume <= 1e-9 * radius.powi(3)
 }
 
-/// A volume; what is far below the ball's is rounding.
-fn volume(volume: f64, report: &Report) -> String {
+/// A volume; values far below the ball's are rounding errors.
+fn volume(volume: f64, report: &MeshReport) -> String {
     decimal(if is_flat(volume, report) { 0.0 } else { volume })
 }

@@ -1,4 +1,4 @@
-//! The command line: one file a command. A command parses its arguments, calls the library and
+//! The command line, one file per command. A command parses its arguments, calls the library and
 //! prints the result.
 //!
 //! A new command is a file with `Args` and `run`, a module line, a variant and a line in
@@ -77,7 +77,7 @@ enum Command {
 }
 
 impl Command {
-    /// Whether its work is cut into units, which many can share.
+    /// Whether its work is split into units that several processes can share.
     fn is_sweep(&self) -> bool {
         match self {
             Self::Verify(args) => args.is_sweep(),
@@ -102,36 +102,35 @@ impl Command {
         }
     }
 
-    /// Whether its work can be shared by the ranks of `mpirun`. Another command would be run by
-    /// each of them, all of it.
+    /// Whether its work can be shared by the ranks of `mpirun`. Each rank would run any other
+    /// command as a whole.
     fn takes_ranks(&self) -> bool {
         self.is_sweep() || matches!(self, Self::Run(_))
     }
 }
 
-/// The exit code of bad input.
+/// The exit code of invalid input.
 pub const BAD_INPUT: u8 = 2;
 
-/// How a command ended when its input was good.
+/// How a command with valid input ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// All is well: exit code 0.
     Passed,
-    /// A check failed, and which, on one line: exit code 1.
+    /// A check failed, with one line that says which: exit code 1.
     Failed(String),
-    /// No check failed, but some that were asked for were not made, and how many: exit code 3.
+    /// No check failed, but some requested ones did not run, with their number: exit code 3.
     Incomplete(String),
-    /// The input was bad, all ranks know, and one of them has said it: exit code 2.
+    /// The input was invalid, all ranks know it, and one of them has reported it: exit code 2.
     #[cfg(feature = "mpi")]
     Told,
 }
 
 impl Cli {
-    /// Refuses to share work that can't be, above all to be one of many ranks where each would do
-    /// all of it.
+    /// Checks that the work can be shared, so that ranks don't each do all of it.
     ///
     /// # Errors
-    /// Many ranks, and the program or the command doesn't take them.
+    /// The program was started as many ranks, and it or the command doesn't support that.
     pub fn refuse(&self) -> miette::Result<()> {
         if let Command::Record(args) = &self.command {
             args.refuse()?;
@@ -175,9 +174,9 @@ pub fn main(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
     let cli = match Cli::try_parse_from(by_present_names(arguments)) {
         Ok(cli) => cli,
         Err(told) => {
-            // Nobody may be listening: that is no reason to panic.
+            // A closed standard error is no reason to panic.
             ending.alike(|| drop(told.print()));
-            // Help is no error.
+            // Help is not an error.
             return if told.exit_code() == 0 { 0 } else { BAD_INPUT };
         }
     };
@@ -228,7 +227,7 @@ impl Outcome {
             Self::Failed(why) => (1, why),
             Self::Incomplete(why) => (3, why),
         };
-        // Nobody may be listening: that is no reason to panic.
+        // A closed standard error is no reason to panic.
         let _ = writeln!(std::io::stderr(), "sdop: {why}");
         code
     }
@@ -240,12 +239,12 @@ impl From<&Verdict> for Outcome {
     }
 }
 
-/// Says an error. Nobody may be listening on standard error: that is no reason to panic.
+/// Prints an error. A closed standard error is no reason to panic.
 fn complain(report: &miette::Report) {
     let _ = writeln!(std::io::stderr(), "{report:?}");
 }
 
-/// Has errors printed unwrapped: a path or a command in a hint must survive being copied.
+/// Prints errors without wrapping lines, so that paths and commands in them can be copied.
 fn report_errors_whole() {
     let hook = miette::set_hook(Box::new(|_| {
         Box::new(MietteHandlerOpts::new().wrap_lines(false).build())
@@ -253,7 +252,7 @@ fn report_errors_whole() {
     drop(hook); // another call of the same process has set it before
 }
 
-/// Reads one of a library enum's names; help and errors list them all.
+/// Parses one of a library enum's names; help and errors list all of them.
 fn one_of<T>(names: &[&'static str]) -> impl TypedValueParser<Value = T> + use<T>
 where
     T: std::str::FromStr + Clone + Send + Sync + 'static,

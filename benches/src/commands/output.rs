@@ -1,5 +1,4 @@
-//! Results on standard output: one value, printed as a table for people or as JSON or CSV for
-//! programs.
+//! Printing results to standard output: as a table for people, or as JSON or CSV for programs.
 
 use std::io::{ErrorKind, Write as _};
 
@@ -18,17 +17,19 @@ pub enum Format {
     Table,
     /// One JSON value.
     Json,
-    /// A header, then one line a record.
+    /// A header, then one line per record.
     Csv,
 }
 
-/// Keys that stay one CSV column: their form differs from run to run, and the header must not.
-const WHOLE: [&str; 2] = ["interest", "budget"];
+/// Keys that are not flattened in CSV, because their form differs from run to run and the header
+/// must not.
+const UNFLATTENED_KEYS: [&str; 2] = ["interest", "budget"];
 
-/// Prints `value` in `format`; a list becomes a CSV line an element, any other value a single line.
+/// Prints `value` in `format`. In CSV, a list has one line per element, any other value a single
+/// line.
 ///
 /// # Errors
-/// Standard output can't be written; a reader that left early is no error.
+/// Standard output can't be written. A reader that ends early is not an error.
 pub fn emit<T: Serialize>(
     format: Format,
     value: &T,
@@ -42,7 +43,7 @@ pub fn emit<T: Serialize>(
     print(text.trim_end())
 }
 
-/// A result with the reason why it is no success.
+/// A result with the reason why the command did not succeed.
 #[derive(Serialize)]
 struct WithReason<'a, T> {
     #[serde(flatten)]
@@ -71,7 +72,7 @@ pub fn emit_with_reason<T: Serialize>(
 /// The JSON that [`emit_with_reason`] prints.
 ///
 /// # Errors
-/// A value that is no JSON.
+/// A value that JSON can't represent.
 pub fn json_with_reason<T: Serialize>(value: &T, why: Option<&str>) -> miette::Result<String> {
     serde_json::to_string_pretty(&WithReason { value, why }).into_diagnostic()
 }
@@ -83,7 +84,7 @@ pub fn json_with_reason<T: Serialize>(value: &T, why: Option<&str>) -> miette::R
 pub fn print(text: &str) -> miette::Result<()> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        // `sdop … | head` has read what it wanted.
+        // `sdop … | head` has read enough.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         result => result
             .into_diagnostic()
@@ -96,7 +97,7 @@ pub fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table
         .load_style(presets::UTF8_HORIZONTAL_ONLY)
-        // A terminal's width is kept to; a pipe has none.
+        // Tables fit the terminal's width; a pipe has none.
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_header(header.iter().copied());
     table.style_mut().row_separator = LineStyle::none();
@@ -106,7 +107,7 @@ pub fn table(header: &[&str]) -> Table {
     table
 }
 
-/// The same with a row an item.
+/// A table with one row per item.
 pub fn rows<T>(header: &[&str], items: &[T], row: impl Fn(&T) -> Vec<String>) -> Table {
     let mut table = table(header);
     table.add_rows(items.iter().map(row));
@@ -186,7 +187,7 @@ fn flatten(key: &str, value: Value, row: &mut Vec<(String, String)>) {
     match value {
         Value::Null => row.push((key.to_owned(), String::new())),
         Value::String(text) => row.push((key.to_owned(), text)),
-        Value::Object(fields) if !WHOLE.contains(&key) => {
+        Value::Object(fields) if !UNFLATTENED_KEYS.contains(&key) => {
             for (name, field) in fields {
                 flatten(&inner(&name), field, row);
             }
@@ -215,8 +216,9 @@ mod tests {
     use super::*;
     use serde_json::json;
 
+    /// Csv flattens objects and named lists and keeps settings whole.
     #[test]
-    fn csv_flattens_objects_and_named_lists_and_keeps_settings_whole() {
+    fn csv_flattens_all_but_settings() {
         let value = json!({
             "scene": "a,b", "budget": {"tests": 5}, "interest": null,
             "counters": {"tests": 1, "hits": 2},
@@ -229,8 +231,9 @@ mod tests {
         assert_eq!(text, expected);
     }
 
+    /// Numbers for people have six digits and no exponent where they need none.
     #[test]
-    fn numbers_for_people_have_six_digits_and_no_exponent_where_they_need_none() {
+    fn printed_numbers_have_six_digits() {
         for (x, text) in [
             (32.536_16, "32.5362"),
             (-0.0, "0"),
@@ -245,8 +248,9 @@ mod tests {
         }
     }
 
+    /// Csv of records has the union of their columns.
     #[test]
-    fn csv_of_records_has_the_union_of_their_columns() {
+    fn csv_header_unites_all_columns() {
         let text = csv_text(json!([{"a": 1}, {"b": 2, "a": 3}])).unwrap_or_default();
         assert_eq!(text, "a,b\n1,\n3,2\n");
     }

@@ -36,7 +36,7 @@ pub const BY_K: [RGBColor; 4] = [
 pub const GREY: RGBColor = RGBColor(110, 110, 110);
 /// Data that matter less.
 pub const LIGHT: RGBColor = RGBColor(190, 190, 190);
-/// Lines behind the data.
+/// Lines in the background.
 pub const PALE: RGBColor = RGBColor(225, 225, 225);
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! Started by `mpirun`: which commands take many ranks, and what the others say.
+//! Programs started by `mpirun`: which commands support many ranks, and the error of the others.
 
 use sdop_bench::mpi;
 
-/// Refuses a start as one of many ranks by a program or a command that would do all of the work in
-/// each of them.
+/// Fails if the program was started as one of many ranks and the command would do all of its work
+/// in each of them.
 ///
 /// # Errors
 /// Many ranks, and the program is built without MPI or the command doesn't take them.

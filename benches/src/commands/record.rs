@@ -1,4 +1,4 @@
-//! `sdop record`: runs an experiment and keeps what it measured, with where it comes from.
+//! `sdop record`: runs an experiment and stores its measurements with their provenance.
 
 mod shared;
 mod steps;
@@ -10,7 +10,9 @@ use std::time::{Duration, Instant};
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::mpi;
-use sdop_bench::report::{Code, Experiment, FILE, Load, Manifest, Step, experiments};
+use sdop_bench::report::{
+    CodeVersion, Experiment, ExperimentStep, FILE, Load, Manifest, experiments,
+};
 
 use super::Outcome;
 use super::files::{COMMAND, write};
@@ -18,41 +20,40 @@ use super::output::{print, rows};
 use super::scene_args::MachineArgs;
 use super::sweep::{SHARING, SweepArgs};
 
-/// Run an experiment and keep its measurements under data/record
+/// Run an experiment and store its measurements under data/record
 ///
-/// Writes the experiment's tables and record.json: command, commit, date, machine, compiler, load
-/// before and after, and the digest of every file and input. Without an experiment, lists them.
-/// Experiments that are sweeps (reproduce, tradeoff, verify) can be shared by ranks of mpirun or
-/// made in shards; others are measured in one process.
+/// Writes the experiment's tables and record.json, which has the command, commit, date, machine,
+/// compiler, load before and after, and the digest of every file and input. Without an experiment,
+/// lists all of them. Sweeps (reproduce, tradeoff, verify) can be shared by ranks of mpirun or
+/// split into shards; other experiments are measured in one process.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
     mpirun -n 64 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, and for all: --merge"
 )]
 pub struct Args {
-    /// The experiments; kernels and peers stand for all of theirs
+    /// The experiments; kernels and peers mean all experiments in their group
     experiments: Vec<String>,
-    /// What the machine is called in data/record
+    /// The machine's name in data/record
     #[arg(long, value_name = "NAME", default_value = "here")]
     name: String,
-    /// Where records go
+    /// Output directory for records
     #[arg(long, value_name = "DIR", default_value = "data/record")]
     out: PathBuf,
-    /// Describe the files that are there already instead of measuring; they keep the commit that
-    /// last touched them
+    /// Describe existing files instead of measuring; they keep the commit that last changed them
     #[arg(long)]
     adopt: bool,
     /// A note for readers of the record
     #[arg(long, value_name = "TEXT")]
     note: Option<String>,
-    /// Make the record of the shards that --shard left beside it
+    /// Make the record from the shards that --shard wrote
     #[arg(long, conflicts_with_all = ["adopt", "shard", "share_cores"])]
     merge: bool,
     #[command(flatten)]
     sweep: SweepArgs,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Further arguments of the experiment, behind --
+    /// Further arguments for the experiment, after --
     #[arg(last = true)]
     more: Vec<String>,
 }
@@ -146,7 +147,7 @@ fn place(args: &Args, experiment: &str) -> PathBuf {
     args.out.join(&args.name).join(experiment)
 }
 
-/// The experiment of a name, or all that it stands for.
+/// The experiment of that name, or all experiments of that group.
 fn named(name: &str) -> miette::Result<Vec<&'static Experiment>> {
     let belongs = |experiment: &&Experiment| {
         let rest = experiment.name.strip_prefix(name);
@@ -173,7 +174,8 @@ fn say(directory: &Path) -> miette::Result<()> {
     ))
 }
 
-/// Measures into a directory beside, and puts it in its place when it is whole.
+/// Measures into a temporary directory next to the record's, and renames it when the record is
+/// complete.
 fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
     let part = prepare(directory)?;
     let (before, start) = (Load::now(), Instant::now());
@@ -250,7 +252,12 @@ fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> 
     }
     let mut more = args.more.clone();
     if let Some(tier) = args.machine.asked() {
-        let ours = |step: &Step| matches!(step, Step::Sdop(_) | Step::SdopPrints(..));
+        let ours = |step: &ExperimentStep| {
+            matches!(
+                step,
+                ExperimentStep::Sdop(_) | ExperimentStep::SdopPrints(..)
+            )
+        };
         if !experiment.steps.iter().all(ours) {
             return Err(miette!(
                 help = "only what sdop runs itself takes a level",
@@ -283,7 +290,7 @@ fn execute(args: &Args, experiment: &Experiment, out: &Path) -> miette::Result<(
 fn complete(
     args: &Args,
     experiment: &Experiment,
-    step: &Step,
+    step: &ExperimentStep,
     out: &Path,
 ) -> miette::Result<(Command, Option<&'static str>)> {
     let (mut command, file) = steps::command(step, out)?;
@@ -337,9 +344,9 @@ fn adopt(
             known.map_or_else(String::new, |experiment| command_line(experiment, args));
     }
     manifest.caches.clear();
-    let touched = Code::last_touching(Path::new("."), directory);
+    let touched = CodeVersion::last_touching(Path::new("."), directory);
     if let Some((commit, day)) = touched {
-        manifest.code = Code::at(Path::new("."), &commit);
+        manifest.code = CodeVersion::at(Path::new("."), &commit);
         manifest.date = day;
     }
     manifest.note.clone_from(&args.note);

@@ -1,5 +1,4 @@
-//! `sdop report`: renders every page's numbers from the records, or checks that they are what the
-//! records say.
+//! `sdop report`: renders the numbers on all pages from the records, or checks them.
 
 mod far;
 
@@ -8,14 +7,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop_bench::report::{Code, Quantities, Store, pages};
+use sdop_bench::report::{CodeVersion, Quantities, Store, pages};
 
 use super::files::write;
 use super::output::{print, rows};
 use super::{Outcome, reproduce, tradeoff};
 
 /// Pages that people write, with blocks whose numbers come from records or without any.
-const WRITTEN: [&str; 10] = [
+const PAGES_WITH_BLOCKS: [&str; 10] = [
     "README.md",
     "paper/results.md",
     "ARCHITECTURE.md",
@@ -42,7 +41,7 @@ const DRAWN: [(&str, Figures); 2] = [
 ];
 
 /// The table that a figure is drawn from, and the figure.
-const FAR: (&str, &str) = ("kernels/far/far.csv", "far.svg");
+const FAR_FIGURE: (&str, &str) = ("kernels/far/far.csv", "far.svg");
 
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
@@ -51,26 +50,26 @@ const MACROS: &str = "paper/quantities.jinja";
 /// whole page.
 const TEMPLATES: &str = "paper/templates";
 
-/// Render the numbers of README and the other pages from data/record
+/// Render the numbers in README and the other pages from data/record
 ///
-/// A template paper/templates/pages/PAGE gives a whole page. Other pages carry blocks between <!--
+/// A template paper/templates/pages/PAGE gives a whole page. Other pages have blocks between <!--
 /// BEGIN NAME --> and <!-- END NAME -->, from the template paper/templates/NAME.md. Templates read
-/// records by csv("EXPERIMENT/FILE"), md, json, text, record and records, choose rows by where and
-/// one, and round by fixed, sig, thousands and percent. Every record's digests are checked first,
-/// so a digit changed by hand is found wherever it stands, in a page or in a record. A number must
-/// look the same on every page. A record that is older than the code it measures must have its
-/// commit named on the pages that quote it. data/record/quoted.toml names the machine whose records
-/// are quoted.
+/// records with csv("EXPERIMENT/FILE"), md, json, text, record and records, select rows with where
+/// and one, and round with fixed, sig, thousands and percent. The digests of all records are
+/// checked first, so that a digit changed by hand is found in pages and in records. A number must
+/// look the same on every page. If a record is older than the code that it measures, pages that
+/// quote it must name its commit. data/record/quoted.toml names the machine whose records are
+/// quoted.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop report\n          sdop report --check\n          sdop report --quantities"
 )]
 pub struct Args {
-    /// Change nothing; exit with 1 when a page would change, a record was changed, two pages give a
-    /// number differently, or an old record isn't called old
+    /// Change nothing; exit with 1 if a page would change, a record was changed, two pages show a
+    /// number differently, or a page doesn't name the commit of an old record
     #[arg(long)]
     check: bool,
-    /// List the numbers that stand on more than one page
+    /// List the numbers that are on more than one page
     #[arg(long)]
     quantities: bool,
     /// The repository
@@ -106,7 +105,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             }
         }
     }
-    if let (table, to) = FAR
+    if let (table, to) = FAR_FIGURE
         && whole.is_recorded(table)
     {
         let text = far::draw(&whole.table(table)?)?;
@@ -121,8 +120,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         .collect();
     let wholes = root.join(pages::WHOLE);
     let wholes = self::templates(&wholes, &wholes)?;
-    let now = Code::here(&args.root);
-    let written = WRITTEN
+    let now = CodeVersion::here(&args.root);
+    let written = PAGES_WITH_BLOCKS
         .into_iter()
         .filter(|page| args.root.join(page).is_file())
         .map(|page| (page, None));
@@ -131,8 +130,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         .map(|(page, template)| (page.as_str(), Some(template.as_str())));
     let pages: Vec<(&str, Option<&str>)> = written.chain(made).collect();
     for (page, template) in &pages {
-        // A store of its own knows which records the page quotes.
-        let sources = pages::Sources {
+        // A separate store per page records which records it quotes.
+        let sources = pages::PageSources {
             store: Arc::new(Store::new(&records)?),
             macros: macros.clone(),
             templates: templates.clone(),
@@ -224,13 +223,13 @@ fn figure(args: &Args, from: &str, text: &str, name: &str) -> miette::Result<Opt
     Ok(None)
 }
 
-/// Renders or checks one page, of its own template or with blocks; what is wrong with it.
+/// Renders or checks one page, from its template or with blocks. Returns what is wrong with it.
 fn one_page(
     args: &Args,
     page: &str,
     template: Option<&str>,
-    sources: &pages::Sources,
-    now: Option<&Code>,
+    sources: &pages::PageSources,
+    now: Option<&CodeVersion>,
 ) -> miette::Result<Vec<String>> {
     let path = args.root.join(page);
     let text = match std::fs::read_to_string(&path) {
@@ -276,7 +275,7 @@ fn first_difference(page: &str, text: &str, rendered: &str) -> String {
 }
 
 /// Records used by a page that are older than the code, and whose commit the page doesn't name.
-fn unnamed_age(page: &str, text: &str, store: &Store, now: Option<&Code>) -> Vec<String> {
+fn unnamed_age(page: &str, text: &str, store: &Store, now: Option<&CodeVersion>) -> Vec<String> {
     let Some(now) = now else {
         return Vec::new();
     };

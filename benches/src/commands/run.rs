@@ -1,4 +1,4 @@
-//! `sdop run`: simulate and cull one scene, and say what it counted and cost.
+//! `sdop run`: simulates and culls one scene, and prints counters and times.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::Scene;
 use sdop_bench::simulate::{Simulation, Summary};
 use sdop_bench::tradeoff::TradeoffError;
-use sdop_bench::tradeoff::truth::Judge;
+use sdop_bench::tradeoff::truth::ExactJudge;
 use sdop_judge::record::Recorder;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -28,10 +28,10 @@ use super::scene_args::{MachineArgs, SceneArgs};
 
 /// Simulate and cull one scene
 ///
-/// Runs the effects that the scene lists, culls every frame and prints counters, the seconds of
-/// each stage, what single frames take, and hashes. Counters and hashes depend on scene, seed and
-/// flags alone, not on the CPU or threads; with --budget-us they depend on the clock. Under mpirun,
-/// ranks share the scene and report the same pairs; built with the feature `mpi`.
+/// Runs the effects that the scene lists, culls every frame, and prints counters, the seconds of
+/// each stage, percentiles of single frames, and hashes. Counters and hashes depend only on scene,
+/// seed and flags, not on the CPU or threads; with --budget-us they depend on the clock. Under
+/// mpirun (with the feature `mpi`), ranks share the scene and report the same pairs.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop run data/scenes/paper-500.toml --strategy s-dop-batch --format json"
@@ -40,18 +40,17 @@ pub struct Args {
     /// Write every frame's poses and pairs to this file, as lines of JSON
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Have the record say, too, which meshes truly meet, decided in exact arithmetic: slow for
-    /// large scenes
+    /// Add to the record which meshes meet, decided in exact arithmetic; slow for large scenes
     #[arg(long, requires = "record")]
     truth: bool,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     #[command(flatten)]
     scene: SceneArgs,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Threads that cull; nothing but time depends on their number
+    /// Number of threads; only times depend on it
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
 }
@@ -75,9 +74,9 @@ struct Report<'a> {
     simd: &'static str,
     threads: usize,
     counters: Map<String, Value>,
-    seconds: Terms,
+    seconds: RunTerms,
     frame_seconds: Percentiles,
-    /// What else the machine did.
+    /// Other load on the machine.
     conditions: Conditions,
     effects: Vec<EffectLine>,
     volumes_sha256: &'a str,
@@ -87,17 +86,17 @@ struct Report<'a> {
     ranks: Option<&'a [RankLine]>,
 }
 
-/// The terms of T: those of culling, and what borders between ranks add.
+/// The terms of T: those of culling, and those of the borders between ranks.
 #[derive(Serialize)]
-struct Terms {
+struct RunTerms {
     #[serde(flatten)]
     culling: Seconds,
     #[serde(flatten)]
     border: Option<BorderSeconds>,
 }
 
-/// What ranks say besides.
-type Shared<'a> = Option<(BorderSeconds, &'a [RankLine])>;
+/// Additional results of ranks.
+type RankResults<'a> = Option<(BorderSeconds, &'a [RankLine])>;
 
 #[derive(Serialize)]
 struct EffectLine {
@@ -109,8 +108,7 @@ struct EffectLine {
 /// Runs the command.
 ///
 /// # Errors
-/// A bad scene, settings that it can't have, a body that leaves the contract, a recording that
-/// can't be written.
+/// An invalid scene or settings, a body that leaves the contract, a record that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     #[cfg(feature = "mpi")]
     if sdop_bench::mpi::launched() > 1 {
@@ -125,7 +123,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         None => None,
     };
     let judge = if args.truth {
-        Some(Judge::new(&scene.shapes).map_err(TradeoffError::from)?)
+        Some(ExactJudge::new(&scene.shapes).map_err(TradeoffError::from)?)
     } else {
         None
     };
@@ -160,7 +158,7 @@ fn print(
     scene: &Scene,
     summary: &Summary,
     conditions: Conditions,
-    shared: Shared<'_>,
+    shared: RankResults<'_>,
 ) -> miette::Result<()> {
     let (tier, threads) = (args.machine.tier(), args.threads.into());
     let report = report(scene, (tier, threads), summary, conditions, shared);
@@ -172,7 +170,7 @@ fn report<'a>(
     (tier, threads): (Tier, usize),
     summary: &'a Summary,
     conditions: Conditions,
-    shared: Shared<'a>,
+    shared: RankResults<'a>,
 ) -> Report<'a> {
     let CullSettings {
         strategy,
@@ -202,7 +200,7 @@ fn report<'a>(
         simd: tier.name(),
         threads,
         counters: counters(*strategy, &summary.counters),
-        seconds: Terms {
+        seconds: RunTerms {
             culling: summary.seconds,
             border: shared.map(|(border, _)| border),
         },
@@ -325,9 +323,9 @@ fn write_text(
     }
 }
 
-/// Seconds by stage. Construction happens once, so it has no time a frame.
-fn stages(seconds: &Terms, frames: u32) -> comfy_table::Table {
-    let Terms {
+/// Seconds per stage. Construction happens once, so it has no time per frame.
+fn stages(seconds: &RunTerms, frames: u32) -> comfy_table::Table {
+    let RunTerms {
         culling: seconds,
         border,
     } = seconds;

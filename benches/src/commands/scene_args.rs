@@ -1,5 +1,4 @@
-//! The arguments of every command that runs a scene: the file, and flags that override what it
-//! says.
+//! The arguments of every command that runs a scene: the file, and flags that override its values.
 
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
@@ -16,7 +15,7 @@ use toml::de::ValueDeserializer;
 use super::files::ReadArgs;
 use super::one_of;
 
-/// A scene file and what overrides it.
+/// A scene file and flags that override it.
 #[derive(clap::Args)]
 pub struct SceneArgs {
     /// The scene file (TOML), for example data/scenes/paper-500.toml
@@ -24,7 +23,7 @@ pub struct SceneArgs {
     /// Frames to cull; the first is the scene as placed
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     frames: Option<u32>,
-    /// Where all random draws start
+    /// The seed of all random draws
     #[arg(long)]
     seed: Option<u64>,
     #[command(flatten)]
@@ -40,10 +39,10 @@ pub struct CullArgs {
     /// Which volumes are tested, and in which order
     #[arg(long, value_parser = one_of::<Strategy>(Strategy::NAMES))]
     strategy: Option<Strategy>,
-    /// Who hands candidate pairs to the first volume test
+    /// Pair finder: how candidates for the first volume test are found
     #[arg(long, value_name = "FINDER", value_parser = one_of::<Finder>(Finder::NAMES))]
     pairs: Option<Finder>,
-    /// The or-DOP's half-spaces
+    /// Number of the or-DOP's half-spaces
     #[arg(long, value_parser = one_of::<DirectionSet>(DirectionSet::NAMES))]
     k: Option<DirectionSet>,
     /// The or-DOP's axes
@@ -52,25 +51,25 @@ pub struct CullArgs {
     /// Which separating axes the or-DOP test tries
     #[arg(long, value_parser = one_of::<Overlap>(Overlap::NAMES))]
     overlap: Option<Overlap>,
-    /// When or-DOP poses are updated
+    /// When or-DOPs are updated
     #[arg(long, value_parser = one_of::<Updates>(Updates::NAMES))]
     updates: Option<Updates>,
     /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1],
     /// half_angle = 30 }'
     #[arg(long, value_parser = interest)]
     interest: Option<Interest>,
-    /// Time-critical: or-DOP tests a frame
+    /// Time-critical: or-DOP tests per frame
     #[arg(long, value_name = "TESTS", conflicts_with = "budget_us")]
     budget_tests: Option<u64>,
-    /// Time-critical: microseconds a frame, by the clock
+    /// Time-critical: microseconds per frame
     #[arg(long, value_name = "MICROSECONDS")]
     budget_us: Option<u64>,
-    /// Time-critical: in which order the budget is spent
+    /// Time-critical: the order in which the budget is spent
     #[arg(long, value_parser = one_of::<Order>(Order::NAMES))]
     order: Option<Order>,
 }
 
-/// How the culler uses the machine.
+/// The machine's resources that the culler uses.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Machine")]
 pub struct MachineArgs {
@@ -189,7 +188,7 @@ fn interest(text: &str) -> Result<Interest, String> {
         format!("[{text}]")
     };
     let read = ValueDeserializer::parse(&value).and_then(Interest::deserialize);
-    // clap shows no help text of its own for an error, so it goes into the message.
+    // clap does not print help texts of errors, so it is part of the message.
     let hint = "body indices as in 0,5,7 or a cone as in { body = 0, direction = [0, 0, 1], half_angle = 30 }";
     read.map_err(|error| format!("interest: {}; {hint}", error.message()))
 }
@@ -212,8 +211,9 @@ mod tests {
 
     use super::{Interest, interest};
 
+    /// Interest reads as a list or a cone.
     #[test]
-    fn interest_reads_as_a_list_or_a_cone() {
+    fn interest_parses_list_and_cone() {
         let list = interest("0, 5,7").unwrap();
         assert_eq!(list, Interest::Bodies(vec![0, 5, 7]));
         let cone = interest("{ body = 3, direction = [0, 0, 1], half_angle = 30 }").unwrap();

@@ -19,11 +19,11 @@ use super::output::{print, progress};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Many machines")]
 pub struct SweepArgs {
-    /// Do part i of n, every n-th unit of the work, and leave it in the output directory for `sdop
-    /// merge`
+    /// Do shard i of n, every n-th unit of the work, and write it to the output directory for
+    /// `sdop merge`
     #[arg(long, value_name = "i/n")]
     shard: Option<Shard>,
-    /// Under mpirun, let ranks on one machine time side by side
+    /// Under mpirun, let ranks on one machine measure times at the same time
     #[arg(long)]
     share_cores: bool,
 }
@@ -32,10 +32,10 @@ pub struct SweepArgs {
 pub const SHARING: [&str; 2] = ["--shard", "--share-cores"];
 
 /// Receives results in the order of units.
-type Take<'a> = &'a mut dyn FnMut(usize, &str) -> miette::Result<()>;
+type TakeResult<'a> = &'a mut dyn FnMut(usize, &str) -> miette::Result<()>;
 
-/// Begins a command whose work may be shared: ranks but the first wait until that has found the
-/// arguments good.
+/// Begins a command whose work may be shared: other ranks wait until the first one has checked the
+/// arguments.
 ///
 /// # Errors
 /// A shard by one of many ranks.
@@ -81,7 +81,7 @@ impl SweepArgs {
         &self,
         work: &dyn Sweep,
         directory: &Path,
-        take: Take,
+        take: TakeResult,
     ) -> miette::Result<Option<f64>> {
         let start = Instant::now();
         let header = work.header()?;
@@ -118,7 +118,12 @@ impl SweepArgs {
 
     /// Does this rank's part of the work; whether this is rank 0, which takes all results.
     #[cfg(feature = "mpi")]
-    fn on_ranks(&self, work: &dyn Sweep, header: &Header, take: Take) -> miette::Result<bool> {
+    fn on_ranks(
+        &self,
+        work: &dyn Sweep,
+        header: &Header,
+        take: TakeResult,
+    ) -> miette::Result<bool> {
         let ranks = Ranks::start();
         let first = ranks.rank == 0;
         if first {
@@ -145,7 +150,7 @@ impl SweepArgs {
 }
 
 /// Does these units in this process.
-fn units(work: &dyn Sweep, units: Vec<usize>, take: Take) -> miette::Result<()> {
+fn units(work: &dyn Sweep, units: Vec<usize>, take: TakeResult) -> miette::Result<()> {
     let bar = progress(units.len() as u64, "units");
     let mut order = InOrder::new(units.clone(), take);
     let mut on = |unit, result| {

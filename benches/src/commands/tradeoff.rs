@@ -1,4 +1,4 @@
-//! `sdop tradeoff`: what each step of accuracy costs in time on one scene, and when it pays.
+//! `sdop tradeoff`: what accuracy costs in time on one scene, and when it pays.
 
 mod plot;
 mod tables;
@@ -13,7 +13,7 @@ use sdop_bench::measure::machine::Machine;
 use sdop_bench::sweep::Merged;
 pub use sdop_bench::tradeoff::units::NAME;
 use sdop_bench::tradeoff::units::{Comparison, Settings};
-use sdop_bench::tradeoff::{Findings, Plan, Tradeoff};
+use sdop_bench::tradeoff::{Findings, Tradeoff, TradeoffPlan};
 use serde::{Deserialize, Serialize};
 
 use super::Outcome;
@@ -22,12 +22,13 @@ use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::{MachineArgs, SceneArgs};
 use super::sweep::{self, SweepArgs};
 
-/// What accuracy costs in time, for every volume and strategy
+/// Measure precision and time for every volume and strategy
 ///
-/// Culls sample frames of the scene with every volume and strategy, compares with the exact truth
-/// about the meshes, then measures the time of frames that follow one another (warm) and of frames
-/// between which others ran (cold). Counts depend on scene and flags alone; seconds are this
-/// machine's. Given the JSON of an earlier run instead of a scene, prints and draws that.
+/// Culls sample frames of the scene with every volume and strategy, compares the pairs with the
+/// exact intersections of the meshes, and measures the time of frames that follow one another
+/// (warm) and of frames before which other cullers ran (cold). Counts depend only on scene and
+/// flags; times are those of this machine. If the argument is the JSON of an earlier run, prints
+/// and draws that.
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
     Examples: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff\n          \
@@ -37,26 +38,26 @@ pub struct Args {
     scene: SceneArgs,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Fewer seeds, frames and pairs: wide intervals in a quarter of the time
+    /// A shorter run with fewer seeds, frames and pairs: wider intervals in a quarter of the time
     #[arg(long)]
     quick: bool,
-    /// Runs, each with a seed of its own from the scene's on [default: 5, or 2 with --quick]
+    /// Runs, with consecutive seeds from the scene's on [default: 5, or 2 with --quick]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: Option<u64>,
-    /// Print every table, not only the recommendation and what it rests on
+    /// Print all tables, not only the recommendation and its basis
     #[arg(long)]
     all: bool,
-    /// Write the figures, JSON and CSV into this directory; of a record, `sdop report` makes the
-    /// page paper/tradeoff.md
+    /// Write figures, JSON and CSV to this directory; from a record, `sdop report` makes the page
+    /// paper/tradeoff.md
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write the figures into this directory instead
+    /// Write the figures to this directory instead
     #[arg(long, value_name = "DIR", requires = "out")]
     paper: Option<PathBuf>,
-    /// Where exact truths are kept between runs [default: sdop/truth in the user's cache directory]
+    /// Cache of exact answers between runs [default: sdop/truth in the user's cache directory]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     #[command(flatten)]
@@ -72,7 +73,7 @@ impl Args {
 
 /// A result with where it comes from.
 #[derive(Serialize, Deserialize)]
-struct Recorded {
+struct RecordedTradeoff {
     command: String,
     machine: Machine,
     #[serde(flatten)]
@@ -103,7 +104,12 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         return Ok(Outcome::Passed);
     }
     let settings = comparison.settings();
-    args.tell(&Recorded::new(command(), findings, &settings, before)?)
+    args.tell(&RecordedTradeoff::new(
+        command(),
+        findings,
+        &settings,
+        before,
+    )?)
 }
 
 /// What merged shards give.
@@ -117,12 +123,12 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
         findings.take(result)?;
     }
     let (line, unknown) = (merged.header.line.clone(), Conditions::default());
-    let recorded = Recorded::new(line, findings, &settings, unknown)?;
+    let recorded = RecordedTradeoff::new(line, findings, &settings, unknown)?;
     write_all(out, out, &recorded)?;
     print(&recorded, format, tables::brief)
 }
 
-impl Recorded {
+impl RecordedTradeoff {
     fn new(
         command: String,
         findings: Findings,
@@ -140,7 +146,7 @@ impl Recorded {
 
 impl Args {
     /// Writes and prints what was asked for.
-    fn tell(&self, recorded: &Recorded) -> miette::Result<Outcome> {
+    fn tell(&self, recorded: &RecordedTradeoff) -> miette::Result<Outcome> {
         if let Some(directory) = &self.out {
             let paper = self.paper.as_ref().unwrap_or(directory);
             write_all(directory, paper, recorded)?;
@@ -155,7 +161,7 @@ impl Args {
 }
 
 fn print(
-    recorded: &Recorded,
+    recorded: &RecordedTradeoff,
     format: Format,
     text: fn(&Tradeoff) -> String,
 ) -> miette::Result<Outcome> {
@@ -173,9 +179,9 @@ fn print(
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
 
-fn plan(args: &Args) -> Plan {
+fn plan(args: &Args) -> TradeoffPlan {
     let quick = |quick, thorough| if args.quick { quick } else { thorough };
-    Plan {
+    TradeoffPlan {
         seeds: args.seeds.unwrap_or(quick(2, 5)),
         samples: quick(6, 20) as u32,
         pairs: quick(8_000, 80_000) as u32,
@@ -200,14 +206,14 @@ fn recorded(path: &Path) -> Option<&Path> {
         .then_some(path)
 }
 
-fn read(path: &Path) -> miette::Result<Recorded> {
+fn read(path: &Path) -> miette::Result<RecordedTradeoff> {
     serde_json::from_str(&files::read(path)?)
         .into_diagnostic()
         .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
 }
 
 /// Writes the numbers to one directory, the figures to another.
-fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Result<()> {
+fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miette::Result<()> {
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
     let csv = csv_text(serde_json::to_value(tidy::lines(result)).into_diagnostic()?)?;
@@ -226,7 +232,7 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &Recorded) -> miette::Resul
 /// # Errors
 /// Another text.
 pub fn figures_of(recorded: &str) -> miette::Result<Vec<(String, String)>> {
-    let recorded: Recorded = serde_json::from_str(recorded).into_diagnostic()?;
+    let recorded: RecordedTradeoff = serde_json::from_str(recorded).into_diagnostic()?;
     figures(&recorded.result)
 }
 

@@ -1,4 +1,4 @@
-//! `sdop verify`: the optimised culler against the exact reference, on hard cases, seeded rounds
+//! `sdop verify`: judges the optimised culler by the exact reference, on hard cases, seeded rounds
 //! and scenes.
 
 mod report;
@@ -12,9 +12,9 @@ use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::Tier;
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::sweep::Merged;
-use sdop_bench::verify::shrink::Smallest;
+use sdop_bench::verify::shrink::SmallestScene;
 pub use sdop_bench::verify::units::NAME;
-use sdop_bench::verify::units::{Origin, Settings, Verification};
+use sdop_bench::verify::units::{Settings, UnitOrigin, Verification};
 use sdop_judge::ours::hard::{FILES, Group, page};
 use sdop_judge::ours::rounds::{Failure, Ledger};
 use sdop_judge::ours::subject::EveryWay;
@@ -30,13 +30,14 @@ use report::Report;
 
 /// Judge the optimised culler by the exact reference
 ///
-/// Hard cases first, then seeded rounds (a probe among bodies that nearly touch it, and a random
-/// crowd, for every k and axes), then the scenes given, meshes included. Strategies, overlap tests,
-/// finders, k, axes, update modes, SIMD tiers and numbers of threads meet in every combination; the
-/// matrix at the end says how often. Each list is held against the exact answers and against that
-/// of all-pairs. Given boxes are held against their definition. A missed pair, a list that differs
-/// from all-pairs' and an empty cell of the matrix end in exit code 1, the first two with the
-/// smallest scene that shows it. A run that --time cuts short is INCOMPLETE: exit code 3.
+/// Runs hard cases, then seeded rounds (a probe among bodies that nearly touch it, and a random
+/// crowd, for every k and axes), then the given scenes with their meshes. Strategies, overlap
+/// tests, finders, k, axes, update modes, SIMD tiers and numbers of threads are tested in every
+/// combination; the matrix at the end counts them. Each list is compared with the exact answers and
+/// with the list of all-pairs; lists of boxes are compared with their definition. The exit code is
+/// 1 for a missed pair, a list that differs from that of all-pairs, or an empty cell of the matrix;
+/// for the first two, the smallest scene that shows it is written. A run that --time cuts short is
+/// INCOMPLETE: exit code 3.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100\n          \
@@ -44,7 +45,7 @@ use report::Report;
     sdop verify --seeds 10000 --shard 3/64 --out shards"
 )]
 pub struct Args {
-    /// Scenes to run and judge, meshes included
+    /// Scenes to run and judge, with their meshes
     scenes: Vec<PathBuf>,
     /// One group of hard cases instead of all; may be repeated
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FILES.iter().map(|file| file.0)))]
@@ -58,25 +59,25 @@ pub struct Args {
     /// The first seed
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     first_seed: u64,
-    /// Start no round after so many seconds; without all rounds the result is INCOMPLETE, exit code
-    /// 3
+    /// Start no new round after this many seconds; if rounds are missing, the result is INCOMPLETE,
+    /// exit code 3
     #[arg(long, value_name = "S", conflicts_with = "shard")]
     time: Option<u64>,
     /// Frames of each scene
     #[arg(long, value_name = "N", default_value_t = 20)]
     frames: usize,
-    /// One SIMD tier alone, instead of all that the CPU has
+    /// Only this SIMD tier, instead of all that the CPU has
     #[arg(long, value_name = "TIER")]
     simd: Option<Tier>,
-    /// Where the scene that shows a missed pair is written, and shards
+    /// Output directory for shards and for the scene that shows a missed pair
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// Write the hard cases' exact answers and their page into this directory, and judge nothing
+    /// Only write the hard cases' exact answers and their page to this directory
     #[arg(long, value_name = "DIR")]
     record_hard_cases: Option<PathBuf>,
     #[command(flatten)]
     files: ReadArgs,
-    /// How the result is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
     #[command(flatten)]
@@ -103,7 +104,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     sweep::enter(&args.sweep)?;
     let run = verification(args)?;
-    let mut taken = Taken::default();
+    let mut taken = UnitTotals::default();
     let mut take = |unit, result: &str| taken.take(&run, unit, result);
     let Some(seconds) = args.sweep.run(&run, &args.out, &mut take)? else {
         return Ok(Outcome::Passed);
@@ -140,7 +141,7 @@ fn tiers(args: &Args) -> Vec<Tier> {
 pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
     let settings = merged.header.settings().into_diagnostic()?;
     let run = Verification::new(settings)?;
-    let mut taken = Taken::default();
+    let mut taken = UnitTotals::default();
     for (&unit, result) in &merged.done {
         taken.take(&run, unit, result)?;
     }
@@ -151,7 +152,7 @@ fn verification(args: &Args) -> miette::Result<Verification> {
     let deadline = args.time.map(Duration::from_secs);
     // A time beyond the clock's end is none.
     let deadline = deadline.and_then(|time| Instant::now().checked_add(time));
-    // A scene that can't be built is said before the long work.
+    // A scene that can't be built is reported before the long work.
     let most = args.files.max_bytes();
     let build = |path: &PathBuf| SceneFile::read_within(path, most).and_then(|file| file.build());
     let scenes = args.scenes.iter().map(build);
@@ -180,15 +181,15 @@ fn verification(args: &Args) -> miette::Result<Verification> {
 
 /// What units have given.
 #[derive(Default)]
-struct Taken {
+struct UnitTotals {
     /// How many.
     units: usize,
-    ledgers: BTreeMap<Origin, Ledger>,
+    ledgers: BTreeMap<UnitOrigin, Ledger>,
     /// The first unit of each that knows of a failure.
-    failed: BTreeMap<Origin, usize>,
+    failed: BTreeMap<UnitOrigin, usize>,
 }
 
-impl Taken {
+impl UnitTotals {
     fn take(&mut self, run: &Verification, unit: usize, result: &str) -> miette::Result<()> {
         self.units += 1;
         for (origin, ledger, failed) in run.take(unit, result)? {
@@ -211,18 +212,18 @@ impl Taken {
         let settings = run.settings();
         let mut report = Report::new(&settings.tiers);
         let scenes = settings.scenes.iter().enumerate();
-        let scenes = scenes.map(|(n, name)| (Origin::Scene(n), name.as_str()));
+        let scenes = scenes.map(|(n, name)| (UnitOrigin::Scene(n), name.as_str()));
         let rounds = [
-            (Origin::Hard, "hard cases"),
-            (Origin::Near, "near pairs"),
-            (Origin::Random, "random pairs"),
+            (UnitOrigin::Hard, "hard cases"),
+            (UnitOrigin::Near, "near pairs"),
+            (UnitOrigin::Random, "random pairs"),
         ];
         for (origin, name) in rounds.into_iter().chain(scenes) {
             let none = Ledger::default();
             report.add(name.to_owned(), self.ledgers.get(&origin).unwrap_or(&none));
         }
         let none = Ledger::default();
-        let boxes = self.ledgers.get(&Origin::Boxes).unwrap_or(&none);
+        let boxes = self.ledgers.get(&UnitOrigin::Boxes).unwrap_or(&none);
         let units = [run.units(), self.units];
         report.finish(units, seconds, &boxes.boxes, run.rotation());
         let why = report.why();
@@ -260,7 +261,7 @@ fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
         failure.mode.tier,
         failure.mode.threads
     );
-    let Some(smallest) = Smallest::of(failure) else {
+    let Some(smallest) = SmallestScene::of(failure) else {
         return print(&format!("{what}\nwhich does not show again"));
     };
     let (path, shown) = smallest

@@ -1,4 +1,4 @@
-//! `sdop view`: a run as one HTML page that anybody can open.
+//! `sdop view`: writes a run as one self-contained HTML page.
 
 mod input;
 
@@ -14,13 +14,13 @@ use sdop_bench::view::{Culled, Page, Show, decide_truth};
 use super::Outcome;
 use super::output::{print, progress};
 use super::scene_args::{MachineArgs, SceneArgs};
-use input::Input;
+use input::ViewInput;
 
 /// Write a page that shows a run: bodies, pairs, volumes and counts, frame by frame
 ///
-/// The page holds everything it needs and opens from disk. Bodies change colour when their pair is
-/// reported, and another when their meshes truly meet; a missed pair flashes and is listed. A
-/// record shows what any program reported.
+/// The page contains all of its data and opens from disk. Bodies change colour if a pair of theirs
+/// is reported, and have another colour if their meshes meet; a missed pair flashes and is listed.
+/// A record shows what any program reported.
 #[derive(clap::Args)]
 #[command(
     mut_arg("scene", |arg| arg.value_name("SCENE|RECORD|CASE").help(
@@ -29,7 +29,7 @@ use input::Input;
     after_help = "Examples: sdop view data/scenes/paper-500.toml --open\n          sdop run data/scenes/paper-50.toml --record run.ndjson && sdop view run.ndjson --beside sphere"
 )]
 pub struct Args {
-    /// The page [default: the scene's name, in the current directory]
+    /// Output file [default: the scene's name, in the current directory]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Open the page in the browser
@@ -38,18 +38,18 @@ pub struct Args {
     /// A second strategy on the same frames, or another record of them, side by side
     #[arg(long, value_name = "STRATEGY|RECORD")]
     beside: Option<String>,
-    /// What a program answered to a case (`sdop cases`) or record, one line a frame; - is standard
+    /// A program's answers to a case (`sdop cases`) or record, one line per frame; - is standard
     /// input
     #[arg(long, value_name = "FILE")]
     answers: Option<PathBuf>,
     /// Which run of a group of hard cases
     #[arg(long, value_name = "N")]
     run: Option<usize>,
-    /// Leave out which meshes truly meet, unless the record says: the exact decision is slow for
+    /// Don't compute which meshes meet, unless the record has it; the exact decision is slow for
     /// large scenes
     #[arg(long)]
     no_truth: bool,
-    /// Leave out T: its prices are calibrated on this machine
+    /// Don't show T, whose prices would be calibrated on this machine
     #[arg(long)]
     no_prices: bool,
     #[command(flatten)]
@@ -67,7 +67,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let tier = args.machine.tier();
     let (page, name, broken) =
         match input::read(&args.scene, args.run, args.answers.as_deref(), tier)? {
-            Input::Show(mut show, broken) => {
+            ViewInput::Show(mut show, broken) => {
                 let culled = culled(args, &show)?;
                 if !args.no_truth {
                     let bar = progress(show.frames.len() as u64, "which meshes meet");
@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
                 let page = Page::new(&show, &culled, tier)?;
                 (page, show.header.scene, broken)
             }
-            Input::Broken(error) => {
+            ViewInput::Broken(error) => {
                 let path = args.scene.path();
                 let stem = path.file_stem().unwrap_or(path.as_os_str());
                 (

@@ -1,9 +1,9 @@
-//! Calibration: Cu, Cv, Co and F of every volume, from [scenes of its own](super::design).
+//! Calibration: Cu, Cv, Co and F of every volume, measured on [calibration scenes](super::design).
 //!
-//! A round goes through all calibration scenes, in an order in which neighbours are far apart in
-//! size, since a drift of the machine must not look like a price. All variants take turns on the
+//! A round measures all calibration scenes, in an order in which consecutive ones differ much in
+//! size, so that a drift of the machine doesn't look like a price. All variants take turns on the
 //! same frames. [`explain`](mod@super::explain) then explains each stage's seconds by its counts.
-//! Dividing a run's own seconds by its own counts would predict nothing.
+//! Dividing a run's own seconds by its own counts would be no prediction.
 
 use std::time::Instant;
 
@@ -14,7 +14,7 @@ use super::level::CacheLevel;
 use super::predict::Prices;
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::culling::Culling;
-use crate::measure::turns::{Regime, Times, Turns, median, next_turn};
+use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn};
 use crate::measure::variant::Variant;
 use crate::measure::waiting::Waiting;
 use crate::scene::Scene;
@@ -24,13 +24,13 @@ use sdop::simd::Tier;
 use sdop::volume::{Ball, Shape};
 use sdop_judge::contestant::Contestant;
 
-/// How far the next calibration scene of a round is from the last one; it shares no divisor with
-/// their number.
-const STRIDE: usize = 7;
-/// The calibration scene with the most pairs, on which hits and misses are told apart.
+/// The step from a calibration scene of a round to the next one. It shares no divisor with the
+/// number of scenes.
+const SCENE_STEP: usize = 7;
+/// The calibration scene with the most pairs, on which hits and misses are distinguished.
 const MOST_PAIRS: usize = SCENES - 1;
 
-/// How long to calibrate.
+/// The amount of calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Effort {
     /// Turns of each calibration scene in a round.
@@ -40,7 +40,7 @@ pub struct Effort {
     pub builds: usize,
 }
 
-/// A variant with what never changes of it, and what a round has seen of it.
+/// A variant, its constant data, and its observations in a round.
 struct Prepared {
     variant: Variant,
     shapes: Vec<Shape>,
@@ -75,7 +75,7 @@ impl Prepared {
 
 /// The calibration of some variants for scenes of one kind.
 pub struct Calibration {
-    /// The variants, and after them those whose prices they share.
+    /// The variants, followed by those whose prices they share.
     prepared: Vec<Prepared>,
     variants: usize,
     spheres: usize,
@@ -87,11 +87,11 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Prepares the calibration scenes. Spheres alone are calibrated in any case, and or-DOPs
-    /// after spheres wherever they refine: their prices are the same under every strategy.
+    /// Prepares the calibration scenes. Spheres alone are always calibrated, and or-DOPs after
+    /// spheres whenever they refine: their prices are the same for every strategy.
     ///
     /// # Errors
-    /// Effects that can't be simulated.
+    /// The effects can't be simulated.
     pub fn new(
         scene: &Scene,
         variants: &[Variant],
@@ -131,16 +131,16 @@ impl Calibration {
         })
     }
 
-    /// How often Co is measured in a pass.
+    /// The number of times that a pass measures Co.
     #[must_use]
     pub fn builds_of_a_pass(&self) -> usize {
         self.effort.builds
     }
 
-    /// A round: prices for warm frames and for cold ones, of each variant.
+    /// Runs a round and returns the prices of each variant for warm and for cold frames.
     ///
     /// # Errors
-    /// Settings that can't be carried out, a body that leaves the contract.
+    /// The settings can't be carried out, or a body leaves the contract.
     pub fn round(&mut self) -> Result<[Vec<Prices>; 2], SimulationError> {
         for prepared in &mut self.prepared {
             prepared.observed.iter_mut().for_each(Vec::clear);
@@ -148,7 +148,7 @@ impl Calibration {
             prepared.volumes.clear();
         }
         for number in 0..SCENES * self.effort.turns {
-            self.turn(number * STRIDE % SCENES)?;
+            self.turn(number * SCENE_STEP % SCENES)?;
         }
         let round = Round {
             lanes: expected::lanes(self.tier),
@@ -180,13 +180,13 @@ impl Calibration {
             let variant = design::adapted(&prepared.variant, scene.bodies.len());
             cullers.push(variant.culling_of(&prepared.shapes, scene, self.tier)?);
         }
-        // Buffers have grown, and all others have run, before the first frame is timed; on other
-        // poses, since what was just seen would not be cold.
+        // Before the first timed frame, all cullers run on other poses: so buffers have grown, and
+        // the frame is cold.
         cullers
             .iter_mut()
             .for_each(|culler| culler.frame(&scene.bodies));
         let before: Vec<Counts> = cullers.iter().map(Culling::counts).collect();
-        let mut times = vec![Times::default(); cullers.len()];
+        let mut times = vec![FrameTimes::default(); cullers.len()];
         self.turns.round(&mut cullers, &poses, |timed| {
             times[timed.number].push(&timed)
         });
@@ -219,13 +219,12 @@ impl Calibration {
     }
 }
 
-/// Whether two variants cull in the same way, whatever they are called.
+/// Whether two variants cull in the same way; names don't count.
 fn is_same(one: &Variant, other: &Variant) -> bool {
     (&one.settings, one.hulls) == (&other.settings, other.hulls)
 }
 
-/// Builds what a variant's volume needs of one shape beyond what making the culler builds: the work
-/// behind Co.
+/// Builds a variant's volume of one shape, except what the culler builds: the work that Co counts.
 pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
     match volume {
         Volume::Sphere => drop(std::hint::black_box(Ball::smallest(&shape.vertices))),
@@ -237,7 +236,7 @@ pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
     }
 }
 
-/// Seconds that each of a variant's volumes takes for all shapes, built once.
+/// Seconds to build each of a variant's volumes for all shapes once.
 fn volume_seconds(variant: &Variant, shapes: &[Shape]) -> Vec<f64> {
     let mut waiting = Waiting::of_this_thread();
     let seconds = |volume: Volume| {
@@ -255,7 +254,7 @@ fn volume_seconds(variant: &Variant, shapes: &[Shape]) -> Vec<f64> {
 /// in seconds.
 ///
 /// # Errors
-/// Settings that can't be carried out.
+/// The settings can't be carried out.
 pub fn build(
     variant: &Variant,
     shapes: &[Shape],

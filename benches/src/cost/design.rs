@@ -1,14 +1,14 @@
-//! The calibration scenes: which counts vary, and which stay.
+//! The calibration scenes: which counts vary, and which stay the same.
 //!
 //! They are made of a scene's shapes and settings, and of the [level](super::level) of its working
-//! set. Nothing else of the scene enters, neither its number of bodies, its box, its poses nor its
-//! seed, so that scenes of one kind share their prices and none of them is seen. Every size is
-//! placed at every density. At one size all densities have the same updates, bodies and (of all
-//! pairs) tests, so that what differs is the price of hits. At one density sizes differ in all
-//! counts, and tests grow faster than bodies. The smallest size is below every level: in it a
-//! frame's own price is most of the time, which is lost among the tests of hundreds of bodies
-//! (without it the price per frame would be known to ± 200 %, and that per body to ± 40 %, from
-//! times that scatter by 2 %).
+//! set. They depend on nothing else of the scene, neither its number of bodies nor its box, poses
+//! or seed, so that scenes of one kind share their prices and are independent of them. Every size
+//! is placed at every density. At one size all densities have the same updates, bodies and (with
+//! all pairs) tests, so that their times differ by the price of hits. At one density sizes differ
+//! in all counts, and tests grow faster than bodies. The smallest size is below every level: there
+//! the price per frame is most of the time, while with hundreds of bodies it is small compared with
+//! that of tests (without the smallest size, the price per frame would be known to ± 200 %, and
+//! that per body to ± 40 %, from times that scatter by 2 %).
 
 use super::level::CacheLevel;
 use crate::effects::Velocities;
@@ -24,15 +24,15 @@ const SIZES: usize = 4;
 /// Densities of each size.
 pub(super) const DENSITIES: usize = 5;
 /// Bodies of the smallest calibration scene.
-const FEWEST: usize = 16;
-/// A level's sizes end at so many times its fewest bodies: all pairs of more take too long, and
-/// caches that hold them are the same.
-const SPAN: f64 = 4.0;
-/// Densities where every pair is tested: shares of them whose balls meet.
-const SHARES: [f64; DENSITIES] = [0.0002, 0.002, 0.01, 0.04, 0.12];
-/// Densities where a finder rejects most pairs: balls that meet one's own.
+const FEWEST_BODIES: usize = 16;
+/// A level's largest size is at most this multiple of its fewest bodies: all pairs of more would
+/// take too long, and would be in the same caches.
+const MOST_SIZE_RATIO: f64 = 4.0;
+/// Densities if every pair is tested: shares of pairs whose balls meet.
+const MEETING_SHARES: [f64; DENSITIES] = [0.0002, 0.002, 0.01, 0.04, 0.12];
+/// Densities if a finder rejects most pairs: numbers of balls that meet one ball.
 const PARTNERS: [f64; DENSITIES] = [0.25, 1.0, 2.0, 5.0, 12.0];
-/// Where all calibration draws start; scenes count their seeds from 1.
+/// The seed of all calibration draws; scenes count their seeds from 1.
 const SEED: u64 = 0xca11_b8a7_e000_0000;
 
 /// The number of calibration scenes.
@@ -54,31 +54,36 @@ pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
 /// Every size of a level at every share of pairs whose balls meet.
 pub(super) fn grid(level: CacheLevel) -> [(usize, f64); SCENES] {
     let sizes = sizes(level);
-    std::array::from_fn(|number| (sizes[number / DENSITIES], SHARES[number % DENSITIES]))
+    std::array::from_fn(|number| {
+        (
+            sizes[number / DENSITIES],
+            MEETING_SHARES[number % DENSITIES],
+        )
+    })
 }
 
-/// The smallest size, and those of a level, each as far from the next as a ratio.
+/// The smallest size, and those of a level, in a geometric sequence.
 fn sizes(level: CacheLevel) -> [usize; SIZES] {
     let [fewest, most] = level.bodies().map(|bodies| bodies as f64);
-    let fewest = fewest.max(FEWEST as f64);
+    let fewest = fewest.max(FEWEST_BODIES as f64);
     let most = match level {
         CacheLevel::L1 => most,
-        _ => most.min(SPAN * fewest),
+        _ => most.min(MOST_SIZE_RATIO * fewest),
     };
     std::array::from_fn(|number| {
         let Some(number) = number.checked_sub(1) else {
-            return FEWEST;
+            return FEWEST_BODIES;
         };
         let place = (number as f64 + 0.5) / (SIZES - 1) as f64;
         (fewest * (most / fewest).powf(place)).round() as usize
     })
 }
 
-/// `n` of the scene's bodies placed and set going afresh, in a box in which this share of their
+/// `n` of the scene's bodies with new poses and velocities, in a box in which this share of their
 /// balls meets.
 ///
-/// They keep the scene's order, in which bodies of one shape stand together: such pairs are faster
-/// to test than mixed ones.
+/// They keep the scene's order, in which bodies of one shape are together: such pairs are faster to
+/// test than mixed ones.
 fn resample(scene: &Scene, n: usize, share: f64, stream: u64) -> Scene {
     let mut draws = Stream::new(SEED, stream);
     let original = &scene.bodies;
@@ -115,8 +120,8 @@ fn resample(scene: &Scene, n: usize, share: f64, stream: u64) -> Scene {
     }
 }
 
-/// The side of the box in which so large a share of balls with these radii meets, at least as wide
-/// as the widest.
+/// The side of the box in which this share of balls with these radii meets, at least as wide as the
+/// widest.
 fn side(radii: impl Iterator<Item = f32> + Clone, share: f64) -> f32 {
     let n = radii.clone().count() as f64;
     let mean = |power: i32| radii.clone().map(|r| f64::from(r).powi(power)).sum::<f64>() / n;
@@ -124,7 +129,7 @@ fn side(radii: impl Iterator<Item = f32> + Clone, share: f64) -> f32 {
     let reach = 2.0 * mean(3) + 6.0 * mean(2) * mean(1);
     let volume = 4.0 / 3.0 * std::f64::consts::PI * reach / share;
     let widest = radii.clone().fold(0.0, f32::max);
-    // Centres keep a radius off the walls.
+    // Centres are at least a radius away from the walls.
     (libm::cbrt(volume) as f32 + 2.0 * widest).max(3.0 * widest)
 }
 

@@ -1,10 +1,10 @@
-//! What follows from the counts of a frame, if its hits are spread evenly: how many bodies have any,
-//! and how far vectors of tests go.
+//! Expected values from the counts of a frame, if its hits are spread evenly: the number of bodies
+//! with a hit, and the number of slabs that vectors of tests compare.
 //!
-//! Cullers count tests and hits. Their time depends on two more numbers, because pairs are tested
-//! a vector at a time: hits are listed by the vector for each body, and world-aligned slabs are
-//! compared until no lane of the vector is left. Both are expected values here, of hits that fall
-//! on candidates independently. Where hits gather (clusters, a floor), fewer bodies have them.
+//! Cullers count tests and hits. Their time depends on two more numbers, because pairs are tested a
+//! vector at a time: hits are listed by the vector for each body, and world-aligned slabs are
+//! compared until all lanes of the vector are separated. Both are expected values for hits that are
+//! independent of each other. If hits gather (clusters, a floor), fewer bodies have them.
 
 use sdop::simd::{Kernel, Lanes, Tier, dispatch};
 
@@ -21,8 +21,8 @@ pub(super) fn lanes(tier: Tier) -> usize {
     dispatch(tier, Width)
 }
 
-/// How many of the moving bodies have a hit, if each has those after it as candidates, the still
-/// ones last: Σ 1 − e^−λ with λ, the hits that a body may expect, falling evenly.
+/// The number of moving bodies with a hit, if the candidates of each are the bodies after it,
+/// static ones last: Σ 1 − e^−λ, where λ, a body's expected number of hits, decreases linearly.
 pub(super) fn rows(moving: f64, bodies: f64, tests: f64, hits: f64) -> f64 {
     if moving <= 0.0 || hits <= 0.0 {
         return 0.0;
@@ -32,9 +32,9 @@ pub(super) fn rows(moving: f64, bodies: f64, tests: f64, hits: f64) -> f64 {
     moving * (1.0 - ((-least).exp() - (-most).exp()) / (most - least))
 }
 
-/// How many slabs a test is compared on beyond the first, in the mean over tests: a vector goes on
-/// while one of its lanes overlaps on all slabs so far, which for the three axes of a box is a
-/// third, two thirds and the whole of the way (in logarithms) to a hit.
+/// The mean number of slabs after the first on which a test is compared: a vector continues while
+/// one of its lanes overlaps on all slabs so far. For the three axes of a box, the logarithm of
+/// that probability is a third, two thirds and all of that of a hit.
 pub(super) fn further(tests: f64, hits: f64, lanes: usize) -> f64 {
     if tests <= 0.0 {
         return 0.0;
@@ -44,15 +44,15 @@ pub(super) fn further(tests: f64, hits: f64, lanes: usize) -> f64 {
     goes_on(1.0) + goes_on(2.0)
 }
 
-/// How many lanes idle in the vectors that so many tests fill, in the mean over frames whose tests
-/// scatter as counts do.
+/// The mean number of idle lanes in the vectors of this number of tests, over frames whose numbers
+/// of tests scatter as counts do.
 pub(super) fn idle(tests: f64, lanes: usize) -> f64 {
     let width = lanes as f64;
     if tests > 16.0 * width {
-        // Ends fall anywhere in a vector.
+        // The last test is equally likely at each lane.
         return 0.5 * (width - 1.0);
     }
-    // P(count = k) one after the other; each vector begins with its first test.
+    // Each P(count = k) from the one before; a vector begins with its first test.
     let (mut probability, mut at_most, mut vectors) = ((-tests).exp(), 0.0, 0.0);
     for count in 0..64 * lanes {
         at_most += probability;
@@ -69,8 +69,9 @@ mod tests {
     use super::*;
     use crate::random::Stream;
 
+    /// Rows are those of hits drawn at random.
     #[test]
-    fn rows_are_those_of_hits_drawn_at_random() {
+    fn rows_match_random_draws() {
         let (moving, bodies) = (80, 100);
         let mut draws = Stream::new(7, 0);
         for share in [0.001, 0.01, 0.1] {
@@ -95,8 +96,9 @@ mod tests {
         assert_eq!(rows(10.0, 10.0, 45.0, 0.0), 0.0);
     }
 
+    /// Vectors go on for as long as a lane does.
     #[test]
-    fn vectors_go_on_for_as_long_as_a_lane_does() {
+    fn vectors_continue_until_last_lane() {
         let mut draws = Stream::new(8, 0);
         for (lanes, axis) in [(1, 0.3), (8, 0.1), (16, 0.05), (16, 0.3)] {
             let (vectors, mut compared) = (20_000, 0_u32);
@@ -118,11 +120,12 @@ mod tests {
         assert_eq!(further(0.0, 0.0, 16), 0.0);
     }
 
+    /// A few tests leave most of a vector idle.
     #[test]
-    fn a_few_tests_leave_most_of_a_vector_idle() {
+    fn few_tests_idle_most_lanes() {
         assert_eq!(idle(0.0, 16), 0.0);
         assert!((idle(5.0, 1)).abs() < 1e-6);
-        // One vector as soon as there is a test, with probability 1 − e^−λ.
+        // There is one vector if there is a test, which has the probability 1 − e^−λ.
         let rare: f64 = 0.01;
         assert!((idle(rare, 16) - (16.0 * (1.0 - (-rare).exp()) - rare)).abs() < 1e-9);
         for tests in [200.0, 800.0, 5000.0] {

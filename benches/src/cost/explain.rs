@@ -1,13 +1,13 @@
 //! Prices from observed turns: each stage's seconds explained by its counts.
 //!
 //! An update stage follows Nu; finding follows frames, bodies, misses and hits; the second test
-//! follows its tests. Prices are therefore marginal: a hit costs what one more hit costs among the
-//! misses around it, with the vector of lanes that it keeps busy. Volumes are priced where they are
-//! alone: spheres under the strategy of spheres, or-DOPs under the sequential S-DOP of the same
-//! settings. What another strategy takes beyond them is its own: per frame, and per pair that it
-//! lists. A second test always sees about the same share of hits, so that no choice of scenes could
-//! tell the price of a hit from that of a miss: lists of known shares do ([`Split`]), and the
-//! frames themselves set the level.
+//! follows its tests. Prices are therefore marginal: the price of a hit is that of one more hit
+//! among the misses around it, including the vector of lanes that it keeps busy. Volumes are priced
+//! alone: spheres with the strategy of spheres, or-DOPs with the sequential S-DOP of the same
+//! settings. What another strategy costs in addition is priced per frame, and per pair that it
+//! lists. The share of hits in a second test is always about the same, so that no choice of scenes
+//! could separate the price of a hit from that of a miss: lists with known shares do ([`Split`]),
+//! and the frames determine the level.
 
 use super::VolumeCosts;
 use super::expected;
@@ -16,7 +16,7 @@ use super::level::CacheLevel;
 use super::predict::{FirstTest, Price, Prices, Terms};
 use crate::hull_test::HullTest;
 use crate::measure::counts::{Counts, Volume};
-use crate::measure::culling::Stages;
+use crate::measure::culling::StageSeconds;
 use crate::measure::turns::time;
 use crate::measure::variant::Variant;
 use crate::random::Stream;
@@ -27,12 +27,12 @@ use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 
-/// Where the draws of lists with a known share of hits start.
+/// The seed of the draws of lists with a known share of hits.
 const SEED: u64 = 0xca11_b8a7_e001_0000;
-/// How often such a list is timed.
+/// How many times such a list is timed.
 const REPEATS: usize = 15;
-/// Fewer pairs tell nothing.
-const FEWEST: usize = 32;
+/// The fewest pairs of such a list.
+const FEWEST_PAIRS: usize = 32;
 
 /// One turn of one calibration scene.
 #[derive(Clone, Copy, Debug)]
@@ -42,8 +42,8 @@ pub(super) struct Observed {
     /// Over all frames of the turn.
     pub counts: Counts,
     /// Medians over the frames of one regime.
-    pub stages: Stages,
-    /// Seconds that making the culler took.
+    pub stages: StageSeconds,
+    /// Seconds to build the culler.
     pub construct: f64,
 }
 
@@ -53,13 +53,13 @@ impl Observed {
     }
 }
 
-/// What a hit of a second test costs more than a miss does, in seconds.
+/// The price of a hit of a second test minus that of a miss, in seconds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Split(f64);
 
 impl Split {
-    /// Times lists of which a quarter and three quarters hit; `None` where there is no second test
-    /// or too few pairs.
+    /// Times lists of which a quarter and three quarters hit. `None` if there is no second test, or
+    /// too few pairs.
     pub fn of(
         variant: &Variant,
         shapes: &[Shape],
@@ -94,8 +94,8 @@ impl Split {
     }
 }
 
-/// A list, in random order, of which so many quarters are among the `kept`, as long as both kinds
-/// last.
+/// A list in random order, of which `quarters` quarters are from `kept`, until either kind is used
+/// up.
 fn mixture(listed: &[[u32; 2]], kept: &[[u32; 2]], quarters: usize) -> Option<PairList> {
     let mut kept = kept.to_vec();
     kept.sort_unstable();
@@ -106,7 +106,7 @@ fn mixture(listed: &[[u32; 2]], kept: &[[u32; 2]], quarters: usize) -> Option<Pa
     hits.truncate(quarters * quarter);
     misses.truncate((4 - quarters) * quarter);
     let mut all = [hits, misses].concat();
-    if all.len() < FEWEST {
+    if all.len() < FEWEST_PAIRS {
         return None;
     }
     let mut draws = Stream::new(SEED, quarters as u64);
@@ -125,15 +125,14 @@ pub(super) struct Calibrated<'a> {
     pub splits: &'a [Split],
 }
 
-/// What holds for all variants of a round.
+/// The facts that hold for all variants of a round.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
     pub lanes: usize,
     pub level: CacheLevel,
 }
 
-/// The prices of every variant. Among them are spheres alone, and for each that refines its
-/// [anchor].
+/// The prices of every variant. They include spheres alone, and for each that refines its [anchor].
 pub(super) fn prices(all: &[Calibrated<'_>], round: Round) -> Vec<Prices> {
     let spheres = all
         .iter()
@@ -170,8 +169,8 @@ pub(super) fn prices(all: &[Calibrated<'_>], round: Round) -> Vec<Prices> {
     all.iter().map(of).collect()
 }
 
-/// The variant under which the second volume of another is priced: every pair that spheres let
-/// through is tested, and none is stored; none where there is no second volume, or hulls are it.
+/// The variant with which another's second volume is priced: every pair that passes the sphere test
+/// is tested, and none is stored. `None` if there is no second volume, or if it is hulls.
 pub(super) fn anchor(variant: &Variant) -> Option<Variant> {
     let [Volume::Sphere, second] = *variant.volumes().as_slice() else {
         return None;
@@ -179,7 +178,7 @@ pub(super) fn anchor(variant: &Variant) -> Option<Variant> {
     (second != Volume::Hull).then(|| Variant::strategy(&variant.settings, Strategy::SDopSequential))
 }
 
-/// With what building takes: each volume's own, and of the last one the culler's.
+/// Adds the price of building: each volume's own, and to the last one the culler's.
 fn constructed(one: &Calibrated<'_>, mut costs: Vec<VolumeCosts>) -> Vec<Price> {
     let row = |turn: &Observed| Measurement::of([1.0, turn.bodies as f64], turn.construct);
     let [empty, body] = fit::prices(&one.turns.iter().map(row).collect::<Vec<_>>());
@@ -201,7 +200,7 @@ fn alone(volume: Volume, turns: &[Observed], lanes: usize) -> VolumeCosts {
     let [per_frame, update] = update(volume, turns, (volume, 0.0));
     let row = |turn: &Observed| {
         let first = FirstTest::of(volume, &turn.counts, turn.frames as f64, turn.bodies as f64);
-        // Oriented volumes without a first test are tested where others refine.
+        // Oriented volumes have no first test; they are tested when others refine.
         let seconds = turn.stages.finding + turn.stages.refining;
         Measurement::of(first.counts(lanes), seconds)
     };
@@ -219,7 +218,7 @@ fn alone(volume: Volume, turns: &[Observed], lanes: usize) -> VolumeCosts {
     }
 }
 
-/// Updates: seconds per frame, and per update of `volume`, beside `other`'s at a known price.
+/// Updates: seconds per frame and per update of `volume`, given the price of `other`'s.
 fn update(volume: Volume, turns: &[Observed], (other, price): (Volume, f64)) -> [f64; 2] {
     let row = |turn: &Observed| Measurement {
         counts: [1.0, turn.per_frame(turn.counts.of(volume).updates)],
@@ -229,7 +228,7 @@ fn update(volume: Volume, turns: &[Observed], (other, price): (Volume, f64)) -> 
     fit::prices(&turns.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Cu and Cv of or-DOPs after spheres, from the variant that refines and does nothing else.
+/// Cu and Cv of or-DOPs after spheres, from the variant that only refines.
 fn refining(anchor: &Calibrated<'_>, spheres: &VolumeCosts, lanes: usize) -> VolumeCosts {
     let known = (Volume::Sphere, spheres.update);
     let [_, update] = update(Volume::OrDop, anchor.turns, known);
@@ -243,7 +242,7 @@ fn refining(anchor: &Calibrated<'_>, spheres: &VolumeCosts, lanes: usize) -> Vol
     }
 }
 
-/// The prices of hulls behind spheres, whose poses are made with their tests.
+/// The prices of hulls after spheres, whose poses are computed in their tests.
 fn hulls(one: &Calibrated<'_>) -> VolumeCosts {
     let [frame, update, hit, miss] = second_test(one, 1, |turn| (Volume::Hull, turn.stages.hulls));
     VolumeCosts {
@@ -255,8 +254,8 @@ fn hulls(one: &Calibrated<'_>) -> VolumeCosts {
     }
 }
 
-/// A second test: per frame, per update (of hulls), a hit and a miss, which an idle lane costs as
-/// well. The level comes from the frames, what a hit costs more from the splits.
+/// The prices of a second test: per frame, per update (of hulls), per hit, and per miss or idle
+/// lane. The level comes from the frames, the difference of hit and miss from the splits.
 fn second_test(
     one: &Calibrated<'_>,
     lanes: usize,
@@ -287,8 +286,8 @@ fn second_test(
     [frame, update, (test + split).max(0.0), test]
 }
 
-/// A second volume's prices with what a strategy takes beyond its volumes: per frame, and per pair
-/// that the first one lets through.
+/// A second volume's prices with the strategy's additional ones: per frame, and per pair that
+/// passes the first test.
 fn beyond(one: &Calibrated<'_>, [first, second]: [VolumeCosts; 2], round: Round) -> VolumeCosts {
     let volumes = one.variant.volumes().into_iter().zip([first, second]);
     let known = Prices {
@@ -326,7 +325,7 @@ mod tests {
 
     const LANES: usize = 16;
 
-    /// Prices in ns, no two alike, of the size that they have.
+    /// Prices in ns of realistic size, all different.
     fn known(volume: Volume) -> VolumeCosts {
         let all = match volume {
             Volume::Sphere => [2.2, 310.0, 8.0, 17.0, 0.9, 0.21, 0.0],
@@ -347,9 +346,9 @@ mod tests {
         }
     }
 
-    /// Turns of the design's sizes and shares, counted as all pairs are and timed at the known
-    /// prices, with times that scatter by a hundredth. The seconds are summed here, term by term,
-    /// not by what is tested.
+    /// Turns of the design's sizes and shares, with the counts of all pairs and the times of known
+    /// prices, which scatter by 1 %. The seconds are summed here term by term, not by the tested
+    /// code.
     fn turns(first: Volume, refines: bool, handle: f64) -> Vec<Observed> {
         let mut all = Vec::new();
         for (number, (bodies, share)) in design::grid(CacheLevel::L2).into_iter().enumerate() {
@@ -373,7 +372,7 @@ mod tests {
             let rows = expected::rows(moving, n, tests, hits);
             let further = tests * expected::further(tests, hits, LANES);
             let scatter = 0.99 + 0.002 * f64::from(number as u32 * 7 % 11);
-            let mut stages = Stages {
+            let mut stages = StageSeconds {
                 update: moving * costs.update,
                 finding: costs.frame
                     + n * costs.body
@@ -385,7 +384,7 @@ mod tests {
                     + hits * costs.hit
                     + (tests - hits) * costs.miss
                     + further * costs.further,
-                ..Stages::default()
+                ..StageSeconds::default()
             };
             if refines {
                 let (second, kept) = (known(Volume::OrDop), (0.3 * hits).round());
@@ -473,8 +472,9 @@ mod tests {
         }
     }
 
+    /// A volume has one price under every strategy.
     #[test]
-    fn a_volume_has_one_price_under_every_strategy() {
+    fn price_is_equal_for_strategies() {
         let found = estimated(&[
             (Strategy::Sphere, 0.0),
             (Strategy::SDopSequential, 2e-9),

@@ -1,32 +1,32 @@
 //! Prices from measurements: least squares without negative prices.
 //!
 //! A measured stage took Σ countⱼ·priceⱼ. Each row is divided by the seconds of its stage, so that
-//! the fit minimises the sum of squared *relative* residuals: a scene of fifty bodies weighs as much
-//! as one of six hundred. Prices can't be negative, and there are at most six of them: every subset
-//! of them is fitted freely, and the best one that came out positive wins.
+//! the fit minimises the sum of squared *relative* residuals: a scene of fifty bodies weighs as
+//! much as one of six hundred. Prices can't be negative, and there are at most six of them: every
+//! subset of them is fitted without constraint, and the best fit with positive prices is taken.
 
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
 use crate::measure::turns::median;
 
-/// Rows this many times the median residual off are left out.
-const OUTLYING: f64 = 4.0;
+/// Rows whose residual is this many times the median residual are left out.
+const OUTLIER_RATIO: f64 = 4.0;
 
-/// One measurement: how often each priced thing happened, and the seconds it took.
+/// One measurement: the counts of the priced operations, and their seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement<const N: usize> {
     /// Counts.
     pub counts: [f64; N],
     /// Seconds to be explained.
     pub seconds: f64,
-    /// Seconds of the whole that they are a part of, by which the residual is measured; rows that
-    /// took none are left out.
+    /// Seconds of the whole, of which they are a part. Residuals are relative to it; rows with 0
+    /// are left out.
     pub whole: f64,
 }
 
 impl<const N: usize> Measurement<N> {
-    /// A whole that is to be explained.
+    /// A measurement whose seconds are the whole.
     #[must_use]
     pub fn of(counts: [f64; N], seconds: f64) -> Self {
         Self {
@@ -37,14 +37,14 @@ impl<const N: usize> Measurement<N> {
     }
 }
 
-/// The prices ≥ 0 that explain `rows` best; all 0 where nothing was measured. Rows that lie far off
-/// (the machine did something else) are left out of a second fit.
+/// The prices ≥ 0 that explain `rows` best; all 0 if nothing was measured. Rows with large
+/// residuals (the machine had other load) are left out of a second fit.
 #[must_use]
 pub fn prices<const N: usize>(rows: &[Measurement<N>]) -> [f64; N] {
     let rows: Vec<&Measurement<N>> = rows.iter().filter(|row| row.whole > 0.0).collect();
     let first = positive_fit(&rows);
     let off = |row: &&Measurement<N>| relative_residual(row, &first).abs();
-    let limit = OUTLYING * median(rows.iter().map(off).collect());
+    let limit = OUTLIER_RATIO * median(rows.iter().map(off).collect());
     let near: Vec<&Measurement<N>> = rows
         .iter()
         .copied()
@@ -56,7 +56,7 @@ pub fn prices<const N: usize>(rows: &[Measurement<N>]) -> [f64; N] {
     positive_fit(&near)
 }
 
-/// The best of all subsets of prices that come out positive.
+/// The best fit over all subsets of prices whose result is positive.
 fn positive_fit<const N: usize>(rows: &[&Measurement<N>]) -> [f64; N] {
     let mut best = ([0.0; N], f64::INFINITY);
     for subset in 1..1_u32 << N {
@@ -86,7 +86,7 @@ fn relative_residual<const N: usize>(row: &Measurement<N>, prices: &[f64; N]) ->
     (explained - row.seconds) / row.whole
 }
 
-/// Ordinary least squares in the columns `used`; `None` when they can't be told apart.
+/// Ordinary least squares in the columns `used`; `None` if these are linearly dependent.
 fn free_fit<const N: usize>(rows: &[&Measurement<N>], used: &[usize]) -> Option<[f64; N]> {
     // Columns scaled to their largest entry: a count of tests is a million times one of frames.
     let scale: Vec<f64> = used
@@ -124,8 +124,9 @@ mod tests {
         Measurement::of(counts, seconds)
     }
 
+    /// Prices are found again whatever their scale.
     #[test]
-    fn prices_are_found_again_whatever_their_scale() {
+    fn prices_are_recovered_at_any_scale() {
         let truth = [4e-9, 7e-11, 3e-8];
         let counts = [
             [50.0, 1225.0, 12.0],
@@ -139,8 +140,9 @@ mod tests {
         }
     }
 
+    /// What lies far off is left out.
     #[test]
-    fn what_lies_far_off_is_left_out() {
+    fn outliers_are_left_out() {
         let truth = [4e-9, 7e-11, 3e-8];
         let mut rows: Vec<_> = (1..=12)
             .map(|i| {
@@ -160,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_price_is_never_negative() {
-        // The third column would like to be −1.
+        // Unconstrained, the third price would be −1.
         let rows = [
             row([1.0, 0.0, 0.5], [2.0, 3.0, -1.0]),
             row([0.0, 1.0, 0.5], [2.0, 3.0, -1.0]),

@@ -1,22 +1,22 @@
-//! Which cache holds what a frame reads and writes: the part of a price's regime that follows from
-//! the number of bodies.
+//! The cache that holds the data of a frame: the part of a price's regime that follows from the
+//! number of bodies.
 
 use std::fs::read_to_string;
 use std::path::Path;
 
 use sdop::choice::choices;
 
-/// Bytes per body that a frame touches, about: the pose (28), the ball in its place and in its slot
-/// (32), two names (8) and the or-DOP's row (64). The same for every volume, so that all strategies
-/// of a scene have one level.
+/// Approximate bytes per body that a frame reads or writes: the pose (28), the ball in its place
+/// and in its slot (32), two names (8) and the or-DOP's row (64). It is the same for every volume,
+/// so that all strategies of a scene have one level.
 const BYTES_PER_BODY: usize = 132;
-/// What the levels hold where the system doesn't say: 32 kB, 1 MB and 32 MB.
+/// The sizes of the levels if the system doesn't report them: 32 kB, 1 MB and 32 MB.
 const USUAL_BYTES: [usize; 3] = [32 << 10, 1 << 20, 32 << 20];
-/// Where Linux describes the caches of the first processor.
+/// The directory in which Linux describes the caches of the first processor.
 const CACHES: &str = "/sys/devices/system/cpu/cpu0/cache";
 
 choices! {
-    /// The smallest cache that holds what a frame touches.
+    /// The smallest cache that holds the data of a frame.
     CacheLevel, "cache level", {
         /// The first level.
         L1 = "L1",
@@ -24,13 +24,13 @@ choices! {
         L2 = "L2",
         /// The third level.
         L3 = "L3",
-        /// None of them.
+        /// No cache.
         Memory = "memory",
     }
 }
 
 impl CacheLevel {
-    /// The level of so many bodies on this machine.
+    /// The level of this number of bodies on this machine.
     #[must_use]
     pub fn of(bodies: usize) -> Self {
         Self::among(bodies, cache_bytes())
@@ -60,7 +60,7 @@ impl CacheLevel {
     }
 }
 
-/// What the three levels hold, from the first on.
+/// The sizes of the three levels, from the first on.
 fn cache_bytes() -> [usize; 3] {
     let mut found = USUAL_BYTES;
     for index in 0..8 {
@@ -90,8 +90,9 @@ fn bytes(text: &str) -> Option<usize> {
 mod tests {
     use super::*;
 
+    /// A level ends where its cache is full.
     #[test]
-    fn a_level_ends_where_its_cache_is_full() {
+    fn level_ends_with_its_cache() {
         let caches = [132 * 10, 132 * 100, 132 * 1000];
         for (bodies, level) in [
             (0, CacheLevel::L1),
@@ -106,8 +107,9 @@ mod tests {
         }
     }
 
+    /// The levels of this machine follow one another.
     #[test]
-    fn the_levels_of_this_machine_follow_one_another() {
+    fn levels_of_this_machine_ascend() {
         let mut next = 1;
         for &level in CacheLevel::ALL {
             let [fewest, most] = level.bodies();
@@ -117,8 +119,9 @@ mod tests {
         }
     }
 
+    /// Sizes are read as linux writes them.
     #[test]
-    fn sizes_are_read_as_linux_writes_them() {
+    fn linux_sizes_are_read() {
         assert_eq!(bytes("32K"), Some(32 << 10));
         assert_eq!(bytes("8M"), Some(8 << 20));
         assert_eq!(bytes("K"), None);

@@ -2,10 +2,10 @@
 //!
 //! Nu and Nv are [counted](crate::measure::counts) in the run that is predicted. A price belongs to
 //! a machine, a volume (with the shapes that it bounds) and a declared regime: warm or cold frames,
-//! and the [cache level](level) of the working set. It is [calibrated](calibrate) on scenes of its
-//! own ([`design`]), none of which is ever predicted, and is the same wherever it is printed: of
-//! spheres under every strategy that begins with them, of or-DOPs under every strategy that refines
-//! by them. What a strategy pays beyond its volumes is a price of its own, in F.
+//! and the [cache level](level) of the working set. It is [calibrated](calibrate) on calibration
+//! scenes ([`design`]), none of which is ever predicted, and is the same wherever it is printed:
+//! for spheres in every strategy that begins with them, for or-DOPs in every strategy that refines
+//! by them. The costs of a strategy in addition to its volumes are separate prices, in F.
 //!
 //! | price | identified by | in which stage |
 //! |---|---|---|
@@ -14,8 +14,8 @@
 //! | F per body with hits | the share of hits at one number of bodies, while most bodies have none | finding |
 //! | Cv of a miss | tests, which grow as the square of bodies | finding, or refining for or-DOPs |
 //! | Cv of a hit | the share of hits at one number of bodies; of a second test, lists of known shares | the same |
-//! | Cv of a further slab | the share of hits: how many vectors of world-aligned slabs go on | finding |
-//! | F per listed pair | pairs that are listed for a second test, beyond what spheres alone take | finding, refining |
+//! | Cv of a further slab | the share of hits: how many vectors of world-aligned slabs continue | finding |
+//! | F per listed pair | pairs that are listed for a second test, in addition to the costs of spheres alone | finding, refining |
 
 pub mod calibrate;
 pub mod design;
@@ -38,20 +38,21 @@ pub struct VolumeCosts {
     pub construct: f64,
     /// Cu: one update.
     pub update: f64,
-    /// Co: what each body adds to building the culler.
+    /// Co: the part of building the culler that grows with each body.
     pub construct_body: f64,
-    /// F per frame, whatever the number of bodies. Of a second volume, what its strategy adds.
+    /// F per frame, independent of the number of bodies. For a second volume, the part that its
+    /// strategy adds.
     pub frame: f64,
     /// F per body and frame: arranging it for the finder and running over its candidates.
     pub body: f64,
     /// F per body that has a hit among its candidates: listing a vector of hits, full or not.
     pub row: f64,
-    /// F per pair that the test before let through: listing it for this one, and with an object of
+    /// F per pair that passed the test before: listing it for this one, and with an object of
     /// interest selecting and merging it.
     pub handle: f64,
     /// Cv of a pair that survives.
     pub hit: f64,
-    /// Cv of a pair that is culled; it may leave at its first separating axis.
+    /// Cv of a pair that is culled, which may end at its first separating axis.
     pub miss: f64,
     /// Cv of a pair for each further slab that its vector is tested on, world-aligned volumes only.
     pub further: f64,

@@ -1,5 +1,5 @@
 //! A pass: a round of calibration, then one run of a scene. Rounds and runs alternate, so that a
-//! drift of the machine falls on the prices and on what they predict alike. Passes lie apart in
+//! drift of the machine affects the prices and the predicted times alike. Passes are separated in
 //! time, and each is one observation.
 
 use super::calibrate::{Calibration, build};
@@ -7,7 +7,7 @@ use super::predict::Prices;
 use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;
 use crate::measure::estimate::Estimate;
-use crate::measure::turns::{Regime, Times, Turns, median, next_turn, turn_frames};
+use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn, turn_frames};
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
@@ -15,12 +15,12 @@ use sdop::bodies::Bodies;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 
-/// What one variant did in a run.
+/// The results of one variant in a run.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Culled {
     /// Its frames' times.
-    pub times: Times,
-    /// What it counted.
+    pub times: FrameTimes,
+    /// Its counters.
     pub counts: Counts,
     /// Frames culled.
     pub frames: u32,
@@ -31,10 +31,10 @@ pub struct Culled {
 /// One pass.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Pass {
-    /// A variant's work each.
+    /// The results of each variant.
     pub culled: Vec<Culled>,
-    /// A variant's prices each, for warm frames and for cold ones, by the round before the run; of
-    /// none without a calibration.
+    /// The prices of each variant for warm and for cold frames, from the round before the run;
+    /// empty without a calibration.
     pub prices: [Vec<Prices>; 2],
     /// Median seconds of a simulation step.
     pub step: f64,
@@ -42,22 +42,22 @@ pub struct Pass {
 
 /// The frames of a scene, turn after turn.
 pub trait Frames {
-    /// How many turns there are.
+    /// Number of turns.
     fn turns(&self) -> usize;
 
     /// The poses of the next turn and the number of its first frame; `None` after the last.
     ///
     /// # Errors
-    /// A body that leaves the contract.
+    /// A body leaves the contract.
     fn next_turn(&mut self) -> Result<Option<(u32, Vec<Bodies>)>, SimulationError>;
 
-    /// Median seconds of a simulation step, where frames are simulated.
+    /// Median seconds of a simulation step, if frames are simulated.
     fn step(&self) -> f64 {
         0.0
     }
 }
 
-/// The frames of a scene's run from its first.
+/// The frames of a scene's run, from the first on.
 pub struct Simulated {
     trajectory: Trajectory,
     bodies: usize,
@@ -69,7 +69,7 @@ impl Simulated {
     /// The first `frames` frames.
     ///
     /// # Errors
-    /// Effects that the scene can't have.
+    /// The scene can't have one of its effects.
     pub fn new(scene: &Scene, frames: u32) -> Result<Self, SimulationError> {
         Ok(Self {
             trajectory: Trajectory::new(scene)?.with_frames(frames),
@@ -96,18 +96,18 @@ impl Frames for Simulated {
     }
 }
 
-/// Sees what cullers report, outside of the timing.
+/// Observes the reports of cullers, outside of the timing.
 pub trait Observer {
-    /// A variant's number, the frame and the culler, right behind it. The next frame finds what
-    /// this leaves in caches and branch predictors (hashing the pairs here made warm frames take up
-    /// to a fifth more): copy, and work between turns.
+    /// Called after each frame with the variant's number, the frame and the culler. It should only
+    /// copy, and do its work between turns, since it changes caches and branch predictors for the
+    /// next frame (hashing the pairs here made warm frames up to 20 % slower).
     fn frame(&mut self, number: usize, frame: u32, culling: &Culling);
 
-    /// All variants have taken their turn.
+    /// Called when all variants have taken their turn.
     fn between_turns(&mut self) {}
 }
 
-/// Nobody looks.
+/// Observes nothing.
 impl Observer for () {
     fn frame(&mut self, _: usize, _: u32, _: &Culling) {}
 }
@@ -115,7 +115,7 @@ impl Observer for () {
 /// Runs a pass.
 ///
 /// # Errors
-/// Settings or effects that the scene can't have, a body that leaves the contract.
+/// The scene can't have its settings or effects, or a body leaves the contract.
 pub fn pass(
     scene: &Scene,
     variants: &[Variant],
@@ -149,7 +149,7 @@ pub fn pass(
         });
         observer.between_turns();
         turn += 1;
-        // Co is measured again and again between the turns, as often as wanted.
+        // Co is measured repeatedly between the turns.
         if built
             .first()
             .is_some_and(|built| built.len() * all < builds * turn)

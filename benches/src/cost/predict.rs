@@ -2,10 +2,10 @@
 //!
 //! > T = Co + Nu·Cu + F + Nv·Cv, summed over a variant's volumes
 //!
-//! is the paper's equation 1 with F, pair finding, as a stage of its own: a price per frame, one
-//! per body, one per body that has hits, and one per pair that goes on to a second test: it is
-//! listed, and with an object of interest selected and merged. Cv is two prices, for hits and for
-//! misses, and for world-aligned volumes a third, for slabs beyond the first.
+//! is the paper's equation 1 with F, pair finding, as a separate stage: a price per frame, one per
+//! body, one per body that has hits, and one per pair that is passed to a second test: it is
+//! listed, and with an object of interest selected and merged. Cv has two prices, for hits and for
+//! misses, and for world-aligned volumes a third, for slabs after the first.
 
 use serde::{Deserialize, Serialize};
 
@@ -31,15 +31,15 @@ pub struct Price {
 pub struct Prices {
     /// The variant's name.
     pub variant: String,
-    /// The level of the working set that they hold for.
+    /// The level of the working set for which they hold.
     pub level: CacheLevel,
-    /// Lanes of a vector of the tier that they hold for.
+    /// Lanes of a vector of the tier for which they hold.
     pub lanes: usize,
-    /// A price a volume.
+    /// The prices of each volume.
     pub volumes: Vec<Price>,
 }
 
-/// The terms of the formula for one volume: seconds per frame, but for `construct`, which is paid
+/// The terms of the formula for one volume: seconds per frame, except `construct`, which is paid
 /// once.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Terms {
@@ -50,12 +50,12 @@ pub struct Terms {
     pub updates: f64,
     /// Nv per frame.
     pub tests: f64,
-    /// Of which so many hit, per frame.
+    /// Tests that hit, per frame.
     pub hits: f64,
     /// Bodies that have a hit, per frame, as expected from the counts.
     #[serde(default)]
     pub rows: f64,
-    /// Slabs that tests are compared on beyond the first, per frame, as expected from the counts.
+    /// Slabs after the first on which tests are compared, per frame, as expected from the counts.
     #[serde(default)]
     pub further: f64,
     /// Co: its part of the construction, in seconds, once.
@@ -68,20 +68,20 @@ pub struct Terms {
     pub test: f64,
 }
 
-/// Half-widths of the intervals over passes of one volume's [`Terms`], in the same units; infinite
+/// Half-widths of the intervals of one volume's [`Terms`] over passes, in the same units; infinite
 /// for one pass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TermWidths {
     /// The volume.
     #[serde(rename = "name")]
     pub volume: Volume,
-    /// Of Nu per frame.
+    /// Half-width of Nu per frame.
     #[serde(deserialize_with = "or_infinite")]
     pub updates: f64,
-    /// Of Nv per frame.
+    /// Half-width of Nv per frame.
     #[serde(deserialize_with = "or_infinite")]
     pub tests: f64,
-    /// Of the hits per frame.
+    /// Half-width of the hits per frame.
     #[serde(deserialize_with = "or_infinite")]
     pub hits: f64,
     /// Of Co.
@@ -99,7 +99,8 @@ pub struct TermWidths {
 }
 
 impl TermWidths {
-    /// Of one volume's terms, pass by pass in the order of time; `None` of none.
+    /// The half-widths of one volume's terms, given pass by pass in the order of time. `None`
+    /// without passes.
     #[must_use]
     pub fn of(passes: &[Terms]) -> Option<Self> {
         let volume = passes.first()?.volume;
@@ -121,7 +122,7 @@ impl TermWidths {
 }
 
 impl TermWidths {
-    /// With those of another, independent, cause.
+    /// Adds the half-widths of another, independent cause.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         let both = |width: fn(&Self) -> f64| width(self).hypot(width(other));
@@ -139,19 +140,19 @@ impl TermWidths {
 }
 
 impl Terms {
-    /// What recurs each frame: all but the construction.
+    /// The part that recurs each frame: all but the construction.
     #[must_use]
     pub fn recurring(&self) -> f64 {
         self.update + self.finding + self.test
     }
 
-    /// What the paper's equation has of it: without F.
+    /// The part in the paper's equation: without F.
     #[must_use]
     pub fn in_paper(&self) -> f64 {
         self.update + self.test
     }
 
-    /// The mean of one volume's terms over passes; `None` of none.
+    /// The mean of one volume's terms over passes. `None` without passes.
     #[must_use]
     pub fn mean(passes: &[Self]) -> Option<Self> {
         let volume = passes.first()?.volume;
@@ -172,7 +173,7 @@ impl Terms {
     }
 }
 
-/// What the time of a first test follows, per frame.
+/// The quantities per frame that determine the time of a first test.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FirstTest {
     bodies: f64,
@@ -184,7 +185,7 @@ pub(super) struct FirstTest {
 }
 
 impl FirstTest {
-    /// What a volume counted in so many frames of so many bodies.
+    /// The counts of a volume in `frames` frames of `bodies` bodies.
     pub fn of(volume: Volume, counts: &Counts, frames: f64, bodies: f64) -> Self {
         let counters = counts.of(volume);
         let [moving, tests, hits] =
@@ -222,8 +223,8 @@ impl FirstTest {
 }
 
 impl Prices {
-    /// Predicts a run of `frames` frames of `bodies` bodies from what it counted: the terms of each
-    /// volume.
+    /// Predicts the terms of each volume for a run of `frames` frames of `bodies` bodies from its
+    /// counts.
     #[must_use]
     pub fn predict(&self, counts: &Counts, frames: u32, bodies: usize) -> Vec<Terms> {
         let (frames, bodies) = (f64::from(frames), bodies as f64);
@@ -231,7 +232,7 @@ impl Prices {
             let (costs, counters) = (&price.costs, counts.of(price.volume));
             let first = FirstTest::of(price.volume, counts, frames, bodies);
             let [_, _, rows, misses, hits, further] = first.counts(self.lanes);
-            // All that the test before lets through, whether it is then tested or not.
+            // All pairs that pass the test before, whether they are then tested or not.
             let before = place
                 .checked_sub(1)
                 .and_then(|before| self.volumes.get(before));
@@ -260,7 +261,7 @@ impl Prices {
         self.volumes.iter().enumerate().map(terms).collect()
     }
 
-    /// The mean of several rounds' prices; `None` of none.
+    /// The mean of several rounds' prices. `None` without rounds.
     #[must_use]
     pub fn mean<'a>(rounds: impl Iterator<Item = &'a Self> + Clone) -> Option<Self> {
         let mut mean = rounds.clone().next()?.clone();
@@ -295,8 +296,9 @@ mod tests {
     use super::*;
     use sdop::counters::{Counters, VolumeCounters};
 
+    /// Widths are those of intervals over passes.
     #[test]
-    fn widths_are_those_of_intervals_over_passes() {
+    fn widths_match_intervals_over_passes() {
         let pass = |update: f64| Terms {
             volume: Volume::Sphere,
             updates: 3.0,
@@ -324,8 +326,9 @@ mod tests {
         );
     }
 
+    /// S dop pays for both volumes and finds pairs once.
     #[test]
-    fn s_dop_pays_for_both_volumes_and_finds_pairs_once() {
+    fn s_dop_pays_for_both_volumes() {
         let costs = |frame, hit, handle| VolumeCosts {
             construct: 100.0,
             construct_body: 1.0,
@@ -365,7 +368,7 @@ mod tests {
             .iter()
             .map(|t| [t.construct, t.update, t.finding, t.test])
             .collect();
-        // Two of the four listed pairs are of each frame: 10 + 4·5, and 2·3 for the second test.
+        // Each frame has two of the four listed pairs: 10 + 4·5, and 2·3 for the second test.
         assert_eq!(parts, [[104.0, 8.0, 30.0, 6.0], [104.0, 8.0, 6.0, 11.0]]);
         assert_eq!(terms[0].recurring(), 44.0);
         assert_eq!(terms[0].in_paper(), 14.0);
@@ -376,9 +379,9 @@ mod tests {
         assert!(none.predict(&counts, 2, 4).is_empty());
     }
 
-    /// Each price is multiplied by its own count and by no other's.
+    /// Each price is multiplied by its own count and by no other.
     #[test]
-    fn every_price_has_a_count_of_its_own() {
+    fn every_price_has_one_count() {
         let counters = VolumeCounters {
             updates: 300,
             tests: 9000,

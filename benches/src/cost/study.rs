@@ -1,5 +1,5 @@
-//! What each strategy costs on one scene: passes over seeds, each with its calibration, and what
-//! follows from them.
+//! The cost of each strategy on one scene: passes over seeds, each with its calibration, and the
+//! results.
 
 use miette::Diagnostic;
 use serde::Serialize;
@@ -17,12 +17,12 @@ use crate::simulate::SimulationError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 
-/// How much is measured.
+/// The amount of measurement.
 #[derive(Clone, Debug)]
-pub struct Plan {
-    /// The strategies; the control has no cost that the formula has a term for.
+pub struct CostPlan {
+    /// The strategies without the control, for which the formula has no term.
     pub strategies: Vec<Strategy>,
-    /// Passes, each with a seed of its own from the scene's on.
+    /// Number of passes. The first has the scene's seed, and each one the next seed.
     pub passes: u64,
     /// Frames of a pass.
     pub frames: u32,
@@ -34,41 +34,41 @@ pub struct Plan {
 
 /// The cost of every strategy in one scene.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct CostReport {
     /// The scene.
     pub scene: String,
     /// N.
     pub bodies: usize,
     /// Frames of each pass.
     pub frames: u32,
-    /// Frames that the scene has.
+    /// Number of frames of the scene.
     pub scene_frames: u32,
     /// The seeds of the passes, in the order of time.
     pub seeds: Vec<u64>,
     /// The machine and the tier.
     pub machine: Machine,
-    /// What else the machine did.
+    /// Other load of the machine.
     pub conditions: Conditions,
     /// Prices of every strategy's volumes, warm and cold.
     pub prices: Vec<PriceRow>,
-    /// The formula beside the clock: every strategy, warm and cold.
+    /// Predicted and measured times of every strategy, warm and cold.
     pub costs: Vec<Cost>,
 }
 
-/// Why a cost can't be measured.
+/// The error of a cost that can't be measured.
 #[derive(Debug, Error, Diagnostic)]
 pub enum CostError {
-    /// A scene that can't be built.
+    /// The scene can't be built.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Scene(#[from] SceneError),
-    /// A scene that can't be simulated or culled.
+    /// The scene can't be simulated or culled.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
 }
 
-/// The strategies that a scene has all settings for, the control left out.
+/// The strategies for which a scene has all settings, without the control.
 #[must_use]
 pub fn possible(scene: &Scene) -> Vec<Strategy> {
     let has = |&strategy: &Strategy| {
@@ -81,11 +81,15 @@ pub fn possible(scene: &Scene) -> Vec<Strategy> {
     Strategy::ALL.iter().copied().filter(has).collect()
 }
 
-/// Measures; `done` is called after each pass.
+/// Measures, and calls `done` after each pass.
 ///
 /// # Errors
-/// A scene that can't be built, simulated or culled.
-pub fn study(file: &SceneFile, plan: &Plan, mut done: impl FnMut()) -> Result<Report, CostError> {
+/// The scene can't be built, simulated or culled.
+pub fn study(
+    file: &SceneFile,
+    plan: &CostPlan,
+    mut done: impl FnMut(),
+) -> Result<CostReport, CostError> {
     let mut file = file.clone();
     let scene = file.build()?;
     let variants: Vec<Variant> = plan
@@ -129,7 +133,7 @@ pub fn study(file: &SceneFile, plan: &Plan, mut done: impl FnMut()) -> Result<Re
     let prices = Regime::ALL
         .iter()
         .flat_map(|&regime| table::prices(&passes, regime));
-    Ok(Report {
+    Ok(CostReport {
         bodies: scene.bodies.len(),
         frames: plan.frames,
         scene_frames: scene.frames,

@@ -1,5 +1,5 @@
-//! T of each variant in each regime: the formula's terms, at prices that are the mean of all rounds
-//! of calibration, beside what runs took. A term is the printed count times the printed price.
+//! T of each variant in each regime: the formula's terms, at the mean prices of all rounds of
+//! calibration, and the times of runs. A term is the printed count times the printed price.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use super::level::CacheLevel;
 use super::pass::{Culled, Pass};
 use super::predict::{Prices, TermWidths, Terms};
 use crate::measure::counts::Volume;
-use crate::measure::culling::Stages;
+use crate::measure::culling::StageSeconds;
 use crate::measure::estimate::Estimate;
 use crate::measure::turns::{Quartiles, Regime};
 use crate::measure::variant::Variant;
@@ -18,18 +18,17 @@ use sdop::settings::Strategy;
 /// A number as predicted and as measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compared {
-    /// From prices and counts.
+    /// The value from prices and counts.
     pub predicted: Estimate,
-    /// By the clock.
+    /// The value by the clock.
     pub measured: Estimate,
-    /// Measured over predicted, less one, pass by pass: its interval holds the calibration's
-    /// uncertainty as well.
+    /// Measured / predicted − 1, pass by pass. Its interval includes the calibration's uncertainty.
     pub residual: Estimate,
 }
 
 impl Compared {
-    /// From predicted and measured values, pass by pass in the order of time, and the prediction by
-    /// each round's own prices.
+    /// Compares predicted and measured values, pass by pass in the order of time, given also the
+    /// prediction with each round's own prices.
     #[must_use]
     pub fn of(passes: &[[f64; 2]], rounds: &[f64]) -> Self {
         let over = |value: fn(&[f64; 2]) -> f64| {
@@ -46,7 +45,7 @@ impl Compared {
     }
 }
 
-/// An estimate with another, independent, uncertainty.
+/// Adds another, independent uncertainty to an estimate.
 fn widened(estimate: Estimate, by: f64) -> Estimate {
     Estimate {
         half_width: estimate.half_width.hypot(by),
@@ -55,15 +54,15 @@ fn widened(estimate: Estimate, by: f64) -> Estimate {
 }
 
 choices! {
-    /// What a prediction assumes; of one that is off, what fails.
+    /// An assumption of a prediction. If the prediction is off, it is the one that fails.
     Assumption, "assumption", {
         /// Neither prices nor frames scatter by more than the residual.
         Steady = "the machine worked at one speed while prices and frames were measured",
-        /// Every body's update takes what the calibration's take.
+        /// Updates take as long as in the calibration.
         Updates = "an update costs the same here as on the calibration's bodies",
         /// Neither the number of bodies nor how hits lie among misses changes a price.
         Finding = "finding and testing cost the same at this density and number of bodies as in the calibration",
-        /// Second tests follow one another as they do in the calibration.
+        /// Second tests follow one another as in the calibration.
         Refining = "a second test costs the same here as on the calibration's pairs",
     }
 }
@@ -77,18 +76,18 @@ pub struct Cost {
     pub bodies: usize,
     /// The strategy.
     pub strategy: Strategy,
-    /// What tables call it: the strategy's name, or a variant's.
+    /// Its name in tables: the strategy's, or a variant's.
     pub variant: String,
-    /// What the culler found in the caches.
+    /// Warm or cold frames.
     pub regime: Regime,
-    /// Which cache holds the working set; none in earlier records.
+    /// The cache that holds the working set; `None` in earlier records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<CacheLevel>,
     /// Frames of a pass.
     pub frames: u32,
     /// The terms of each volume, means over passes.
     pub terms: Vec<Terms>,
-    /// Half-widths of their intervals over passes; empty in earlier records.
+    /// Half-widths of the terms' intervals over passes; empty in earlier records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub widths: Vec<TermWidths>,
     /// Seconds per frame without construction: the terms' sum, and the median over frames.
@@ -99,13 +98,13 @@ pub struct Cost {
     pub construct: Compared,
     /// T = Co + all frames, seconds.
     pub total: Compared,
-    /// Of a frame that is predicted more than [`NEAR`] off: what fails.
+    /// The assumption that fails, if the residual of a frame is above [`MOST_RIGHT_RESIDUAL`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fails: Option<Assumption>,
 }
 
-/// Share of a frame up to which a prediction counts as right.
-pub const NEAR: f64 = 0.05;
+/// The largest relative error of a prediction that counts as right.
+pub const MOST_RIGHT_RESIDUAL: f64 = 0.05;
 
 impl Cost {
     /// A term summed over the variant's volumes.
@@ -113,15 +112,15 @@ impl Cost {
         self.terms.iter().map(term).sum()
     }
 
-    /// Whether the formula misses the frames by more than a share.
+    /// Whether the prediction is off by more than a share.
     #[must_use]
     pub fn misses(&self, share: f64) -> bool {
         self.frame.residual.mean.abs() > share
     }
 }
 
-/// The cost of variant number `at` from passes over one scene in the order of time; `None` where
-/// the formula has no term for it, or nothing was measured. `priced` are all passes whose rounds
+/// The cost of variant number `at` from passes over one scene in the order of time; `None` if the
+/// formula has no term for it, or if nothing was measured. `priced` are all passes whose rounds
 /// calibrated scenes of this kind.
 #[must_use]
 pub fn cost(
@@ -183,7 +182,8 @@ pub fn cost(
         level: Some(prices.level),
         frames: last.frames,
         widths: (0..first.len()).filter_map(widths).collect(),
-        fails: (frame.residual.mean.abs() > NEAR).then(|| failing(&frame, &terms, &culled, regime)),
+        fails: (frame.residual.mean.abs() > MOST_RIGHT_RESIDUAL)
+            .then(|| failing(&frame, &terms, &culled, regime)),
         terms,
         frame,
         quartiles: Quartiles::mean(&seconds),
@@ -194,18 +194,19 @@ pub fn cost(
     })
 }
 
-/// Which assumption fails: that of a steady machine where the residual lies within its own
-/// interval, else that of the stage that is farthest off.
+/// The assumption that fails: a steady machine if the residual is within its own interval,
+/// otherwise that of the stage with the largest error.
 fn failing(frame: &Compared, terms: &[Terms], culled: &[&Culled], regime: Regime) -> Assumption {
     if frame.residual.half_width.is_finite() && frame.residual.covers(0.0) {
         return Assumption::Steady;
     }
-    let stages: Vec<Stages> = culled
+    let stages: Vec<StageSeconds> = culled
         .iter()
         .map(|culled| culled.times.medians(regime))
         .collect();
-    let measured =
-        |stage: fn(&Stages) -> f64| stages.iter().map(stage).sum::<f64>() / stages.len() as f64;
+    let measured = |stage: fn(&StageSeconds) -> f64| {
+        stages.iter().map(stage).sum::<f64>() / stages.len() as f64
+    };
     let update: f64 = terms.iter().map(|terms| terms.update).sum();
     let refining: f64 = terms.iter().skip(1).map(|terms| terms.test).sum();
     let off = [
@@ -235,13 +236,13 @@ fn failing(frame: &Compared, terms: &[Terms], culled: &[&Culled], regime: Regime
     farthest.map_or(finding, |(assumption, _)| assumption)
 }
 
-/// The prices of variant number `at` by each round.
+/// The prices of variant number `at` from each round.
 fn rounds<'a>(priced: &[&'a Pass], at: usize, regime: Regime) -> Vec<&'a Prices> {
     let of = |pass: &&'a Pass| pass.prices[regime as usize].get(at);
     priced.iter().filter_map(of).collect()
 }
 
-/// A volume's prices: means over passes, with the half-widths of their intervals.
+/// The prices of a volume: means over passes, with the half-widths of their intervals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PriceRow {
     /// The variant.
@@ -250,7 +251,7 @@ pub struct PriceRow {
     pub volume: Volume,
     /// The regime.
     pub regime: Regime,
-    /// Which cache holds the working set; none in earlier records.
+    /// The cache that holds the working set; `None` in earlier records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<CacheLevel>,
     /// Co, seconds: all shapes' volumes and an empty culler.
@@ -266,7 +267,7 @@ pub struct PriceRow {
     /// F per body that has a hit, seconds; 0 in earlier records.
     #[serde(default = "nothing")]
     pub row: Estimate,
-    /// F per pair handed on, seconds.
+    /// F per pair passed on, seconds.
     pub handle: Estimate,
     /// Cv of a hit, seconds.
     pub hit: Estimate,
@@ -277,7 +278,7 @@ pub struct PriceRow {
     pub further: Estimate,
 }
 
-/// The price of what isn't priced.
+/// The price 0, for what has none.
 fn nothing() -> Estimate {
     Estimate {
         mean: 0.0,
@@ -286,7 +287,7 @@ fn nothing() -> Estimate {
     }
 }
 
-/// The prices that the rounds of some passes found, in the order of variants and tests.
+/// The prices from the rounds of some passes, in the order of variants and tests.
 #[must_use]
 pub fn prices(priced: &[&Pass], regime: Regime) -> Vec<PriceRow> {
     let variants = priced

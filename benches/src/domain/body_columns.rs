@@ -1,6 +1,6 @@
-//! The bodies that a rank holds: those that it owns and its ghosts, copies of what others own, in
-//! the order of their numbers in the scene. That order is what makes a pair's test the same on
-//! every rank: the lower number is always the first.
+//! [`BodyColumns`]: the bodies that a rank holds, its own and its ghosts (copies of bodies that
+//! others own), in the order of their numbers in the scene. Because of that order a pair's test is
+//! the same on every rank: the lower number is always first.
 
 use crate::effects::Velocities;
 use sdop::bodies::Bodies;
@@ -220,8 +220,9 @@ mod tests {
         }
     }
 
+    /// A change keeps the order of numbers.
     #[test]
-    fn a_change_keeps_the_order_of_numbers() {
+    fn change_keeps_number_order() {
         let mut held = BodyColumns::default();
         held.change(
             |_| true,

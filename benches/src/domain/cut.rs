@@ -1,15 +1,16 @@
-//! Recursive bisection: which rank owns which part of space.
+//! [`Cuts`]: recursive bisection of space, one cell per rank.
 //!
-//! Ranks are halved again and again, and space with them: each plane has as many of its part's ball
-//! centres below as its lower ranks have a share in, across the axis along which these centres
-//! reach farthest. A plane is an f32 that is one of the coordinates, found digit by digit from
-//! counts that are summed over ranks (a radix selection), so no rank ever sees another's bodies,
-//! and the planes depend on the set of centres alone, not on who holds which. A centre below a
-//! plane is owned below, one on it or beyond above: a comparison of two f32, which every rank
-//! decides alike.
+//! The ranks are halved repeatedly, and space with them. Each plane is perpendicular to the axis of
+//! largest extent of its part's ball centres, and the number of centres below it is the share of
+//! the lower ranks. A plane is one of the f32 coordinates, found digit by digit from counts that
+//! are summed over ranks (a radix selection). No rank sees another's bodies, and the planes depend
+//! only on the set of centres, not on which rank holds them. A centre below a plane belongs to the
+//! lower side, one on or above it to the upper side, which is the same comparison of two f32 on
+//! every rank.
 //!
-//! Partitioners that are kept (coupe, the METIS family) work on a mesh or points in one memory; MPI
-//! ones are C and another installation. Selection over ranks is shorter than what would bind them.
+//! Maintained partitioners (coupe, the METIS family) need a mesh or points in one memory, and those
+//! with MPI are C libraries with their own installation. Selection over ranks is shorter than a
+//! binding to them.
 
 use super::float_key::{key, of_key};
 use crate::network::Network;
@@ -17,12 +18,12 @@ use crate::network::Network;
 /// Where space is cut, and who owns what.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cuts {
-    /// The first is the whole; a plane's parts stand behind it.
-    nodes: Vec<Node>,
+    /// The first is the whole; a plane's parts come after it.
+    nodes: Vec<CutNode>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Node {
+enum CutNode {
     /// The cell of a rank.
     Cell(usize),
     /// A plane across an axis, and the nodes on either side.
@@ -36,13 +37,13 @@ enum Node {
 
 /// A node that is not cut yet: consecutive ranks that share it.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct OpenPart {
     node: usize,
     first: usize,
     ranks: usize,
 }
 
-impl Part {
+impl OpenPart {
     fn below(&self) -> usize {
         self.ranks / 2
     }
@@ -57,14 +58,14 @@ impl Cuts {
     #[must_use]
     pub fn none() -> Self {
         Self {
-            nodes: vec![Node::Cell(0)],
+            nodes: vec![CutNode::Cell(0)],
         }
     }
 
     /// Cuts space for the centres of all ranks' bodies, of which these are this rank's. Collective.
     pub fn make(network: &impl Network, centres: &[[f32; 3]]) -> Self {
         let mut cuts = Self::none();
-        let mut parts = vec![Part {
+        let mut parts = vec![OpenPart {
             node: 0,
             first: 0,
             ranks: network.size(),
@@ -74,7 +75,7 @@ impl Cuts {
         loop {
             parts.retain(|part| {
                 part.ranks > 1 || {
-                    cuts.nodes[part.node] = Node::Cell(part.first);
+                    cuts.nodes[part.node] = CutNode::Cell(part.first);
                     false
                 }
             });
@@ -87,20 +88,20 @@ impl Cuts {
             let mut halves = Vec::new();
             for ((part, axis), at) in parts.iter().zip(axes).zip(planes) {
                 let (below, above) = (cuts.nodes.len(), cuts.nodes.len() + 1);
-                cuts.nodes[part.node] = Node::Plane {
+                cuts.nodes[part.node] = CutNode::Plane {
                     axis,
                     at,
                     below,
                     above,
                 };
-                cuts.nodes.extend([Node::Cell(part.first); 2]);
+                cuts.nodes.extend([CutNode::Cell(part.first); 2]);
                 let (first, middle) = (part.first, part.first + part.below());
-                halves.push(Part {
+                halves.push(OpenPart {
                     node: below,
                     first,
                     ranks: part.below(),
                 });
-                halves.push(Part {
+                halves.push(OpenPart {
                     node: above,
                     first: middle,
                     ranks: part.ranks - part.below(),
@@ -111,7 +112,7 @@ impl Cuts {
     }
 
     /// Finds the part that each centre lies in.
-    fn assign(&self, parts: &[Part], centres: &[[f32; 3]], part_of: &mut [Option<u32>]) {
+    fn assign(&self, parts: &[OpenPart], centres: &[[f32; 3]], part_of: &mut [Option<u32>]) {
         let mut part_at = vec![None; self.nodes.len()];
         for (number, part) in parts.iter().enumerate() {
             // Fewer parts than ranks.
@@ -125,7 +126,7 @@ impl Cuts {
     /// The node that isn't cut in which a centre lies.
     fn node(&self, centre: [f32; 3]) -> usize {
         let mut node = 0;
-        while let Node::Plane {
+        while let CutNode::Plane {
             axis,
             at,
             below,
@@ -141,8 +142,8 @@ impl Cuts {
     #[must_use]
     pub fn owner(&self, centre: [f32; 3]) -> usize {
         match self.nodes[self.node(centre)] {
-            Node::Cell(rank) => rank,
-            Node::Plane { .. } => unreachable!("a walk ends in a cell"),
+            CutNode::Cell(rank) => rank,
+            CutNode::Plane { .. } => unreachable!("a walk ends in a cell"),
         }
     }
 
@@ -162,8 +163,8 @@ impl Cuts {
         visit: &mut impl FnMut(usize, f64),
     ) {
         match self.nodes[node] {
-            Node::Cell(rank) => visit(rank, gap[0].max(gap[1]).max(gap[2])),
-            Node::Plane {
+            CutNode::Cell(rank) => visit(rank, gap[0].max(gap[1]).max(gap[2])),
+            CutNode::Plane {
                 axis,
                 at,
                 below,
@@ -191,8 +192,8 @@ impl Cuts {
         let mut stack = vec![(0, everywhere)];
         while let Some((node, cell)) = stack.pop() {
             match self.nodes[node] {
-                Node::Cell(rank) => cells[rank] = cell,
-                Node::Plane {
+                CutNode::Cell(rank) => cells[rank] = cell,
+                CutNode::Plane {
                     axis,
                     at,
                     below,
@@ -211,7 +212,7 @@ impl Cuts {
 /// The axis along which each part's centres reach farthest; of equal ones the first.
 fn widest_axes(
     network: &impl Network,
-    parts: &[Part],
+    parts: &[OpenPart],
     centres: &[[f32; 3]],
     part_of: &[Option<u32>],
 ) -> Vec<usize> {
@@ -245,7 +246,7 @@ fn widest_axes(
 /// The coordinate of each part that has the lower ranks' share of its centres below it.
 fn select(
     network: &impl Network,
-    parts: &[Part],
+    parts: &[OpenPart],
     centres: &[[f32; 3]],
     part_of: &[Option<u32>],
     axes: &[usize],
@@ -339,8 +340,9 @@ mod tests {
         }
     }
 
+    /// Ranks own equal numbers of points that differ.
     #[test]
-    fn ranks_own_equal_numbers_of_points_that_differ() {
+    fn ranks_own_equal_shares() {
         let points: Vec<_> = (0..1000_u32)
             .map(|i| {
                 [i.wrapping_mul(2_654_435_761), i.wrapping_mul(40_503), i * i]
@@ -361,8 +363,9 @@ mod tests {
         }
     }
 
+    /// Equal points have one owner and nothing is cut at infinity.
     #[test]
-    fn equal_points_have_one_owner_and_nothing_is_cut_at_infinity() {
+    fn equal_points_have_one_owner() {
         for points in [vec![[1.0, 2.0, 3.0]; 50], Vec::new()] {
             let cuts = cuts(5, &points, true);
             let owners: Vec<_> = points.iter().map(|point| cuts.owner(*point)).collect();
@@ -371,8 +374,9 @@ mod tests {
         }
     }
 
+    /// The cell of a point is its owner's and nearness is the distance to cells.
     #[test]
-    fn the_cell_of_a_point_is_its_owner_s_and_nearness_is_the_distance_to_cells() {
+    fn near_cells_match_their_distance() {
         let points = points();
         let ranks = 8;
         let cuts = cuts(ranks, &points, true);

@@ -1,4 +1,4 @@
-//! What can go wrong on one of many ranks, and how the others learn of it.
+//! Errors on one of many ranks, and how the others learn of them.
 
 use miette::Diagnostic;
 use thiserror::Error;
@@ -29,7 +29,7 @@ pub enum DomainError {
     Elsewhere {
         /// The first rank in trouble.
         rank: usize,
-        /// What it said.
+        /// Its message.
         message: String,
     },
 }

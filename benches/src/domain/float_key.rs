@@ -23,8 +23,9 @@ pub(super) fn of_key(key: u32) -> f32 {
 mod tests {
     use super::*;
 
+    /// Keys are in the order of their numbers.
     #[test]
-    fn keys_are_in_the_order_of_their_numbers() {
+    fn keys_order_as_numbers() {
         let inf = f32::INFINITY;
         let ascending = [-inf, -2.5, -1.0e-40, 0.0, 1.0e-40, 1.0, f32::MAX, inf];
         assert!(ascending.windows(2).all(|two| key(two[0]) < key(two[1])));

@@ -1,4 +1,4 @@
-//! Ghosts: who sends which bodies where, and the poses that follow until owners change.
+//! Ghosts: which bodies are sent to which rank, and their poses until owners change.
 
 use super::body_columns::{BodyColumns, BodyMessage, read_poses, write_pose};
 use super::cut::Cuts;
@@ -6,19 +6,19 @@ use crate::network::Network;
 use sdop::rounding::border::may_meet;
 
 /// A body's ball centre and its reach, by place.
-pub(super) type Balls = [([f32; 3], f32)];
+pub(super) type BallReaches = [([f32; 3], f32)];
 
 /// Which bodies travel between this rank and each other one, by their places here, in the order of
 /// their poses in a message.
 #[derive(Debug)]
-pub(super) struct Plan {
+pub(super) struct GhostPlan {
     send: Vec<Vec<u32>>,
     receive: Vec<Vec<u32>>,
 }
 
 /// What is agreed on before ghosts are sent.
 #[derive(Debug)]
-pub(super) struct Border {
+pub(super) struct BorderFacts {
     /// The largest reach of a body that each rank owns.
     pub widest: Vec<f32>,
     /// How far a body may drift before owners and ghosts are found anew.
@@ -27,7 +27,7 @@ pub(super) struct Border {
     pub everywhere: Option<u32>,
 }
 
-impl Plan {
+impl GhostPlan {
     /// Nothing travels.
     pub fn none(ranks: usize) -> Self {
         let [send, receive] = [(); 2].map(|()| vec![Vec::new(); ranks]);
@@ -39,9 +39,9 @@ impl Plan {
     pub fn make(
         network: &impl Network,
         cuts: &Cuts,
-        border: &Border,
+        border: &BorderFacts,
         held: &mut BodyColumns,
-        balls: &Balls,
+        balls: &BallReaches,
     ) -> (Self, u64) {
         let (rank, ranks) = (network.rank(), network.size());
         let mut numbers: Vec<Vec<u32>> = vec![Vec::new(); ranks];
@@ -119,7 +119,7 @@ impl Plan {
         bytes
     }
 
-    /// How many ghosts move, all of them once a frame.
+    /// How many ghosts move; each of them is updated once per frame.
     pub fn followers(&self) -> u64 {
         self.receive.iter().map(|list| list.len() as u64).sum()
     }

@@ -1,5 +1,5 @@
-//! One world on many ranks, each a process that holds a part of the bodies: what outgrows one
-//! machine.
+//! One world on many ranks, each a process that holds a part of the bodies, for worlds that exceed
+//! one machine.
 //!
 //! Space is cut into a cell a rank (`cut`); a rank owns the bodies whose ball's centre lies in its
 //! cell, knows the ghosts that its own may meet (`ghosts`, by the reach of

@@ -1,11 +1,11 @@
-//! One of many ranks: its frames, one after the other, in step with the others.
+//! [`Rank`]: one of many ranks, which culls its frames in step with the others.
 
 use std::time::Instant;
 
 use super::body_columns::BodyColumns;
 use super::cut::Cuts;
 use super::error::{DomainError, agree};
-use super::ghosts::{Balls, Plan};
+use super::ghosts::{BallReaches, GhostPlan};
 use super::run::BorderSeconds;
 use crate::effects::Effects;
 use crate::network::Network;
@@ -27,7 +27,7 @@ pub struct Rank<'a, N> {
     pub(super) effects: Effects,
     pub(super) held: BodyColumns,
     pub(super) cuts: Option<Cuts>,
-    pub(super) plan: Plan,
+    pub(super) plan: GhostPlan,
     /// Centre and reach of each body held when owners were found last.
     pub(super) then: Vec<([f32; 3], f32)>,
     pub(super) skin: f32,
@@ -107,7 +107,7 @@ impl<'a, N: Network> Rank<'a, N> {
             effects,
             held: BodyColumns::new(share.held.start, bodies),
             cuts: None,
-            plan: Plan::none(network.size()),
+            plan: GhostPlan::none(network.size()),
             then: Vec::new(),
             skin: 0.0,
             next: 0,
@@ -270,7 +270,7 @@ impl<'a, N: Network> Rank<'a, N> {
 
 /// The place of the body whose owner reports a pair of places: the one that reaches less far, of
 /// two alike the lower.
-fn decider(balls: &Balls, [i, j]: [u32; 2]) -> usize {
+fn decider(balls: &BallReaches, [i, j]: [u32; 2]) -> usize {
     let [i, j] = [i as usize, j as usize];
     if balls[j].1 < balls[i].1 { j } else { i }
 }

@@ -1,11 +1,11 @@
-//! Owners and ghosts found anew: bodies migrate, and space is cut where their numbers have grown
-//! unequal.
+//! Renewals: owners and ghosts are determined again, bodies migrate, and space is cut again if the
+//! ranks' numbers of bodies have become unequal.
 
 use std::time::Instant;
 
 use super::body_columns::BodyMessage;
 use super::cut::Cuts;
-use super::ghosts::{Border, Plan};
+use super::ghosts::{BorderFacts, GhostPlan};
 use super::rank::Rank;
 use crate::effects::runs;
 use crate::network::Network;
@@ -19,7 +19,7 @@ const SKIN_SHARE: f64 = 0.5;
 
 /// Space is cut anew when a rank owns this much more than its equal share, and more than a few
 /// bodies.
-const MOST_UNEQUAL: f64 = 1.1;
+const MOST_IMBALANCE: f64 = 1.1;
 const SPARE_BODIES: f64 = 16.0;
 
 impl<N: Network> Rank<'_, N> {
@@ -33,7 +33,8 @@ impl<N: Network> Rank<'_, N> {
         let border = self.border();
         self.skin = border.skin;
         if let Some(cuts) = &self.cuts {
-            let (plan, bytes) = Plan::make(self.network, cuts, &border, &mut self.held, &self.then);
+            let (plan, bytes) =
+                GhostPlan::make(self.network, cuts, &border, &mut self.held, &self.then);
             self.plan = plan;
             self.work.bytes_of_ghosts += bytes;
             self.then = self.balls();
@@ -67,7 +68,7 @@ impl<N: Network> Rank<'_, N> {
             network.sum(&mut owned);
             let most = owned.iter().max().map_or(0.0, |&most| most as f64);
             let equal = owned.iter().sum::<u64>() as f64 / ranks as f64;
-            most <= MOST_UNEQUAL * equal + SPARE_BODIES
+            most <= MOST_IMBALANCE * equal + SPARE_BODIES
         };
         let kept = self.cuts.take().filter(fair);
         let cuts = kept.unwrap_or_else(|| {
@@ -95,7 +96,7 @@ impl<N: Network> Rank<'_, N> {
     }
 
     /// What all ranks must know of the bodies before ghosts are sent. Collective.
-    fn border(&self) -> Border {
+    fn border(&self) -> BorderFacts {
         let reaches = || self.then.iter().map(|(_, reach)| *reach);
         let widest = reaches().fold(0.0, f32::max);
         let sum: f64 = reaches().map(f64::from).sum();
@@ -114,7 +115,7 @@ impl<N: Network> Rank<'_, N> {
             Some(Interest::Cone(cone)) => cone.body,
             _ => None,
         };
-        Border {
+        BorderFacts {
             widest: ranks
                 .iter()
                 .map(|[.., widest]| f32::from_bits(*widest as u32))

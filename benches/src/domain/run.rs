@@ -1,4 +1,4 @@
-//! A whole run on many ranks, and what they say of it together.
+//! Running a scene on many ranks, and the combined results.
 
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ use sdop::settings::{TestedVolume, Updates};
 
 /// Up to so many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted;
 /// beyond, there is the digest alone.
-const MOST_GATHERED: usize = 1 << 20;
+const MOST_GATHERED_BODIES: usize = 1 << 20;
 
 /// Wall time that borders add to [`Seconds`]. Sums over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -94,7 +94,7 @@ pub fn run<N: Network>(
     mut observe: impl FnMut(u32),
 ) -> Result<DomainSummary, DomainError> {
     let network = rank.network;
-    let gathers = rank.scene.share().all <= MOST_GATHERED;
+    let gathers = rank.scene.share().all <= MOST_GATHERED_BODIES;
     let (mut hash, mut digest) = (PairsHash::default(), PairsDigest::default());
     let mut reported = 0;
     let mut frames = Vec::new();
@@ -301,7 +301,7 @@ fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
 
 /// The most memory that this process has had in use.
 fn peak_bytes() -> u64 {
-    // Linux alone tells, in a line such as "VmHWM:	   12345 kB".
+    // Only Linux reports it, in a line such as "VmHWM: 12345 kB".
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse().ok());

@@ -1,12 +1,12 @@
-//! Brownian kicks: each step a share of the dynamic bodies, drawn with replacement, gets a new
-//! velocity (Broadmark's brownian scene kicks about N/100, Serpa & Rodrigues 2019).
+//! Brownian kicks: in each step a share of the dynamic bodies, drawn with replacement, gets a new
+//! velocity (about N/100 in Broadmark's brownian scene, Serpa & Rodrigues 2019).
 
 use std::ops::Range;
 
 use serde::Deserialize;
 
-use super::Start;
-use super::{Effect, Made, Velocities};
+use super::InitialState;
+use super::{BuiltEffect, Effect, Velocities};
 use crate::number::{Interval, Share};
 use crate::random::Stream;
 use sdop::bodies::Bodies;
@@ -22,7 +22,7 @@ pub struct Settings {
 }
 
 /// The stream of kicks, apart from those of the initial state.
-const STREAM: u64 = 1 << 32;
+const KICK_STREAM: u64 = 1 << 32;
 
 struct Brownian {
     draws: Stream,
@@ -36,7 +36,7 @@ struct Brownian {
     numbers: Option<Vec<u32>>,
 }
 
-pub(super) fn new(settings: &Settings, start: &Start<'_>) -> Made {
+pub(super) fn new(settings: &Settings, start: &InitialState<'_>) -> BuiltEffect {
     let mut dynamic = 0;
     let mut runs = Vec::new();
     for run in start.moving {
@@ -44,7 +44,7 @@ pub(super) fn new(settings: &Settings, start: &Start<'_>) -> Made {
         dynamic += run.len();
     }
     Ok(Box::new(Brownian {
-        draws: Stream::new(start.seed, STREAM),
+        draws: Stream::new(start.seed, KICK_STREAM),
         speed: settings.speed,
         kicks_a_step: f64::from(settings.share.0) * dynamic as f64,
         runs,

@@ -1,6 +1,5 @@
-//! Gravity: v ← v + dt·a, the same for all bodies. With a period the acceleration turns about an
-//! axis, which keeps a box of bodies stirred (Broadmark's rotating-gravity scene, Serpa & Rodrigues
-//! 2019).
+//! Gravity: v ← v + dt·a, the same for all bodies. With a period, the acceleration rotates about an
+//! axis, which stirs a box of bodies (Broadmark's rotating-gravity scene, Serpa & Rodrigues 2019).
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -9,8 +8,8 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::Start;
-use super::{Effect, Made, Velocities};
+use super::InitialState;
+use super::{BuiltEffect, Effect, Velocities};
 use crate::number::{Positive, Real, vector};
 use sdop::bodies::Bodies;
 
@@ -20,7 +19,7 @@ use sdop::bodies::Bodies;
 pub struct Settings {
     /// Acceleration at the start, world frame.
     pub acceleration: [Real; 3],
-    /// Seconds a full turn takes; absent: the acceleration is constant.
+    /// Seconds per full turn; `None` for a constant acceleration.
     pub period: Option<Positive>,
     /// The axis about which it turns, right-handed; z when absent.
     pub axis: Option<[Real; 3]>,
@@ -37,14 +36,14 @@ struct Table {
 
 impl<'de> Deserialize<'de> for Settings {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Either)
+        deserializer.deserialize_any(GravityVisitor)
     }
 }
 
 /// Reads an acceleration alone, or a table with it.
-struct Either;
+struct GravityVisitor;
 
-impl<'de> Visitor<'de> for Either {
+impl<'de> Visitor<'de> for GravityVisitor {
     type Value = Settings;
 
     fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -77,12 +76,12 @@ impl<'de> Visitor<'de> for Either {
 struct Gravity {
     dt: f32,
     acceleration: [f64; 3],
-    /// Unit axis and turns a step.
+    /// Unit axis, and turns per step.
     turning: Option<([f64; 3], f64)>,
     steps: u64,
 }
 
-pub(super) fn new(settings: &Settings, start: &Start<'_>) -> Made {
+pub(super) fn new(settings: &Settings, start: &InitialState<'_>) -> BuiltEffect {
     if settings.axis.is_some() && settings.period.is_none() {
         return Err((
             "an axis without a period".to_owned(),

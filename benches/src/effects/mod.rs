@@ -1,10 +1,10 @@
-//! What moves the bodies between two frames. A scene lists the effects that it calls for; nothing
-//! else runs, so nothing else costs. The paper's scenes need motion and walls alone.
+//! Effects: what moves the bodies between two frames. Only the effects that a scene lists run, so
+//! others cost nothing. The paper's scenes need only motion and walls.
 //!
-//! A new effect is a file with its `Settings` (how a scene file writes it) and `new`, and its name
-//! below. Trajectories must be equal to the bit on every platform: f32 state, plain operations in
-//! one written order without FMA, square roots and trigonometry through `libm` alone. Intermediate
-//! f64 keeps to the same rules.
+//! To add an effect, write a file with its `Settings` (its form in a scene file) and `new`, and add
+//! its name below. Trajectories must be equal to the bit on every platform: the state is f32,
+//! operations have a fixed order without FMA, and square roots and trigonometry use `libm`. The
+//! same holds for intermediate f64.
 
 pub mod brownian;
 pub mod gravity;
@@ -28,16 +28,16 @@ use sdop::bodies::contract::{ContractError, check_poses};
 use sdop::rounding::pose;
 use sdop::volume::Shape;
 
-/// What effects begin from: the initial state of a scene.
+/// The initial state of a scene, from which effects are built.
 #[derive(Clone, Copy, Debug)]
-pub struct Start<'a> {
-    /// Where all random draws started.
+pub struct InitialState<'a> {
+    /// The seed of all random draws.
     pub seed: u64,
     /// Seconds per step.
     pub dt: f32,
     /// Distance between opposite walls of the box about the origin, if there is one.
     pub side: Option<f32>,
-    /// What the bodies look like.
+    /// The bodies' shapes.
     pub shapes: &'a [Shape],
     /// The initial poses.
     pub bodies: &'a Bodies,
@@ -67,12 +67,12 @@ pub trait Effect: Send {
         dynamic: &[Range<usize>],
     ) -> u64;
 
-    /// From now on the bodies are these of the scene, by their numbers in ascending order: an
-    /// effect that draws bodies from the whole scene needs to know them.
+    /// Sets which bodies of the scene these are, by their numbers in ascending order. Effects that
+    /// draw bodies from the whole scene need them.
     fn renumber(&mut self, _numbers: &[u32]) {}
 }
 
-/// An effect that a scene lists but can't have.
+/// The error for an effect that a scene lists but can't have.
 #[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
 #[error("{effect}: {problem}")]
 pub struct EffectError {
@@ -88,13 +88,13 @@ pub struct EffectError {
 }
 
 /// What `new` of an effect returns: the effect, or a problem and a hint.
-type Made = Result<Box<dyn Effect>, (String, &'static str)>;
+type BuiltEffect = Result<Box<dyn Effect>, (String, &'static str)>;
 
 /// Declares the effects in the order in which a step applies them; the names are the keys of
 /// `[effects]`.
 macro_rules! effects {
     ($($name:ident,)+) => {
-        /// The `[effects]` table of a scene: what it calls for.
+        /// The `[effects]` table of a scene.
         #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
         #[serde(deny_unknown_fields, default)]
         pub struct EffectsSpec {
@@ -114,7 +114,7 @@ macro_rules! effects {
         }
 
         /// The listed effects and the place of each in [`NAMES`].
-        fn listed(spec: &EffectsSpec, start: &Start<'_>) -> Result<Vec<(usize, Box<dyn Effect>)>, EffectError> {
+        fn listed(spec: &EffectsSpec, start: &InitialState<'_>) -> Result<Vec<(usize, Box<dyn Effect>)>, EffectError> {
             let mut list = Vec::new();
             let mut place = 0;
             $(if let Some(settings) = &spec.$name {
@@ -150,7 +150,7 @@ pub struct EffectReport {
     pub listed: bool,
     /// Steps taken.
     pub steps: u64,
-    /// Dynamic bodies, summed over steps: `seconds / visited` is the price a body.
+    /// Dynamic bodies, summed over steps: `seconds / visited` is the price per body.
     pub visited: u64,
     /// Bodies changed, summed over steps.
     pub changed: u64,
@@ -171,7 +171,7 @@ impl Effects {
     ///
     /// # Errors
     /// An effect that the scene can't have, such as walls without a box.
-    pub fn new(spec: &EffectsSpec, start: &Start<'_>) -> Result<Self, EffectError> {
+    pub fn new(spec: &EffectsSpec, start: &InitialState<'_>) -> Result<Self, EffectError> {
         let running = listed(spec, start)?;
         let report = |&name| EffectReport {
             name,

@@ -6,8 +6,8 @@ use std::ops::Range;
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::Start;
-use super::{Effect, Made, Velocities};
+use super::InitialState;
+use super::{BuiltEffect, Effect, Velocities};
 use sdop::bodies::Bodies;
 
 /// `true`: there is nothing to set.
@@ -16,8 +16,8 @@ pub struct Settings;
 
 impl<'de> Deserialize<'de> for Settings {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct True;
-        impl Visitor<'_> for True {
+        struct OnlyTrue;
+        impl Visitor<'_> for OnlyTrue {
             type Value = Settings;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -32,7 +32,7 @@ impl<'de> Deserialize<'de> for Settings {
                 }
             }
         }
-        deserializer.deserialize_bool(True)
+        deserializer.deserialize_bool(OnlyTrue)
     }
 }
 
@@ -40,7 +40,7 @@ struct Motion {
     dt: f32,
 }
 
-pub(super) fn new(Settings: &Settings, start: &Start<'_>) -> Made {
+pub(super) fn new(Settings: &Settings, start: &InitialState<'_>) -> BuiltEffect {
     Ok(Box::new(Motion { dt: start.dt }))
 }
 

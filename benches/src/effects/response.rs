@@ -10,8 +10,8 @@
 
 use std::ops::Range;
 
-use super::{Effect, Made, Velocities};
-use super::{Start, world_centre};
+use super::{BuiltEffect, Effect, Velocities};
+use super::{InitialState, world_centre};
 use sdop::bodies::Bodies;
 use sdop::choice::choices;
 
@@ -25,7 +25,7 @@ choices! {
 
 /// A bounding sphere in the world, in f64.
 #[derive(Clone, Copy)]
-struct Sphere {
+struct WorldSphere {
     centre: [f64; 3],
     radius: f64,
 }
@@ -33,11 +33,11 @@ struct Sphere {
 struct Elastic {
     /// By shape: the ball's centre in the body frame and its radius.
     balls: Vec<([f32; 3], f32)>,
-    spheres: Vec<Sphere>,
-    grid: Grid,
+    spheres: Vec<WorldSphere>,
+    grid: ContactGrid,
 }
 
-pub(super) fn new(Settings::Elastic: &Settings, start: &Start<'_>) -> Made {
+pub(super) fn new(Settings::Elastic: &Settings, start: &InitialState<'_>) -> BuiltEffect {
     let balls = start
         .shapes
         .iter()
@@ -46,7 +46,7 @@ pub(super) fn new(Settings::Elastic: &Settings, start: &Start<'_>) -> Made {
     Ok(Box::new(Elastic {
         balls,
         spheres: Vec::new(),
-        grid: Grid::default(),
+        grid: ContactGrid::default(),
     }))
 }
 
@@ -61,7 +61,7 @@ impl Effect for Elastic {
         self.spheres.extend((0..bodies.len()).map(|body| {
             let (centre, radius) = self.balls[bodies.shape[body] as usize];
             let world = world_centre(centre, &bodies.rotation[body], &bodies.translation[body]);
-            Sphere {
+            WorldSphere {
                 centre: world.map(f64::from),
                 radius: f64::from(radius),
             }
@@ -89,7 +89,7 @@ impl Effect for Elastic {
     }
 }
 
-fn difference(a: &Sphere, b: &Sphere) -> [f64; 3] {
+fn difference(a: &WorldSphere, b: &WorldSphere) -> [f64; 3] {
     [0, 1, 2].map(|axis| b.centre[axis] - a.centre[axis])
 }
 
@@ -97,7 +97,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn touch(a: &Sphere, b: &Sphere) -> bool {
+fn touch(a: &WorldSphere, b: &WorldSphere) -> bool {
     let n = difference(a, b);
     let reach = a.radius + b.radius;
     dot(n, n) <= reach * reach
@@ -107,7 +107,7 @@ fn touch(a: &Sphere, b: &Sphere) -> bool {
 fn exchange(
     bodies: &Bodies,
     velocity: &mut [[f32; 3]],
-    spheres: &[Sphere],
+    spheres: &[WorldSphere],
     i: usize,
     j: usize,
 ) -> u64 {
@@ -131,7 +131,7 @@ fn exchange(
 }
 
 /// 2mj/(mi + mj) and 2mi/(mi + mj); a static partner is infinitely heavy.
-fn shares(bodies: &Bodies, spheres: &[Sphere], i: usize, j: usize) -> (f64, f64) {
+fn shares(bodies: &Bodies, spheres: &[WorldSphere], i: usize, j: usize) -> (f64, f64) {
     if !bodies.dynamic[i] || !bodies.dynamic[j] {
         return (2.0, 2.0);
     }
@@ -143,7 +143,7 @@ fn shares(bodies: &Bodies, spheres: &[Sphere], i: usize, j: usize) -> (f64, f64)
 /// Uniform cells over the bodies' extent, each at least as wide as the largest sphere, bodies
 /// sorted by cell.
 #[derive(Default)]
-struct Grid {
+struct ContactGrid {
     low: [f64; 3],
     per_length: [f64; 3],
     cells: [usize; 3],
@@ -152,8 +152,8 @@ struct Grid {
     order: Vec<u32>,
 }
 
-impl Grid {
-    fn sort(&mut self, spheres: &[Sphere]) {
+impl ContactGrid {
+    fn sort(&mut self, spheres: &[WorldSphere]) {
         self.fit(spheres);
         let cells = self.cells.iter().product::<usize>();
         self.starts.clear();
@@ -178,9 +178,9 @@ impl Grid {
         self.starts[0] = 0;
     }
 
-    /// Chooses the cells: wide enough that touching spheres lie in neighbouring ones also after
-    /// rounding, and no more than about one a body.
-    fn fit(&mut self, spheres: &[Sphere]) {
+    /// Chooses the cells: wide enough that touching spheres are in neighbouring cells even after
+    /// rounding, and at most about one per body.
+    fn fit(&mut self, spheres: &[WorldSphere]) {
         let along = |axis: usize| spheres.iter().map(move |sphere| sphere.centre[axis]);
         let widest = spheres
             .iter()
@@ -202,7 +202,7 @@ impl Grid {
         }
     }
 
-    fn cell(&self, sphere: &Sphere) -> [usize; 3] {
+    fn cell(&self, sphere: &WorldSphere) -> [usize; 3] {
         [0, 1, 2].map(|axis| {
             let at = (sphere.centre[axis] - self.low[axis]) * self.per_length[axis];
             // The cast truncates and saturates: both keep neighbours neighbours.
@@ -215,7 +215,7 @@ impl Grid {
     }
 
     /// Calls `visit` for every body in the sphere's cell and the cells around it.
-    fn near(&self, sphere: &Sphere, mut visit: impl FnMut(usize)) {
+    fn near(&self, sphere: &WorldSphere, mut visit: impl FnMut(usize)) {
         let centre = self.cell(sphere);
         let around = |axis: usize| {
             centre[axis].saturating_sub(1)..=(centre[axis] + 1).min(self.cells[axis] - 1)

@@ -1,13 +1,13 @@
 //! Free rotation about a fixed world axis: q ← normalise(q + ½dt·ωq), with ω a pure quaternion
 //! (first order, then back to unit length). The scene draws each dynamic body's ω: any direction, a
-//! rate in radians a second.
+//! rate in radians per second.
 
 use std::ops::Range;
 
 use serde::Deserialize;
 
-use super::Start;
-use super::{Effect, Made, Velocities};
+use super::InitialState;
+use super::{BuiltEffect, Effect, Velocities};
 use crate::number::Interval;
 use sdop::bodies::Bodies;
 
@@ -15,7 +15,7 @@ use sdop::bodies::Bodies;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Range of angular speeds, radians a second.
+    /// Range of angular speeds, radians per second.
     pub rate: Interval,
 }
 
@@ -23,7 +23,7 @@ struct Spin {
     half_dt: f32,
 }
 
-pub(super) fn new(_: &Settings, start: &Start<'_>) -> Made {
+pub(super) fn new(_: &Settings, start: &InitialState<'_>) -> BuiltEffect {
     Ok(Box::new(Spin {
         half_dt: 0.5 * start.dt,
     }))

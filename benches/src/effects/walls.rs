@@ -6,9 +6,9 @@
 
 use std::ops::Range;
 
-use super::Start;
+use super::InitialState;
 use super::world_centre;
-use super::{Effect, Made, Velocities};
+use super::{BuiltEffect, Effect, Velocities};
 use sdop::bodies::Bodies;
 use sdop::choice::choices;
 
@@ -23,7 +23,7 @@ choices! {
 }
 
 /// Two roundings of 2⁻²⁴ each, with room to spare.
-const ROUNDING: f32 = 1.0 / (1 << 22) as f32;
+const CENTRE_ROUNDING: f32 = 1.0 / (1 << 22) as f32;
 
 struct Walls {
     kind: Settings,
@@ -32,7 +32,7 @@ struct Walls {
     shapes: Vec<([f32; 3], f32)>,
 }
 
-pub(super) fn new(kind: &Settings, start: &Start<'_>) -> Made {
+pub(super) fn new(kind: &Settings, start: &InitialState<'_>) -> BuiltEffect {
     let Some(side) = start.side else {
         return Err((
             "the scene has no box".to_owned(),
@@ -54,7 +54,7 @@ pub(super) fn new(kind: &Settings, start: &Start<'_>) -> Made {
         let t = &bodies.translation[body];
         let world = world_centre(centre, &bodies.rotation[body], t);
         // A seeded body sits inside, but its t and its sphere's centre were each rounded once.
-        let rounding = |axis: usize| ROUNDING * (t[axis].abs() + world[axis].abs());
+        let rounding = |axis: usize| CENTRE_ROUNDING * (t[axis].abs() + world[axis].abs());
         let inside = (0..3).all(|axis| world[axis].abs() <= limit + rounding(axis));
         if limit < 0.0 || !inside {
             let radius = start.shapes[bodies.shape[body] as usize].ball.radius;

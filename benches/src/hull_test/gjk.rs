@@ -16,9 +16,9 @@ use sdop::volume::{Hull, Shape};
 
 /// Margin of the certificate relative to the sizes involved: some hundred times what the f64 steps
 /// can err by.
-const MARGIN: f64 = 1.0 / (1_u64 << 42) as f64;
+const CERTIFICATE_MARGIN: f64 = 1.0 / (1_u64 << 42) as f64;
 /// Walks that take longer are undecided; ten steps are usual.
-const STEPS: usize = 64;
+const MOST_STEPS: usize = 64;
 
 /// A shape's hull as GJK walks it.
 #[derive(Clone, Debug)]
@@ -115,16 +115,16 @@ impl<'a> PosedHull<'a> {
 #[must_use]
 pub fn may_touch(a: &PosedHull<'_>, b: &PosedHull<'_>) -> bool {
     let gap = b.origin - a.origin;
-    let mut walk = Walk {
+    let mut walk = GjkWalk {
         a,
         b,
         gap,
-        margin: MARGIN * (a.graph.reach + b.graph.reach + gap.abs().max_element()),
+        margin: CERTIFICATE_MARGIN * (a.graph.reach + b.graph.reach + gap.abs().max_element()),
         at: [0; 2],
     };
     let mut simplex = Simplex::default();
     let mut direction = if gap == DVec3::ZERO { DVec3::X } else { gap };
-    for _ in 0..STEPS {
+    for _ in 0..MOST_STEPS {
         let point = walk.support(direction);
         if point.dot(direction) < 0.0 {
             return !walk.separates(direction);
@@ -139,7 +139,7 @@ pub fn may_touch(a: &PosedHull<'_>, b: &PosedHull<'_>) -> bool {
 }
 
 /// Two hulls seen from A's origin, in world axes.
-struct Walk<'a> {
+struct GjkWalk<'a> {
     a: &'a PosedHull<'a>,
     b: &'a PosedHull<'a>,
     gap: DVec3,
@@ -147,7 +147,7 @@ struct Walk<'a> {
     at: [u32; 2],
 }
 
-impl Walk<'_> {
+impl GjkWalk<'_> {
     /// A point of A ⊖ B far along `direction`.
     fn support(&mut self, direction: DVec3) -> DVec3 {
         let farthest = |hull: &PosedHull<'_>, direction: DVec3, at: &mut u32| {

@@ -1,4 +1,4 @@
-//! The convex hulls of listed pairs: the tightest convex volume, behind any culler.
+//! The test of listed pairs by their convex hulls, the tightest convex volume, after any culler.
 
 mod gjk;
 

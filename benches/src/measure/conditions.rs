@@ -1,4 +1,5 @@
-//! Whether the machine did other work while it measured: who quotes a time should know.
+//! Whether the machine had other load during a measurement, so that readers know which times not to
+//! quote.
 
 use serde::{Deserialize, Serialize};
 
@@ -90,8 +91,9 @@ fn load() -> Option<f64> {
 mod tests {
     use super::*;
 
+    /// A wide interval or a load is a disturbance.
     #[test]
-    fn a_wide_interval_or_a_load_is_a_disturbance() {
+    fn wide_interval_or_load_disturbs() {
         let quiet = Conditions {
             others: [Some(0.1), Some(0.2)],
             wide: 0,

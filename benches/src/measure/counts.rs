@@ -1,11 +1,11 @@
-//! What a run counts, volume by volume: the Nu and Nv of the formula.
+//! The counters of a run per volume: the Nu and Nv of the formula.
 
 use sdop::choice::choices;
 use sdop::counters::{Counters, VolumeCounters};
 use sdop::settings::{Strategy, TestedVolume};
 
 choices! {
-    /// What is updated, tested and has prices.
+    /// The volumes that are updated, tested and have prices.
     Volume, "volume", {
         /// Bounding spheres.
         Sphere = "sphere",

@@ -1,5 +1,5 @@
-//! A culler of this library as a contestant: with its stage clock, and behind it the convex hulls
-//! where they are wanted.
+//! A culler of this library as a contestant, timed per stage, and optionally followed by a test of
+//! convex hulls.
 
 use std::time::Instant;
 
@@ -16,26 +16,26 @@ use sdop_judge::contestant::Contestant;
 
 /// Seconds of one frame, stage by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Stages {
+pub struct StageSeconds {
     /// World-space updates.
     pub update: f64,
-    /// Finding candidates and the first volume test, with all that no other stage claims.
+    /// Finding candidates and the first volume test, and everything that no other stage includes.
     pub finding: f64,
-    /// The or-DOP test, with what it costs to hand pairs to it where that is timed with it.
+    /// The or-DOP test, including the cost of passing pairs to it if that is timed together.
     pub refining: f64,
     /// The convex hulls' test.
     pub hulls: f64,
 }
 
-impl Stages {
+impl StageSeconds {
     /// All stages.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.update + self.finding + self.refining + self.hulls
     }
 
-    /// Without some seconds of waiting: taken off the longest stage, where the interruption most
-    /// likely fell.
+    /// The stages without some seconds of waiting, which are subtracted from the longest stage,
+    /// where the interruption most likely was.
     #[must_use]
     pub fn without(mut self, waited: f64) -> Self {
         let stages = [
@@ -52,13 +52,12 @@ impl Stages {
     }
 }
 
-/// A culler of this library with its stage clock, and behind it the convex hulls where they are
-/// wanted.
+/// A culler of this library, timed per stage, and optionally followed by a test of convex hulls.
 #[derive(Debug)]
 pub struct Culling {
     culler: Culler,
     hulls: Option<HullTest>,
-    last: Stages,
+    last: StageSeconds,
     construct: f64,
     refused: Option<CullError>,
 }
@@ -67,7 +66,7 @@ impl Culling {
     /// Culls bodies by some settings.
     ///
     /// # Errors
-    /// Settings that can't be carried out, bodies that the culler refuses.
+    /// Invalid settings or bodies.
     pub fn new(
         shapes: &[Shape],
         bodies: &Bodies,
@@ -82,13 +81,13 @@ impl Culling {
         Ok(Self {
             culler,
             hulls: None,
-            last: Stages::default(),
+            last: StageSeconds::default(),
             construct: (seconds - (waiting.seconds() - waited)).max(0.0),
             refused: None,
         })
     }
 
-    /// The same with each reported pair tested by its convex hulls.
+    /// Adds a test of each reported pair by its convex hulls.
     #[must_use]
     pub fn with_hulls(mut self, shapes: &[Shape]) -> Self {
         let start = Instant::now();
@@ -100,18 +99,18 @@ impl Culling {
     /// Whether every frame so far was culled.
     ///
     /// # Errors
-    /// The first frame that the culler refused: none of a scene's own.
+    /// The error of the first rejected frame; frames of a scene are never rejected.
     pub fn accepted(&self) -> Result<(), CullError> {
         self.refused.clone().map_or(Ok(()), Err)
     }
 
     /// Seconds of the last frame.
     #[must_use]
-    pub fn last(&self) -> Stages {
+    pub fn last(&self) -> StageSeconds {
         self.last
     }
 
-    /// Seconds that making it took, its shapes' volumes not included.
+    /// Seconds of building it, without the shapes' volumes.
     #[must_use]
     pub fn construct_seconds(&self) -> f64 {
         self.construct
@@ -151,7 +150,7 @@ impl Contestant for Culling {
             hulls.cull(frame, self.culler.pairs());
         }
         let stages = self.culler.seconds().since(&before);
-        self.last = Stages {
+        self.last = StageSeconds {
             update: stages.update,
             finding: culled - stages.update - stages.ordop,
             refining: stages.ordop,

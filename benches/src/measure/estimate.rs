@@ -7,7 +7,7 @@
 use serde::{Deserialize, Deserializer, Serialize};
 use special::{Beta as _, Gamma as _};
 
-/// How often an interval covers the truth.
+/// The probability that an interval covers the true value.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// A mean over seeds.
@@ -24,7 +24,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// From one value a seed.
+    /// The estimate from one value per seed.
     #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
@@ -42,9 +42,9 @@ impl Estimate {
         }
     }
 
-    /// From values in the order of time, such as medians of runs apart. Neighbours in time share
-    /// what the machine did: with the correlation ρ of each value with the next, n values tell as
-    /// much as n(1 − ρ)/(1 + ρ) independent ones.
+    /// The estimate from values in the order of time, such as medians of separate runs. Values that
+    /// are close in time share the machine's load: with the correlation ρ of consecutive values, n
+    /// values have the information of n(1 − ρ)/(1 + ρ) independent ones.
     #[must_use]
     pub fn in_order(values: &[f64]) -> Self {
         let plain = Self::of(values);
@@ -150,8 +150,9 @@ mod tests {
         assert_eq!(Estimate::of(&[2.0]).half_width, f64::INFINITY);
     }
 
+    /// Drifting values have less information than scattered ones.
     #[test]
-    fn what_drifts_tells_less_than_what_scatters() {
+    fn drift_widens_the_interval() {
         let drift: Vec<f64> = (0..20).map(f64::from).collect();
         let mut scatter = drift.clone();
         (0..20).for_each(|i| scatter.swap(i, (7 * i + 3) % 20));
@@ -168,8 +169,9 @@ mod tests {
         assert_eq!(Estimate::in_order(&jumping), Estimate::of(&jumping));
     }
 
+    /// The p value crosses five percent at the interval's end.
     #[test]
-    fn the_p_value_crosses_five_percent_at_the_interval_s_end() {
+    fn p_value_matches_interval_end() {
         let estimate = Estimate::of(&[1.0, 2.0, 3.0, 4.0, 5.0, 9.0]);
         let [lo, hi] = estimate.interval();
         for end in [lo, hi] {
@@ -178,8 +180,9 @@ mod tests {
         assert!((estimate.p_value(estimate.mean) - 1.0).abs() < 1e-12);
     }
 
+    /// Chi squared tail is the table's.
     #[test]
-    fn chi_squared_tail_is_the_table_s() {
+    fn chi_squared_tail_matches_table() {
         assert!((chi_squared_p(7.815, 3.0) - 0.05).abs() < 1e-4);
     }
 }

@@ -1,10 +1,10 @@
-//! The machine that measured, as far as it explains times: no names, no paths.
+//! The machine of a measurement, as far as it explains times, without names or paths.
 
 use serde::{Deserialize, Serialize};
 
 use sdop::simd::Tier;
 
-/// What a measurement says of its machine.
+/// The description of a measurement's machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Machine {
     /// The CPU's name; ids tell models of one name apart.

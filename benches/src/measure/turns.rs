@@ -1,26 +1,26 @@
-//! One protocol of timing: contestants take turns on the same frames, on one thread.
+//! The protocol of all timing: contestants take turns on the same frames, on one thread.
 //!
-//! In its turn a contestant takes some consecutive frames, then the next one does. Turns share out
-//! what the machine does meanwhile (other processes, clock changes) among all alike, and their
-//! order is drawn anew each time, since a contestant that always followed the same one would always
-//! find the caches that it leaves. The first frame of a turn is *cold*: others ran in between.
-//! Those after it are *warm*: a culler's frames follow one another, as in a simulation. Which of
-//! the two a number is next to it.
+//! In its turn a contestant takes several consecutive frames, then the next one does. Other load
+//! (other processes, clock changes) therefore affects all contestants alike. The order of turns is
+//! random in each round, because a contestant that always followed the same one would always find
+//! that one's data in the caches. The first frame of a turn is *cold*, because others ran in
+//! between. The following ones are *warm*: frames of one culler in sequence, as in a simulation.
+//! Every number says which of the two it is.
 //!
-//! Where the stack lies decides over a frame's time as well: loads and stores whose addresses agree
-//! modulo a page wait for each other, and one that crosses a page takes long. That is drawn once
-//! per process, and differs by contestant. Each frame therefore begins [at another part of a
-//! page](displaced), so that a median is over many places.
+//! The position of the stack also affects a frame's time: loads and stores whose addresses agree
+//! modulo a page wait for each other, and an access that crosses a page is slow. That position is
+//! drawn once per process and differs by contestant. Each frame therefore begins [at another part
+//! of a page](displaced), so that a median is taken over many positions.
 //!
-//! A machine that does other work takes the processor away in the midst of a frame, the likelier
-//! the longer the frame is: what a thread waited for a processor is taken off where the system
-//! tells it ([`Waiting`]), and counted.
+//! Other load may interrupt a frame, with a probability that grows with its length. Time that a
+//! thread waited for a processor is subtracted if the system reports it ([`Waiting`]), and is
+//! recorded.
 
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::culling::{Culling, Stages};
+use super::culling::{Culling, StageSeconds};
 use super::waiting::Waiting;
 use crate::random::Stream;
 use crate::simulate::{SimulationError, Trajectory};
@@ -28,13 +28,13 @@ use sdop::bodies::Bodies;
 use sdop::choice::choices;
 use sdop_judge::contestant::Contestant;
 
-/// Where the draws of the order of turns start.
+/// The seed of the order of turns.
 const SEED: u64 = 0x5a3e_7100_0000_0000;
-/// Bodies of the frames that are prepared at once: their poses stay in the second-level cache until
-/// they are culled.
+/// The most bodies, over all frames, whose poses are prepared at once: they stay in the
+/// second-level cache until they are culled.
 const PREPARED_BODIES: usize = 1 << 13;
-/// From this many seconds on, waiting is looked at before and after a frame: looking takes a
-/// microsecond or two and leaves its traces in the caches, and short frames are rarely interrupted.
+/// Waiting is only measured for frames of at least this many seconds. The measurement takes one or
+/// two microseconds and disturbs the caches, and short frames are rarely interrupted.
 const LEAST_WATCHED_SECONDS: f64 = 100e-6;
 /// The most frames of a turn.
 const MOST_FRAMES: usize = 8;
@@ -46,28 +46,28 @@ const DISPLACEMENTS: usize = 17;
 const DISPLACED_BY: usize = 5;
 
 choices! {
-    /// What a culler finds in the caches when it is timed.
+    /// The state of the caches when a culler is timed.
     Regime, "timing regime", {
-        /// Its own last frame: frames follow one another, as in a simulation.
+        /// Data of the same culler's previous frame: frames follow one another, as in a simulation.
         Warm = "warm",
-        /// What others left: they ran in between.
+        /// Data of other cullers, which ran in between.
         Cold = "cold",
     }
 }
 
 /// One timed frame.
-pub struct Timed<'a, C> {
-    /// Which contestant, counted as given.
+pub struct TimedFrame<'a, C> {
+    /// The number of the contestant, in the given order.
     pub number: usize,
     /// The contestant after the frame.
     pub contestant: &'a mut C,
     /// Which frame of the turn.
     pub frame: usize,
-    /// What it took, without what the thread waited for a processor.
+    /// The frame's time, without waiting for a processor.
     pub seconds: f64,
-    /// What it waited.
+    /// The time of waiting for a processor.
     pub waited: f64,
-    /// How the contestant came to it.
+    /// Whether the frame was warm or cold.
     pub regime: Regime,
 }
 
@@ -90,7 +90,7 @@ fn displaced(pads: usize, work: &mut dyn FnMut()) {
 }
 
 impl Turns {
-    /// Rounds whose orders are drawn from a stream of their own.
+    /// Rounds whose orders are drawn from a separate stream.
     #[must_use]
     pub fn from_stream(stream: u32) -> Self {
         Self {
@@ -99,13 +99,13 @@ impl Turns {
         }
     }
 
-    /// Every contestant takes every frame of the round: all frames in one turn each. `each` sees
-    /// what was timed.
+    /// Runs a round: every contestant takes all frames of the round in one turn. `each` gets every
+    /// timed frame.
     pub fn round<Frame, C: Contestant<Frame>>(
         &mut self,
         contestants: &mut [C],
         frames: &[Frame],
-        mut each: impl FnMut(Timed<'_, C>),
+        mut each: impl FnMut(TimedFrame<'_, C>),
     ) {
         let mut waiting = Waiting::of_this_thread();
         for number in self.order(contestants.len()) {
@@ -130,7 +130,7 @@ impl Turns {
                 } else {
                     Regime::Warm
                 };
-                each(Timed {
+                each(TimedFrame {
                     number,
                     contestant,
                     frame,
@@ -142,7 +142,7 @@ impl Turns {
         }
     }
 
-    /// In which order the contestants of the next round take their turns.
+    /// The order of the contestants' turns in the next round.
     fn order(&mut self, contestants: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..contestants).collect();
         let mut draws = Stream::new(SEED, self.round);
@@ -154,8 +154,8 @@ impl Turns {
     }
 }
 
-/// How many consecutive frames of a scene with so many bodies make a turn: at least two, of which
-/// one is warm.
+/// How many consecutive frames a turn has for a scene with `bodies` bodies: at least two, one of
+/// which is warm.
 #[must_use]
 pub fn turn_frames(bodies: usize) -> usize {
     (PREPARED_BODIES / bodies.max(1)).clamp(2, MOST_FRAMES)
@@ -163,42 +163,43 @@ pub fn turn_frames(bodies: usize) -> usize {
 
 /// The times of one contestant's frames, in the order of their measurement.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Times {
-    warm: Vec<Stages>,
-    cold: Vec<Stages>,
+pub struct FrameTimes {
+    warm: Vec<StageSeconds>,
+    cold: Vec<StageSeconds>,
 }
 
-impl Times {
-    /// Adds the last frame of a contestant, without what it waited for a processor.
-    pub fn push(&mut self, timed: &Timed<'_, Culling>) {
+impl FrameTimes {
+    /// Adds the last frame of a contestant, without waiting.
+    pub fn push(&mut self, timed: &TimedFrame<'_, Culling>) {
         let stages = timed.contestant.last().without(timed.waited);
         self.of_mut(timed.regime).push(stages);
     }
 
     /// The frames of one regime.
     #[must_use]
-    pub fn of(&self, regime: Regime) -> &[Stages] {
+    pub fn of(&self, regime: Regime) -> &[StageSeconds] {
         match regime {
             Regime::Warm => &self.warm,
             Regime::Cold => &self.cold,
         }
     }
 
-    fn of_mut(&mut self, regime: Regime) -> &mut Vec<Stages> {
+    fn of_mut(&mut self, regime: Regime) -> &mut Vec<StageSeconds> {
         match regime {
             Regime::Warm => &mut self.warm,
             Regime::Cold => &mut self.cold,
         }
     }
 
-    /// Medians over frames, stage by stage, such that they add up to the median of whole frames:
-    /// what the stages' medians lack of it, interruptions included, counts as finding.
+    /// Medians over frames per stage, which add up to the median of whole frames: the difference,
+    /// including interruptions, counts as finding.
     #[must_use]
-    pub fn medians(&self, regime: Regime) -> Stages {
-        let of = |stage: fn(&Stages) -> f64| median(self.of(regime).iter().map(stage).collect());
+    pub fn medians(&self, regime: Regime) -> StageSeconds {
+        let of =
+            |stage: fn(&StageSeconds) -> f64| median(self.of(regime).iter().map(stage).collect());
         let (update, refining, hulls) = (of(|s| s.update), of(|s| s.refining), of(|s| s.hulls));
-        let total = of(Stages::total);
-        Stages {
+        let total = of(StageSeconds::total);
+        StageSeconds {
             update,
             finding: total - update - refining - hulls,
             refining,
@@ -209,10 +210,10 @@ impl Times {
     /// Whole frames: the median with its quartiles.
     #[must_use]
     pub fn quartiles(&self, regime: Regime) -> Quartiles {
-        Quartiles::of(self.of(regime).iter().map(Stages::total).collect())
+        Quartiles::of(self.of(regime).iter().map(StageSeconds::total).collect())
     }
 
-    /// Mean seconds of a frame of either regime.
+    /// Mean seconds per frame over both regimes.
     #[must_use]
     pub fn mean(&self) -> f64 {
         mean(self.warm.iter().chain(&self.cold))
@@ -225,7 +226,7 @@ impl Times {
     }
 }
 
-fn mean<'a>(frames: impl Iterator<Item = &'a Stages>) -> f64 {
+fn mean<'a>(frames: impl Iterator<Item = &'a StageSeconds>) -> f64 {
     let (sum, count) = frames.fold((0.0, 0_u32), |(sum, count), frame| {
         (sum + frame.total(), count + 1)
     });
@@ -244,7 +245,7 @@ pub struct Quartiles {
 }
 
 impl Quartiles {
-    /// Of some values; 0 of none.
+    /// The quartiles of some values; 0 for an empty list.
     #[must_use]
     pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
@@ -261,7 +262,7 @@ impl Quartiles {
         }
     }
 
-    /// The means of several, each of its own frames.
+    /// The means of the quartiles of several sets of frames.
     #[must_use]
     pub fn mean(all: &[Self]) -> Self {
         let over = |value: fn(&Self) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
@@ -273,8 +274,8 @@ impl Quartiles {
     }
 }
 
-/// The poses of the next turn's frames, none after the last; seconds of the steps are appended to
-/// `steps`.
+/// The poses of the next turn's frames; none after the last frame. Seconds of the steps are
+/// appended to `steps`.
 ///
 /// # Errors
 /// A body that leaves the contract.
@@ -307,7 +308,7 @@ pub fn time<T>(repeats: usize, mut work: impl FnMut() -> T) -> f64 {
     median((0..repeats).map(run).collect())
 }
 
-/// The median, or the mean of the two middle values; 0 of none.
+/// The median, or the mean of the two middle values; 0 for an empty list.
 #[must_use]
 pub fn median(values: Vec<f64>) -> f64 {
     Quartiles::of(values).median
@@ -317,8 +318,9 @@ pub fn median(values: Vec<f64>) -> f64 {
 mod tests {
     use super::*;
 
+    /// Median is the middle or the mean of the two.
     #[test]
-    fn median_is_the_middle_or_the_mean_of_the_two() {
+    fn median_of_odd_and_even_counts() {
         assert_eq!(median(vec![]), 0.0);
         assert_eq!(median(vec![3.0]), 3.0);
         assert_eq!(median(vec![9.0, 1.0, 2.0]), 2.0);
@@ -329,9 +331,9 @@ mod tests {
 
     /// Notes which frames it was given, by their numbers of bodies.
     #[derive(Default)]
-    struct Noting(Vec<usize>);
+    struct FrameRecorder(Vec<usize>);
 
-    impl Contestant for Noting {
+    impl Contestant for FrameRecorder {
         fn frame(&mut self, frame: &Bodies) {
             self.0.push(frame.len());
         }
@@ -341,8 +343,9 @@ mod tests {
         }
     }
 
+    /// Every contestant takes every frame in order and another begins.
     #[test]
-    fn frames_find_the_stack_in_other_places() {
+    fn stack_positions_differ() {
         let mut places = Vec::new();
         for pads in 0..DISPLACEMENTS {
             displaced(pads, &mut || {
@@ -357,12 +360,13 @@ mod tests {
     }
 
     #[test]
-    fn every_contestant_takes_every_frame_in_order_and_another_begins() {
+    fn contestants_alternate_over_all_frames() {
         let frame = |bodies: usize| Bodies {
             shape: vec![0; bodies],
             ..Bodies::default()
         };
-        let mut contestants: Vec<Noting> = (0..3).map(|_| Noting::default()).collect();
+        let mut contestants: Vec<FrameRecorder> =
+            (0..3).map(|_| FrameRecorder::default()).collect();
         let (mut turns, mut begins) = (Turns::default(), Vec::new());
         for round in 0..20 {
             let mut calls = Vec::new();

@@ -1,5 +1,4 @@
-//! A way to cull, as a contestant is made from it: culling settings, the shapes that they need, and
-//! hulls after them.
+//! [`Variant`]: culling settings with a name, from which a contestant is built.
 
 use super::counts::Volume;
 use super::culling::Culling;
@@ -9,14 +8,14 @@ use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 
-/// One way to cull.
+/// A named way to cull.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Variant {
-    /// What tables call it.
+    /// Its name in tables.
     pub name: String,
     /// Its culling settings.
     pub settings: CullSettings,
-    /// Whether pairs that the settings report are then tested by their convex hulls.
+    /// Whether reported pairs are then tested by their convex hulls.
     pub hulls: bool,
 }
 
@@ -31,7 +30,7 @@ impl Variant {
         }
     }
 
-    /// A strategy with a scene's other settings, called by the strategy's name.
+    /// A strategy with a scene's other settings, named after the strategy.
     #[must_use]
     pub fn strategy(own: &CullSettings, strategy: Strategy) -> Self {
         let settings = CullSettings {
@@ -71,7 +70,7 @@ impl Variant {
         self.volumes().pop()
     }
 
-    /// The scene culled this way, its shapes' or-DOPs rebuilt where it wants others.
+    /// The scene with these settings and with the or-DOPs that they need.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
         Scene {
@@ -81,7 +80,7 @@ impl Variant {
         }
     }
 
-    /// The scene's shapes with the or-DOPs that the settings ask for.
+    /// The scene's shapes with the or-DOPs that the settings need.
     #[must_use]
     pub fn shapes(&self, scene: &Scene) -> Vec<Shape> {
         let CullSettings { axes, k, .. } = self.settings;
@@ -100,7 +99,7 @@ impl Variant {
     /// The contestant that culls the scene's bodies this way.
     ///
     /// # Errors
-    /// Settings that can't be carried out.
+    /// Invalid settings.
     pub fn culling(&self, scene: &Scene, tier: Tier) -> Result<Culling, CullError> {
         self.culling_of(&self.shapes(scene), scene, tier)
     }

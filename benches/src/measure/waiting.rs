@@ -1,8 +1,7 @@
-//! How long this thread was ready and had to wait for a processor: what other processes took of a
-//! measured time.
+//! [`Waiting`]: how long this thread was ready to run and waited for a processor, which is the part
+//! of a measured time that other processes took.
 //!
-//! Linux counts it for each thread, in nanoseconds. Where the system doesn't tell, nothing is taken
-//! off.
+//! Linux counts it per thread, in nanoseconds. On other systems nothing is subtracted.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -18,7 +17,7 @@ impl Waiting {
         Self(File::open("/proc/thread-self/schedstat").ok())
     }
 
-    /// Seconds that the thread has waited since it began; 0 where the system doesn't tell.
+    /// Seconds that the thread has waited since it began; 0 if the system doesn't report it.
     pub fn seconds(&mut self) -> f64 {
         self.nanoseconds().map_or(0.0, |ns| 1e-9 * ns as f64)
     }

@@ -1,5 +1,4 @@
-//! Ranks as threads of one process: the same calls without MPI, for tests and for machines that
-//! have none.
+//! The network between threads of one process, for tests and for machines without MPI.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -13,8 +12,7 @@ pub struct LocalRank {
     from: Vec<Receiver<Vec<u8>>>,
 }
 
-/// Runs `work` on so many ranks, each a thread of its own, and returns what they return, in their
-/// order.
+/// Runs `work` on `ranks` ranks, each on its own thread, and returns their results in order.
 ///
 /// # Panics
 /// When a rank does.
@@ -117,8 +115,9 @@ impl Network for LocalRank {
 mod tests {
     use super::*;
 
+    /// Messages arrive where they are sent and numbers combine.
     #[test]
-    fn messages_arrive_where_they_are_sent_and_numbers_combine() {
+    fn messages_arrive_and_numbers_combine() {
         for ranks in [1, 2, 5] {
             let seen = on_ranks(ranks, |net| {
                 let outgoing = (0..ranks).map(|to| vec![net.rank() as u8, to as u8]);

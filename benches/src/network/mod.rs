@@ -1,8 +1,6 @@
-//! What ranks need of the machine between them: a few collective calls, which all ranks make in the
-//! same order.
+//! [`Network`]: the collective calls between ranks, which all ranks make in the same order.
 //!
-//! Bytes are carried by MPI, or between threads of one process, which tests use. Callers can't see
-//! which.
+//! It is implemented by MPI, and between threads of one process for tests.
 
 mod local;
 #[cfg(feature = "mpi")]
@@ -21,8 +19,8 @@ pub trait Network {
     /// How many ranks there are. Not collective.
     fn size(&self) -> usize;
 
-    /// Hands each rank its message, one a rank in their order; returns what each rank had for this
-    /// one.
+    /// Sends one message to each rank, in their order, and returns the messages of all ranks for
+    /// this one.
     fn exchange(&self, outgoing: Vec<Vec<u8>>) -> Vec<Vec<u8>>;
 
     /// The numbers of all ranks, one rank's after the other's. All give equally many.
@@ -34,8 +32,8 @@ pub trait Network {
     /// Replaces each number by the largest of all ranks.
     fn max(&self, numbers: &mut [u64]);
 
-    /// Returns when all ranks have called it. A rank that waits sleeps, so that others can time
-    /// what they do.
+    /// Returns when all ranks have called it. A waiting rank sleeps, so that others can measure
+    /// times.
     fn wait(&self);
 
     /// The name of this rank's machine. Not collective.

@@ -1,4 +1,4 @@
-//! Ranks as processes that MPI connects. Nothing is decided here: bytes go from rank to rank.
+//! The network between processes that MPI connects.
 
 use mpi::collective::SystemOperation;
 use mpi::datatype::{Partition, PartitionMut};

@@ -1,3 +1,3 @@
-//! Other programs, timed on the same frames.
+//! Timing other programs on the same frames.
 
 pub mod timing;

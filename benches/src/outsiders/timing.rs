@@ -1,8 +1,8 @@
-//! A program next to ours on the same frames: first both are judged, then they take turns, and each
-//! frame has a time.
+//! Timing a program and ours on the same frames: first both are judged, then they take turns and
+//! each frame is timed.
 //!
-//! Ours is timed from outside, around its call. A program is believed: what it reports as `ns` is
-//! *self-reported*, since time measured from outside would be that of its pipes and its parser.
+//! Our culler is timed from outside, around its call. A program's time is what it reports as `ns`
+//! (*self-reported*), because a time measured from outside would include its pipes and its parser.
 
 use std::time::Instant;
 

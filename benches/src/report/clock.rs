@@ -1,4 +1,4 @@
-//! The day of a measurement.
+//! The date of a measurement.
 
 use std::time::SystemTime;
 

@@ -1,11 +1,11 @@
-//! What the columns of a recorded table are: what names a row, what is counted, what is measured.
+//! The kinds of columns in a recorded table: names of rows, counts, measurements.
 
 use serde_json::Value;
 
 use super::table::Table;
 
 /// Whole numbers that name a row instead of being counted in it.
-const NAMING: [&str; 16] = [
+const NAMING_NUMBERS: [&str; 16] = [
     "bodies",
     "statics",
     "threads",
@@ -25,9 +25,9 @@ const NAMING: [&str; 16] = [
 ];
 
 /// Text that differs between machines and versions without naming another row.
-const PASSING: [&str; 4] = ["version", "rustc", "cpu", "os"];
+const IGNORED_TEXT: [&str; 4] = ["version", "rustc", "cpu", "os"];
 
-/// What follows from other columns, or is better when it is larger: no time of its own.
+/// Columns that follow from others, or are better when larger; they are not compared as times.
 const DERIVED: [&str; 9] = [
     "fps",
     "to_control",
@@ -41,11 +41,11 @@ const DERIVED: [&str; 9] = [
 ];
 
 /// Text that is found, not given.
-const FOUND: [&str; 4] = ["verdict", "claim_verdict", "standing", "fails"];
+const DERIVED_TEXT: [&str; 4] = ["verdict", "claim_verdict", "standing", "fails"];
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ColumnKind {
     /// Part of the row's name.
     Name,
     /// A whole number that every machine must find.
@@ -61,33 +61,33 @@ pub(super) enum Kind {
 }
 
 /// The kinds of some columns of two tables.
-pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<Kind> {
+pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<ColumnKind> {
     let kind = |name: &String| {
         let cells = || a.rows.iter().chain(&b.rows).filter_map(|row| row.get(name));
         let last = name.rsplit('.').next().unwrap_or(name);
         let listed = || cells().any(|cell| cell.as_str().is_some_and(|text| text.starts_with('[')));
         if last.ends_with("sha256") {
-            Kind::Count
-        } else if PASSING.contains(&last)
+            ColumnKind::Count
+        } else if IGNORED_TEXT.contains(&last)
             || name.ends_with(".seeds")
             || name.split('.').any(|part| DERIVED.contains(&part))
             || listed()
         {
-            Kind::Passing
-        } else if FOUND.contains(&last) {
-            Kind::Found
-        } else if NAMING.contains(&last) || cells().any(Value::is_string) {
-            Kind::Name
+            ColumnKind::Passing
+        } else if DERIVED_TEXT.contains(&last) {
+            ColumnKind::Found
+        } else if NAMING_NUMBERS.contains(&last) || cells().any(Value::is_string) {
+            ColumnKind::Name
         } else if last.ends_with("_low")
             || last.ends_with("_high")
             || last == "half_width"
             || name.split('.').any(|part| part == "widths")
         {
-            Kind::Interval
+            ColumnKind::Interval
         } else if cells().any(Value::is_f64) {
-            Kind::Measured
+            ColumnKind::Measured
         } else {
-            Kind::Count
+            ColumnKind::Count
         }
     };
     columns.iter().map(kind).collect()

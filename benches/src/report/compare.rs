@@ -1,4 +1,4 @@
-//! Two records side by side: counts must be equal, times are ratios with intervals.
+//! Comparing two records: counts must be equal, times are ratios with intervals.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::columns::{Kind, interval, kinds};
+use super::columns::{ColumnKind, interval, kinds};
 use super::manifest::{Manifest, ManifestError};
 use super::table::{Table, TableError};
 use crate::measure::conditions::Conditions;
@@ -15,7 +15,7 @@ use sdop::settings::Strategy;
 
 /// A count, or a whole file, that two records don't share.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Difference {
+pub struct CountDifference {
     /// The table.
     pub file: String,
     /// What names the row.
@@ -30,7 +30,7 @@ pub struct Difference {
 
 /// How a measured number changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Change {
+pub struct MeasuredChange {
     /// The table.
     pub file: String,
     /// What names the row.
@@ -51,15 +51,15 @@ pub struct Change {
 
 /// Two records compared.
 #[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
+pub struct RecordComparison {
     /// Identifiers of both.
     pub ids: [String; 2],
     /// Files that are equal to the bit.
     pub equal: Vec<String>,
     /// What must be equal and isn't.
-    pub differences: Vec<Difference>,
+    pub differences: Vec<CountDifference>,
     /// Measured numbers, the largest change first.
-    pub changes: Vec<Change>,
+    pub changes: Vec<MeasuredChange>,
     /// What only one of the records has or says, without being a count that differs.
     pub notes: Vec<String>,
     /// Which of the records should not be quoted for their times, and why.
@@ -92,7 +92,7 @@ pub enum CompareError {
 ///
 /// # Errors
 /// A directory without a whole record; two experiments.
-pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> {
+pub fn compare(first: &Path, second: &Path) -> Result<RecordComparison, CompareError> {
     let manifests = [Manifest::read(first)?, Manifest::read(second)?];
     let [a, b] = &manifests;
     if a.experiment != b.experiment {
@@ -101,7 +101,7 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
             second: b.experiment.clone(),
         });
     }
-    let mut comparison = Comparison {
+    let mut comparison = RecordComparison {
         ids: [a.id().to_owned(), b.id().to_owned()],
         equal: Vec::new(),
         differences: Vec::new(),
@@ -132,7 +132,7 @@ pub fn compare(first: &Path, second: &Path) -> Result<Comparison, CompareError> 
     Ok(comparison)
 }
 
-/// What is to be said of a record that was measured while its machine did other work.
+/// The warning about a record whose machine had other load.
 fn disturbed(manifest: &Manifest) -> Option<String> {
     let [before, after] = manifest.load?;
     let conditions = Conditions {
@@ -143,19 +143,19 @@ fn disturbed(manifest: &Manifest) -> Option<String> {
     Some(format!("{}: {}", manifest.id(), conditions.warning()?))
 }
 
-impl Comparison {
-    /// What an interval tells from 1 first, then what it doesn't, then what has none, and last the
-    /// control, which culls nothing: its nanoseconds change the most and mean the least. The
-    /// largest first in each.
+impl RecordComparison {
+    /// Sorts rows whose interval excludes 1 first, then those whose interval contains 1, then those
+    /// without one, and last the control, which culls nothing: its nanoseconds change the most and
+    /// mean the least. In each part the largest comes first.
     fn rank(&mut self) {
         let control = Strategy::None.name();
-        let class = |change: &Change| match change.same {
+        let class = |change: &MeasuredChange| match change.same {
             _ if change.row.split(", ").any(|part| part == control) => 3,
             Some(false) => 0,
             Some(true) => 1,
             None => 2,
         };
-        let size = |change: &Change| change.ratio.ln().abs();
+        let size = |change: &MeasuredChange| change.ratio.ln().abs();
         self.changes.sort_by(|a, b| {
             let by_size = || size(b).total_cmp(&size(a));
             class(a).cmp(&class(b)).then_with(by_size)
@@ -175,7 +175,7 @@ impl Comparison {
     }
 
     fn differ(&mut self, file: &str, row: &str, column: Option<&str>, first: &str, second: &str) {
-        self.differences.push(Difference {
+        self.differences.push(CountDifference {
             file: file.to_owned(),
             row: row.to_owned(),
             column: column.map(str::to_owned),
@@ -253,28 +253,31 @@ impl Comparison {
         &mut self,
         file: &str,
         row: &str,
-        (column, kind, strict): (&String, Kind, bool),
+        (column, kind, strict): (&String, ColumnKind, bool),
         cells: [&Map<String, Value>; 2],
     ) {
         let [a, b] = cells.map(|cells| &cells[column]);
-        let measured = matches!(kind, Kind::Measured | Kind::Interval | Kind::Found);
-        if kind == Kind::Count || (strict && measured) {
+        let measured = matches!(
+            kind,
+            ColumnKind::Measured | ColumnKind::Interval | ColumnKind::Found
+        );
+        if kind == ColumnKind::Count || (strict && measured) {
             if a != b {
                 self.differ(file, row, Some(column), &a.to_string(), &b.to_string());
             }
-        } else if kind == Kind::Measured {
+        } else if kind == ColumnKind::Measured {
             self.changes.extend(change(file, row, column, cells));
-        } else if kind == Kind::Found && a != b {
+        } else if kind == ColumnKind::Found && a != b {
             self.notes
                 .push(format!("{file}: {row}: {column} {a} and {b}"));
         }
     }
 }
 
-/// Raw samples, a row a seed, as one change each: the geometric mean of their ratios. Other changes
-/// stay.
-fn over_seeds(changes: Vec<Change>) -> Vec<Change> {
-    let mut groups: BTreeMap<(String, String), Vec<Change>> = BTreeMap::new();
+/// Combines raw samples, one row per seed, into one change: the geometric mean of their ratios.
+/// Other changes stay.
+fn over_seeds(changes: Vec<MeasuredChange>) -> Vec<MeasuredChange> {
+    let mut groups: BTreeMap<(String, String), Vec<MeasuredChange>> = BTreeMap::new();
     let mut rest = Vec::new();
     for change in changes {
         let parts = change.row.split(", ");
@@ -294,9 +297,10 @@ fn over_seeds(changes: Vec<Change>) -> Vec<Change> {
         } = Estimate::of(&logarithms);
         let ends = [(mean - half_width).exp(), (mean + half_width).exp()];
         let interval = half_width.is_finite().then_some(ends);
-        let average =
-            |of_one: fn(&Change) -> f64| of.iter().map(of_one).sum::<f64>() / of.len() as f64;
-        Change {
+        let average = |of_one: fn(&MeasuredChange) -> f64| {
+            of.iter().map(of_one).sum::<f64>() / of.len() as f64
+        };
+        MeasuredChange {
             file: of[0].file.clone(),
             row: format!("{row}, {} seeds", of.len()),
             column,
@@ -311,13 +315,18 @@ fn over_seeds(changes: Vec<Change>) -> Vec<Change> {
 }
 
 /// The change of one measured cell, if both rows have it above zero.
-fn change(file: &str, row: &str, column: &str, cells: [&Map<String, Value>; 2]) -> Option<Change> {
+fn change(
+    file: &str,
+    row: &str,
+    column: &str,
+    cells: [&Map<String, Value>; 2],
+) -> Option<MeasuredChange> {
     let [first, second] = cells.map(|cells| cells[column].as_f64().filter(|x| *x > 0.0));
     let (first, second) = (first?, second?);
     let [before, after] = cells.map(|cells| interval(cells, column));
     let interval = before.zip(after).filter(|([low, _], _)| *low > 0.0);
     let interval = interval.map(|(before, after)| [after[0] / before[1], after[1] / before[0]]);
-    Some(Change {
+    Some(MeasuredChange {
         file: file.to_owned(),
         row: row.to_owned(),
         column: column.to_owned(),
@@ -333,7 +342,7 @@ fn change(file: &str, row: &str, column: &str, cells: [&Map<String, Value>; 2]) 
 fn by_name<'a>(
     table: &'a Table,
     columns: &[String],
-    kinds: &[Kind],
+    kinds: &[ColumnKind],
 ) -> Option<BTreeMap<String, &'a Map<String, Value>>> {
     let named = |row| (row_name(row, columns, kinds), row);
     let rows: BTreeMap<_, _> = table.rows.iter().map(named).collect();
@@ -341,11 +350,11 @@ fn by_name<'a>(
 }
 
 /// What names a row: its naming cells, joined.
-fn row_name(row: &Map<String, Value>, columns: &[String], kinds: &[Kind]) -> String {
+fn row_name(row: &Map<String, Value>, columns: &[String], kinds: &[ColumnKind]) -> String {
     let naming = columns
         .iter()
         .zip(kinds)
-        .filter(|(_, kind)| **kind == Kind::Name);
+        .filter(|(_, kind)| **kind == ColumnKind::Name);
     let cells = naming.filter_map(|(column, _)| match &row[column] {
         Value::Null => None,
         Value::String(text) => Some(text.clone()),
@@ -389,7 +398,7 @@ mod tests {
         );
         let differences = compare(a.path(), b.path()).unwrap().differences;
         assert_eq!(differences.len(), 1);
-        let Difference {
+        let CountDifference {
             row,
             column,
             second,
@@ -417,8 +426,9 @@ mod tests {
         assert!((changes[0].ratio - 2.0).abs() < 1e-12 && changes[0].same == Some(false));
     }
 
+    /// Another set of columns or rows is noted where nothing is promised.
     #[test]
-    fn another_set_of_columns_or_rows_is_noted_where_nothing_is_promised() {
+    fn other_columns_or_rows_are_noted() {
         let other = TIMES
             .replace("ms_high", "ms_high,cold")
             .replace("1.1\n", "1.1,3\n")
@@ -516,8 +526,9 @@ mod tests {
         assert!(warning.contains("2.5 after"), "{warning}");
     }
 
+    /// Times are ratios and same only where intervals meet.
     #[test]
-    fn times_are_ratios_and_same_only_where_intervals_meet() {
+    fn times_compare_by_intervals() {
         let slower = TIMES
             .replace("1.0,0.9,1.1", "1.1,1.0,1.2")
             .replace("2.5,2.4,2.6", "5.0,4.8,5.2");

@@ -1,19 +1,19 @@
-//! The formula on every scene of the paper's kind: `sdop cost`, on a machine that does nothing else
-//! and on one that does.
+//! The experiments `cost/quiet` and `cost/loaded`: `sdop cost` on all scenes like the paper's, on
+//! an idle machine and on a loaded one.
 
-use super::experiment::Step;
+use super::experiment::ExperimentStep;
 
 /// The same steps for each scene, which are named once.
 macro_rules! costs {
     ($($scene:literal),+) => {
         /// Nothing else runs.
-        pub(super) const QUIET: &[Step] = &[$(Step::SdopPrints(
+        pub(super) const QUIET: &[ExperimentStep] = &[$(ExperimentStep::SdopPrints(
             concat!($scene, ".json"),
             &["cost", concat!("data/scenes/", $scene, ".toml"), "--seeds", "15", "--format", "json"],
         )),+];
 
         /// As many other processes as processors.
-        pub(super) const LOADED: &[Step] = &[$(Step::Script(
+        pub(super) const LOADED: &[ExperimentStep] = &[$(ExperimentStep::Script(
             concat!($scene, ".json"),
             &[
                 ".ci/beside_load", "cargo", "run", "--release", "--quiet", "--",

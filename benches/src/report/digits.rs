@@ -1,19 +1,18 @@
-//! Numbers as pages show them, and which recorded number stands where: one number must look the
-//! same on every page.
+//! Formatting numbers for pages, and checking that a recorded number looks the same on every page.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
 use crate::measure::estimate::Estimate;
 
-/// Where each recorded number stands, and how.
+/// The pages on which each recorded number is, and its form there.
 #[derive(Debug, Default)]
 pub struct Quantities {
     /// By the bits of the number: its texts, each with the pages that have it.
     shown: Mutex<BTreeMap<u64, BTreeMap<String, BTreeSet<String>>>>,
 }
 
-/// A recorded number that stands in more than one place.
+/// A recorded number that is on more than one page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     /// The number.
@@ -90,7 +89,7 @@ pub(super) fn significant(x: f64, digits: usize) -> String {
     let magnitude = x.abs().log10().floor() as i64;
     let behind = digits as i64 - 1 - magnitude;
     let text = format!("{x:.*}", usize::try_from(behind).unwrap_or(0));
-    // 9.996 to three digits is 10.00: one digit too many behind the point.
+    // 9.996 to three digits is 10.00: one digit too many after the point.
     let rounded: f64 = text.parse().unwrap_or(x);
     if rounded.abs().log10().floor() as i64 > magnitude && behind > 0 {
         return format!("{x:.*}", usize::try_from(behind - 1).unwrap_or(0));
@@ -184,8 +183,9 @@ mod tests {
         assert_eq!(thousands(-999.0), "-999");
     }
 
+    /// A number that looks different on two pages is found.
     #[test]
-    fn a_number_that_looks_different_on_two_pages_is_found() {
+    fn number_forms_are_compared() {
         let quantities = Quantities::default();
         let ratio = 6.706_745_3;
         quantities.note("a.md", ratio, "6.71");
@@ -207,8 +207,9 @@ mod tests {
         );
     }
 
+    /// A table of a page is rows.
     #[test]
-    fn a_table_of_a_page_is_rows() {
+    fn page_table_parses_to_rows() {
         let text = "above\n\n| bodies | ns |\n|--:|--:|\n| 100 | 1.5 |\n| all | – |\n\n| x |\n|---|\n| 3 |\n";
         let rows = markdown_table(text, 0);
         assert_eq!(

@@ -1,12 +1,12 @@
-//! The runs of the filter in physics engines, `examples/rapier` and `examples/bullet`.
+//! The experiments with the filter in physics engines, `examples/rapier` and `examples/bullet`.
 
-use super::experiment::Step;
+use super::experiment::ExperimentStep;
 
 /// A line per run: the file that it becomes, and its arguments.
 macro_rules! runs {
     ($(#[$doc:meta])* $name:ident = $engine:ident { $($file:literal $arguments:literal)+ }) => {
         $(#[$doc])*
-        pub(super) const $name: &[Step] = &[$(Step::$engine(concat!($file, ".json"), $arguments)),+];
+        pub(super) const $name: &[ExperimentStep] = &[$(ExperimentStep::$engine(concat!($file, ".json"), $arguments)),+];
     };
 }
 

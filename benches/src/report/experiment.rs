@@ -1,5 +1,5 @@
-//! The experiments that can be recorded: the steps of each, and which of its files every machine
-//! must find alike.
+//! The experiments that can be recorded: their steps, and which files must be the same on every
+//! machine.
 
 use super::costs;
 use super::engines::{BULLET, RAPIER_CONTACTS, RAPIER_TIMES};
@@ -7,8 +7,8 @@ use super::peers::PEERS;
 
 /// One program that runs for an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// This program, which writes its files into the directory behind `--out`.
+pub enum ExperimentStep {
+    /// This program, which writes its files to the directory of `--out`.
     Sdop(&'static [&'static str]),
     /// This program, whose output becomes a file.
     SdopPrints(&'static str, &'static [&'static str]),
@@ -36,7 +36,7 @@ pub struct Experiment {
     /// What it measures, in a line.
     pub about: &'static str,
     /// What runs, in order.
-    pub steps: &'static [Step],
+    pub steps: &'static [ExperimentStep],
     /// Files that every machine must find alike.
     pub deterministic: &'static [&'static str],
     /// Scenes that it reads, in the repository.
@@ -63,7 +63,11 @@ const PAPER: &[&str] = &[
 pub(super) const PAPER_500: &[&str] = &["data/scenes/paper-500.toml"];
 
 /// A bench of kernels.
-const fn kernels(name: &'static str, about: &'static str, steps: &'static [Step]) -> Experiment {
+const fn kernels(
+    name: &'static str,
+    about: &'static str,
+    steps: &'static [ExperimentStep],
+) -> Experiment {
     Experiment {
         name,
         about,
@@ -75,22 +79,25 @@ const fn kernels(name: &'static str, about: &'static str, steps: &'static [Step]
 
 /// Every experiment.
 pub fn experiments() -> impl Iterator<Item = &'static Experiment> {
-    [OWN, PEERS].into_iter().flatten()
+    [OWN_EXPERIMENTS, PEERS].into_iter().flatten()
 }
 
 /// Those of the culler and of its filters in physics engines.
-const OWN: &[Experiment] = &[
+const OWN_EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "reproduce",
         about: "the paper's experiments",
-        steps: &[Step::Sdop(&["reproduce"])],
+        steps: &[ExperimentStep::Sdop(&["reproduce"])],
         deterministic: &["counts.csv", "table_1.csv", "survival.csv"],
         scenes: PAPER,
     },
     Experiment {
         name: "tradeoff",
         about: "precision against time on the paper's 500 bodies",
-        steps: &[Step::Sdop(&["tradeoff", "data/scenes/paper-500.toml"])],
+        steps: &[ExperimentStep::Sdop(&[
+            "tradeoff",
+            "data/scenes/paper-500.toml",
+        ])],
         deterministic: &["tradeoff-seeds.csv"],
         scenes: PAPER_500,
     },
@@ -111,14 +118,14 @@ const OWN: &[Experiment] = &[
     Experiment {
         name: "cost/bench",
         about: "the formula by criterion in one run",
-        steps: &[Step::Bench("total_cost.md", "total_cost")],
+        steps: &[ExperimentStep::Bench("total_cost.md", "total_cost")],
         deterministic: &[],
         scenes: PAPER_500,
     },
     Experiment {
         name: "verify",
         about: "the culler judged by the exact reference",
-        steps: &[Step::SdopPrints(
+        steps: &[ExperimentStep::SdopPrints(
             "verify.json",
             &[
                 "verify",
@@ -137,57 +144,63 @@ const OWN: &[Experiment] = &[
     kernels(
         "kernels/tests",
         "ns an or-DOP test",
-        &[Step::Estimates("tests.csv", &["ordop"])],
+        &[ExperimentStep::Estimates("tests.csv", &["ordop"])],
     ),
     kernels(
         "kernels/stages",
         "ns an update and a construction",
-        &[Step::Estimates("stages.csv", &["update", "construct"])],
+        &[ExperimentStep::Estimates(
+            "stages.csv",
+            &["update", "construct"],
+        )],
     ),
     kernels(
         "kernels/finders",
         "ns a body and a first test, by finder",
-        &[Step::Estimates("finders.csv", &["pair_finding"])],
+        &[ExperimentStep::Estimates("finders.csv", &["pair_finding"])],
     ),
     kernels(
         "kernels/tiers",
         "full S-DOP on 500 bodies in every tier",
-        &[Step::Estimates("tiers.csv", &["tiers"])],
+        &[ExperimentStep::Estimates("tiers.csv", &["tiers"])],
     ),
     kernels(
         "kernels/radii",
         "a reported pair among radii of one size, 1 : 16 and 1 : 1000",
-        &[Step::Bench("radii.md", "radii")],
+        &[ExperimentStep::Bench("radii.md", "radii")],
     ),
     kernels(
         "kernels/motion",
         "the finders that auto chooses between, by motion: p50, p99 and the worst frame",
-        &[Step::Bench("motion.md", "motion")],
+        &[ExperimentStep::Bench("motion.md", "motion")],
     ),
     kernels(
         "kernels/far",
         "pairs and time by distance from the origin: f32, f64 and many places",
-        &[Step::Bench("far.csv", "far")],
+        &[ExperimentStep::Bench("far.csv", "far")],
     ),
     kernels(
         "kernels/roofline",
         "each kernel beside the CPU's ceilings",
-        &[Step::Bench("roofline.md", "roofline")],
+        &[ExperimentStep::Bench("roofline.md", "roofline")],
     ),
     kernels(
         "kernels/safety",
         "the same frames with margins and without",
-        &[Step::Bench("safety.md", "safety")],
+        &[ExperimentStep::Bench("safety.md", "safety")],
     ),
     kernels(
         "kernels/oracle",
         "the exact reference by stage",
-        &[Step::Bench("oracle.md", "oracle")],
+        &[ExperimentStep::Bench("oracle.md", "oracle")],
     ),
     Experiment {
         name: "instructions",
         about: "instructions of a frame's culling, by callgrind",
-        steps: &[Step::Script("instructions.csv", &[".ci/instructions"])],
+        steps: &[ExperimentStep::Script(
+            "instructions.csv",
+            &[".ci/instructions"],
+        )],
         deterministic: &[],
         scenes: &[
             "data/scenes/paper-500.toml",
@@ -199,28 +212,31 @@ const OWN: &[Experiment] = &[
     Experiment {
         name: "ranks",
         about: "one world on many ranks of this machine, and what a model makes of clusters",
-        steps: &[Step::Script("ranks.json", &[".ci/many_ranks"])],
+        steps: &[ExperimentStep::Script("ranks.json", &[".ci/many_ranks"])],
         deterministic: &[],
         scenes: &[],
     },
     Experiment {
         name: "bounds",
         about: "the long search for the worst rounding error of every bound",
-        steps: &[Step::Bench("bounds.md", "worst_case")],
+        steps: &[ExperimentStep::Bench("bounds.md", "worst_case")],
         deterministic: &[],
         scenes: &[],
     },
     Experiment {
         name: "borders",
         about: "the long search for a pair lost on a border between a finder's cells",
-        steps: &[Step::Bench("borders.md", "finder_borders")],
+        steps: &[ExperimentStep::Bench("borders.md", "finder_borders")],
         deterministic: &[],
         scenes: &[],
     },
     Experiment {
         name: "memory",
         about: "the address sanitizer in our crates in every tier, memcheck where it knows the tier",
-        steps: &[Step::Script("memory.txt", &[".ci/full", "memory"])],
+        steps: &[ExperimentStep::Script(
+            "memory.txt",
+            &[".ci/full", "memory"],
+        )],
         deterministic: &[],
         scenes: &[],
     },
@@ -228,8 +244,8 @@ const OWN: &[Experiment] = &[
         name: "mutants",
         about: "planted mutants: which the tests catch by room, and why others survive",
         steps: &[
-            Step::Script("mutants.csv", &[".ci/mutants/run"]),
-            Step::Script("survivors.csv", &[".ci/mutants/run", "--print", "reasons"]),
+            ExperimentStep::Script("mutants.csv", &[".ci/mutants/run"]),
+            ExperimentStep::Script("survivors.csv", &[".ci/mutants/run", "--print", "reasons"]),
         ],
         deterministic: &[],
         scenes: &[],
@@ -258,7 +274,7 @@ const OWN: &[Experiment] = &[
     Experiment {
         name: "python",
         about: "what a call from Python costs beyond Rust, and box pairs by Python's libraries",
-        steps: &[Step::Script("python.json", &["python/bench/run"])],
+        steps: &[ExperimentStep::Script("python.json", &["python/bench/run"])],
         deterministic: &[],
         scenes: &[],
     },
@@ -266,8 +282,8 @@ const OWN: &[Experiment] = &[
         name: "adapters",
         about: "other libraries judged: which of their claims hold",
         steps: &[
-            Step::Script("installed.txt", &["benches/adapters/install"]),
-            Step::Sdop(&["board", "--timed", "data/scenes/crowded-500.toml"]),
+            ExperimentStep::Script("installed.txt", &["benches/adapters/install"]),
+            ExperimentStep::Sdop(&["board", "--timed", "data/scenes/crowded-500.toml"]),
         ],
         deterministic: &[],
         scenes: &[],
@@ -275,7 +291,7 @@ const OWN: &[Experiment] = &[
     Experiment {
         name: "effects",
         about: "what an effect costs that isn't listed",
-        steps: &[Step::Script(
+        steps: &[ExperimentStep::Script(
             "effects.csv",
             &[".ci/effect_price", "data/scenes/paper-500.toml", "41"],
         )],

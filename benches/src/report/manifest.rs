@@ -1,4 +1,4 @@
-//! `record.json`: what a directory of measurements says of itself.
+//! `record.json`: the description of a directory of measurements.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use super::clock::today;
-use super::provenance::{Code, Load, caches};
+use super::provenance::{CodeVersion, Load, caches};
 use crate::hash::hex;
 use crate::measure::machine::Machine;
 
@@ -32,7 +32,7 @@ pub struct Manifest {
     /// Day of the measurement, `YYYY-MM-DD`, UTC.
     pub date: String,
     /// The code that was measured; absent where no repository was at hand.
-    pub code: Option<Code>,
+    pub code: Option<CodeVersion>,
     /// The machine; absent in records taken up from files that don't say.
     pub machine: Option<Machine>,
     /// Data caches of one core, smallest first, as the system names them.
@@ -68,7 +68,7 @@ pub enum ManifestError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The manifest is none.
@@ -128,7 +128,7 @@ impl Manifest {
             experiment: experiment.to_owned(),
             command,
             date: today(),
-            code: Code::here(Path::new(".")),
+            code: CodeVersion::here(Path::new(".")),
             machine: None,
             caches: caches(),
             load: None,
@@ -242,7 +242,7 @@ impl Manifest {
     }
 }
 
-/// Some scenes and the meshes beside them, by their paths in the repository.
+/// Some scenes and the meshes that they use, by their paths in the repository.
 pub(super) fn inputs(scenes: &[&str]) -> Vec<PathBuf> {
     let meshes = ["spot", "teapot", "bunny-4k", "bunny"];
     let meshes = meshes.map(|mesh| Path::new("data/meshes").join(mesh).with_extension("tri"));
@@ -255,7 +255,7 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
 }
 
 /// The digest of every file in `directory` and in its directories, the manifest excepted. A
-/// directory with a manifest of its own is another record.
+/// directory that has a manifest is another record.
 fn digests(directory: &Path) -> Result<BTreeMap<String, String>, ManifestError> {
     let mut digests = BTreeMap::new();
     add_digests(directory, "", &mut digests)?;
@@ -304,8 +304,9 @@ mod tests {
         (directory, manifest)
     }
 
+    /// A record reads back as it was described.
     #[test]
-    fn a_record_reads_back_as_it_was_described() {
+    fn record_reads_back() {
         let (directory, manifest) = record();
         let read = Manifest::read(directory.path()).unwrap();
         assert_eq!(read.files, manifest.files);
@@ -313,8 +314,9 @@ mod tests {
         assert_eq!(read.id().len(), 12);
     }
 
+    /// One digit changed by hand is seen.
     #[test]
-    fn one_digit_changed_by_hand_is_seen() {
+    fn changed_digit_is_detected() {
         let (directory, _) = record();
         std::fs::write(directory.path().join("counts.csv"), "a,b\n1,3\n").unwrap();
         let error = Manifest::read(directory.path()).unwrap_err();
@@ -326,8 +328,9 @@ mod tests {
         assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
     }
 
+    /// Figures below are part of a record and records below are not.
     #[test]
-    fn figures_below_are_part_of_a_record_and_records_below_are_not() {
+    fn nested_records_are_separate() {
         let directory = tempfile::tempdir().unwrap();
         let place = directory.path();
         for (name, text) in [
@@ -346,8 +349,9 @@ mod tests {
         assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
     }
 
+    /// A file more or less is seen.
     #[test]
-    fn a_file_more_or_less_is_seen() {
+    fn added_or_missing_file_is_detected() {
         let (directory, _) = record();
         std::fs::write(directory.path().join("extra.csv"), "a\n1\n").unwrap();
         assert!(matches!(

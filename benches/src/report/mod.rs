@@ -1,5 +1,5 @@
-//! Measurements that can be cited: what a record says of itself, how two records compare, and pages
-//! that take every number from a record.
+//! Measurements that can be cited: records, comparing two records, and pages that take every number
+//! from a record.
 //!
 //! A record is a directory `data/record/<machine>/<experiment>` of tables and one [`Manifest`],
 //! which holds the command, the commit, the machine and a digest of every file. A page quotes
@@ -20,10 +20,10 @@ mod provenance;
 mod store;
 mod table;
 
-pub use compare::{Change, Comparison, compare};
+pub use compare::{MeasuredChange, RecordComparison, compare};
 pub use digits::{Quantities, Quantity};
-pub use experiment::{Experiment, Step, experiments};
+pub use experiment::{Experiment, ExperimentStep, experiments};
 pub use manifest::{FILE, Manifest, ManifestError};
-pub use provenance::{Code, Load, caches};
+pub use provenance::{CodeVersion, Load, caches};
 pub use store::{Store, StoreError};
 pub use table::{Table, TableError};

@@ -1,8 +1,8 @@
-//! What an experiment needs: files of a checkout, and programs beyond this one.
+//! What an experiment needs: files of a checkout, and other programs.
 
 use std::path::{Path, PathBuf};
 
-use super::experiment::{Experiment, Step};
+use super::experiment::{Experiment, ExperimentStep};
 use super::manifest::inputs;
 
 impl Experiment {
@@ -10,7 +10,7 @@ impl Experiment {
     #[must_use]
     pub fn needs(&self) -> String {
         let mut needs: Vec<&str> = Vec::new();
-        for need in self.steps.iter().flat_map(Step::needs) {
+        for need in self.steps.iter().flat_map(ExperimentStep::needs) {
             if !needs.contains(need) {
                 needs.push(need);
             }
@@ -32,13 +32,17 @@ impl Experiment {
     /// The first file of the repository that it reads or runs and that isn't below `root`.
     #[must_use]
     pub fn missing(&self, root: &Path) -> Option<PathBuf> {
-        let programs = self.steps.iter().filter_map(Step::file).map(PathBuf::from);
+        let programs = self
+            .steps
+            .iter()
+            .filter_map(ExperimentStep::file)
+            .map(PathBuf::from);
         let mut files = programs.chain(inputs(self.scenes));
         files.find(|file| !root.join(file).is_file())
     }
 }
 
-impl Step {
+impl ExperimentStep {
     fn needs(&self) -> &'static [&'static str] {
         match self {
             Self::Sdop(_) | Self::SdopPrints(..) => &[],
@@ -69,8 +73,9 @@ mod tests {
     use super::super::experiment::experiments;
     use super::*;
 
+    /// A checkout has every file and an empty directory none.
     #[test]
-    fn a_checkout_has_every_file_and_an_empty_directory_none() {
+    fn needs_are_found_in_a_checkout() {
         let checkout = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
         let empty = tempfile::tempdir().unwrap();
         for experiment in experiments() {

@@ -2,8 +2,8 @@
 //!
 //! A page that is mostly tables is what a template below `paper/templates/pages/` gives:
 //! `pages/benches/README.md` gives `benches/README.md`. A page that people write carries whole
-//! blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a line of its own, from
-//! the template `paper/templates/NAME.md`. Templates are Jinja's; macros that they share are in one
+//! blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a separate line, from the
+//! template `paper/templates/NAME.md`. Templates are Jinja's; macros that they share are in one
 //! file, `q` in expressions.
 //!
 //! | function or filter | gives |
@@ -39,7 +39,7 @@ pub const WHOLE: &str = "pages";
 
 /// What every page of a repository is rendered from.
 #[derive(Clone, Debug)]
-pub struct Sources {
+pub struct PageSources {
     /// The records.
     pub store: Arc<Store>,
     /// Macros that pages share, a template.
@@ -64,7 +64,7 @@ pub struct PageError {
 ///
 /// # Errors
 /// An expression that has no value, a record that was changed.
-pub fn whole(page: &str, template: &str, sources: &Sources) -> Result<String, PageError> {
+pub fn whole(page: &str, template: &str, sources: &PageSources) -> Result<String, PageError> {
     let environment = environment(page, sources)?;
     evaluate(&environment, template).map_err(|error| PageError {
         page: format!("{WHOLE}/{page}"),
@@ -79,7 +79,7 @@ pub fn whole(page: &str, template: &str, sources: &Sources) -> Result<String, Pa
 /// # Errors
 /// A block without an end or a template, an expression that has no value, a record that was
 /// changed.
-pub fn blocks(page: &str, text: &str, sources: &Sources) -> Result<String, PageError> {
+pub fn blocks(page: &str, text: &str, sources: &PageSources) -> Result<String, PageError> {
     let environment = environment(page, sources)?;
     let mut out = String::with_capacity(text.len());
     let mut lines = text.split_inclusive('\n').enumerate();
@@ -117,7 +117,7 @@ fn marked<'l>(line: &'l str, word: &str) -> Option<&'l str> {
 
 /// What a template gives, with the shared macros as `q`.
 fn evaluate(environment: &Environment<'_>, template: &str) -> Result<String, Error> {
-    // The import takes no line of its own, so that errors have the template's lines.
+    // The import is not on a separate line, so that errors have the template's line numbers.
     const IMPORT: &str = "{% import 'macros' as q %}{{ '' }}";
     environment.render_str(&format!("{IMPORT}{template}"), context! {})
 }
@@ -134,10 +134,10 @@ fn said(error: &Error) -> String {
     text
 }
 
-fn environment<'s>(page: &str, sources: &'s Sources) -> Result<Environment<'s>, PageError> {
+fn environment<'s>(page: &str, sources: &'s PageSources) -> Result<Environment<'s>, PageError> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
-    // A block's tag takes no line of its own.
+    // A line that only has a block tag is removed.
     let syntax = SyntaxConfig::builder()
         .trim_blocks(true)
         .lstrip_blocks(true)
@@ -322,7 +322,7 @@ mod tests {
     const TIMES: &str =
         "{% for row in csv(\"box/kernels/t.csv\") %}\n- {{ q.us(row) }}\n{% endfor %}\n";
 
-    fn sources() -> (tempfile::TempDir, Sources) {
+    fn sources() -> (tempfile::TempDir, PageSources) {
         let root = tempfile::tempdir().unwrap();
         let record = root.path().join("box/kernels");
         std::fs::create_dir_all(&record).unwrap();
@@ -334,7 +334,7 @@ mod tests {
         let manifest =
             Manifest::describe(&record, "kernels", "sdop bench".to_owned(), &[]).unwrap();
         std::fs::write(record.join(FILE), manifest.text()).unwrap();
-        let sources = Sources {
+        let sources = PageSources {
             store: Arc::new(Store::new(root.path()).unwrap()),
             macros: "{% macro us(row) %}{{ row.us.mean | fixed(1) }} µs{% endmacro %}".to_owned(),
             templates: BTreeMap::from([("times".to_owned(), TIMES.to_owned())]),
@@ -353,8 +353,9 @@ mod tests {
         assert_eq!(sources.store.used().len(), 1);
     }
 
+    /// Two roundings of one number are noticed.
     #[test]
-    fn two_roundings_of_one_number_are_noticed() {
+    fn two_roundings_are_detected() {
         let (_root, sources) = sources();
         let number = "(csv(\"box/kernels/t.csv\") | one(tier=\"scalar\")).us.mean / 7";
         for (page, digits) in [("a.md", 1), ("b.md", 2)] {

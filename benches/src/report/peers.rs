@@ -1,6 +1,6 @@
 //! The experiments of the comparison with other engines.
 
-use super::experiment::{Experiment, PAPER_500, Step};
+use super::experiment::{Experiment, ExperimentStep, PAPER_500};
 
 const MILLION: &[&str] = &["data/scenes/uniform-1m.toml"];
 
@@ -12,7 +12,7 @@ macro_rules! peers {
             $(Experiment {
                 name: concat!("peers/", $name),
                 about: $about,
-                steps: &[Step::Peers($arguments)],
+                steps: &[ExperimentStep::Peers($arguments)],
                 deterministic: &[],
                 scenes: &[],
             },)+
@@ -52,11 +52,11 @@ peers! {
         name: "peers/control",
         about: "what a second thread is worth, and a million bodies by stage",
         steps: &[
-            Step::Peers("control"),
-            Step::SdopPrints("stages-grid-1.json", &stages("grid", "1")),
-            Step::SdopPrints("stages-grid-2.json", &stages("grid", "2")),
-            Step::SdopPrints("stages-auto-1.json", &stages("auto", "1")),
-            Step::SdopPrints("stages-auto-2.json", &stages("auto", "2")),
+            ExperimentStep::Peers("control"),
+            ExperimentStep::SdopPrints("stages-grid-1.json", &stages("grid", "1")),
+            ExperimentStep::SdopPrints("stages-grid-2.json", &stages("grid", "2")),
+            ExperimentStep::SdopPrints("stages-auto-1.json", &stages("auto", "1")),
+            ExperimentStep::SdopPrints("stages-auto-2.json", &stages("auto", "2")),
         ],
         deterministic: &[],
         scenes: MILLION,
@@ -64,7 +64,7 @@ peers! {
     Experiment {
         name: "peers/narrow",
         about: "what a narrow phase costs a pair",
-        steps: &[Step::Peers("narrow data/scenes/paper-500.toml --frames 5")],
+        steps: &[ExperimentStep::Peers("narrow data/scenes/paper-500.toml --frames 5")],
         deterministic: &[],
         scenes: PAPER_500,
     },

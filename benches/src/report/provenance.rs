@@ -1,4 +1,4 @@
-//! Where a measurement comes from: the code, the caches and what else the machine did.
+//! The provenance of a measurement: the code, the caches and other load on the machine.
 
 use std::path::Path;
 use std::process::Command;
@@ -17,7 +17,7 @@ const MEASURED: [&str; 5] = [
 /// The code that was measured, as its repository names it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Code {
+pub struct CodeVersion {
     /// The commit.
     pub commit: String,
     /// Whether files of the code differed from the commit's.
@@ -26,7 +26,7 @@ pub struct Code {
     pub trees: Vec<String>,
 }
 
-impl Code {
+impl CodeVersion {
     /// The code in the work tree around `place`; `None` without a repository or without git.
     #[must_use]
     pub fn here(place: &Path) -> Option<Self> {

@@ -1,4 +1,4 @@
-//! All records of the repository, read and checked once each.
+//! All records of the repository, each read and checked once.
 //!
 //! A path is `machine/experiment/file`, or `experiment/file`: then it is the machine's that
 //! `quoted.toml` names, so that every page quotes the same record of an experiment.
@@ -19,8 +19,8 @@ const QUOTED: &str = "quoted.toml";
 /// Whose record of an experiment is quoted.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Quoted {
-    /// The machine, where nothing else is said.
+struct QuotedMachines {
+    /// The default machine.
     machine: String,
     /// Another machine, by experiment.
     #[serde(default)]
@@ -31,7 +31,7 @@ struct Quoted {
 #[derive(Debug)]
 pub struct Store {
     root: PathBuf,
-    quoted: Option<Quoted>,
+    quoted: Option<QuotedMachines>,
     manifests: Mutex<BTreeMap<String, Manifest>>,
 }
 
@@ -180,7 +180,7 @@ impl Store {
     /// The path of a record's file, once the record is known to be whole.
     fn checked(&self, path: &str) -> Result<PathBuf, StoreError> {
         let path = self.place(path);
-        // A record may have directories of its own.
+        // A record may have subdirectories.
         let mut record = path.as_str();
         while let Some((above, _)) = record.rsplit_once('/') {
             record = above;

@@ -1,4 +1,4 @@
-//! Claims and the numbers that bear on them: a verdict is computed, never written down.
+//! Claims and the numbers that decide them. Verdicts are computed, never written by hand.
 
 use serde::Serialize;
 
@@ -21,7 +21,7 @@ choices! {
 
 /// One number that bears on a claim.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Check {
+pub struct ClaimCheck {
     /// What was measured or computed, with its unit.
     pub quantity: String,
     /// Its value.
@@ -42,7 +42,7 @@ pub struct PaperClaim {
     /// What it says, in our words.
     pub claim: &'static str,
     /// The numbers.
-    pub checks: Vec<Check>,
+    pub checks: Vec<ClaimCheck>,
 }
 
 impl PaperClaim {
@@ -68,7 +68,7 @@ impl PaperClaim {
     }
 }
 
-impl Check {
+impl ClaimCheck {
     /// Claimed to lie strictly between `lo` and `hi`, either of which may be infinite.
     #[must_use]
     pub fn between(quantity: String, value: Estimate, [lo, hi]: [f64; 2]) -> Self {
@@ -155,37 +155,41 @@ mod tests {
 
     #[test]
     fn verdicts_follow_the_interval() {
-        let above = |mean, half| Check::above(String::new(), estimate(mean, half), 1.0).verdict;
+        let above =
+            |mean, half| ClaimCheck::above(String::new(), estimate(mean, half), 1.0).verdict;
         assert_eq!(above(1.2, 0.1), Verdict::Supported);
         assert_eq!(above(1.2, 0.3), Verdict::Undecided);
         assert_eq!(above(0.8, 0.1), Verdict::Contradicted);
         assert_eq!(above(1.0, 0.0), Verdict::Contradicted, "equal is not above");
         assert_eq!(above(5.0, f64::INFINITY), Verdict::Undecided);
-        let near = Check::between(String::new(), estimate(0.97, 0.01), [0.95, 1.05]);
+        let near = ClaimCheck::between(String::new(), estimate(0.97, 0.01), [0.95, 1.05]);
         assert_eq!(
             (near.verdict, near.expected.as_str()),
             (Verdict::Supported, "0.95 to 1.05")
         );
     }
 
+    /// Equality allows for the size of the family.
     #[test]
-    fn equality_allows_for_the_size_of_the_family() {
+    fn equality_corrects_for_family_size() {
         // 1.2 half-widths off: p ≈ .03 with eight degrees of freedom.
-        let check = |family| Check::equal(String::new(), estimate(1.0, 0.1), 1.12, family).verdict;
+        let check =
+            |family| ClaimCheck::equal(String::new(), estimate(1.0, 0.1), 1.12, family).verdict;
         assert_eq!(check(1), Verdict::Contradicted);
         assert_eq!(check(6), Verdict::Undecided);
         assert_eq!(
-            Check::equal(String::new(), estimate(1.0, 0.1), 1.05, 6).verdict,
+            ClaimCheck::equal(String::new(), estimate(1.0, 0.1), 1.05, 6).verdict,
             Verdict::Supported
         );
     }
 
+    /// A claim is as good as its checks.
     #[test]
-    fn a_claim_is_as_good_as_its_checks() {
+    fn claim_follows_its_checks() {
         let claim = |verdicts: &[Verdict]| {
-            let check = |&verdict: &Verdict| Check {
+            let check = |&verdict: &Verdict| ClaimCheck {
                 verdict,
-                ..Check::computed(String::new(), 0.0, [0.0, 1.0])
+                ..ClaimCheck::computed(String::new(), 0.0, [0.0, 1.0])
             };
             let checks = verdicts.iter().map(check).collect();
             PaperClaim {

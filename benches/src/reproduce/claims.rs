@@ -3,10 +3,10 @@
 //! Frame rates are compared as ratios, seed by seed, for its 500 objects in the small and in the
 //! usual box and for both F.
 
-use super::check::{Check, PaperClaim};
+use super::check::{ClaimCheck, PaperClaim};
 use super::experiment::{PaperScene, Results, STRATEGIES};
 use super::immediate::{Handing, Immediacy};
-use super::rates::{ELSEWHERE, ratio};
+use super::rates::{OTHER_FRAME_SECONDS, ratio};
 use super::readings::{Reading, TABLE_1_STRATEGIES};
 use super::{Estimate, paper_name};
 use sdop::settings::Strategy;
@@ -17,7 +17,7 @@ use Strategy::{
 };
 
 /// "Almost" and "similar" are taken as within five percent.
-const SIMILAR: [f64; 2] = [0.95, 1.05];
+const SIMILAR_RATIO: [f64; 2] = [0.95, 1.05];
 
 /// All claims, in the paper's order.
 #[must_use]
@@ -37,7 +37,7 @@ fn frame_rates(results: &Results) -> Vec<PaperClaim> {
         faster(&others.iter().map(|&other| [one, other]).collect::<Vec<_>>())
     };
     let mut order = faster(&[[Control, Sphere], [Ooi, Seq], [Seq, All], [All, OrDop]]);
-    order.extend(rate_checks(results, [Ooi, Sphere], SIMILAR));
+    order.extend(rate_checks(results, [Ooi, Sphere], SIMILAR_RATIO));
     let claim = |claim, checks| PaperClaim {
         source: "6.1",
         claim,
@@ -69,11 +69,11 @@ fn frame_rates(results: &Results) -> Vec<PaperClaim> {
         ),
         claim(
             "With an object of interest the frame rate almost reaches the control's.",
-            rate_checks(results, [Ooi, Control], [SIMILAR[0], f64::INFINITY]),
+            rate_checks(results, [Ooi, Control], [SIMILAR_RATIO[0], f64::INFINITY]),
         ),
         claim(
             "With an object of interest the frame rate is similar to spheres'.",
-            rate_checks(results, [Ooi, Sphere], SIMILAR),
+            rate_checks(results, [Ooi, Sphere], SIMILAR_RATIO),
         ),
         claim(
             "The object of interest stands out among the others.",
@@ -87,7 +87,7 @@ fn frame_rates(results: &Results) -> Vec<PaperClaim> {
 }
 
 /// Testing at once against listing first, all else equal: the paper's algorithm to the letter.
-fn at_once(results: &Results) -> Vec<Check> {
+fn at_once(results: &Results) -> Vec<ClaimCheck> {
     let mut checks = Vec::new();
     for scene in largest(results) {
         for [list, once] in [
@@ -104,7 +104,11 @@ fn at_once(results: &Results) -> Vec<Check> {
             let runs = results.immediacies.iter().filter(|run| run.scene == scene);
             let ratios: Vec<f64> = runs.map(of).collect();
             let quantity = format!("t of {list} / {once}, {scene}");
-            checks.push(Check::above(quantity, Estimate::in_order(&ratios), 1.0));
+            checks.push(ClaimCheck::above(
+                quantity,
+                Estimate::in_order(&ratios),
+                1.0,
+            ));
         }
     }
     checks
@@ -126,7 +130,7 @@ fn percentages(results: &Results) -> Vec<PaperClaim> {
                 let differences: Vec<f64> =
                     one.iter().zip(&other_values).map(|(a, b)| a - b).collect();
                 let quantity = format!("Seq − {}, {reading}, {scene}, points", paper_name(other));
-                Check::above(quantity, Estimate::of(&differences), 0.0)
+                ClaimCheck::above(quantity, Estimate::of(&differences), 0.0)
             }));
         }
     }
@@ -134,7 +138,7 @@ fn percentages(results: &Results) -> Vec<PaperClaim> {
     for reading in [Reading::OwnTests, Reading::AllTests] {
         useful.extend(results.scenes().map(|scene| {
             let values = Estimate::of(&percent(results, scene, Seq, reading));
-            Check::above(format!("Seq, {reading}, {scene}, %"), values, 50.0)
+            ClaimCheck::above(format!("Seq, {reading}, {scene}, %"), values, 50.0)
         }));
     }
     vec![
@@ -179,17 +183,17 @@ fn conclusion(results: &Results) -> Vec<PaperClaim> {
 
 /// What S-DOP gains over homogeneous volumes in some scenes: frame rates, and the pairs that it
 /// passes on.
-fn advantage(results: &Results, scenes: &[PaperScene]) -> Vec<Check> {
+fn advantage(results: &Results, scenes: &[PaperScene]) -> Vec<ClaimCheck> {
     let faster = |pair| rate_checks_in(results, scenes, pair, [1.0, f64::INFINITY]);
     let pairs = [[Seq, OrDop], [All, OrDop], [Seq, Sphere]];
-    let mut checks: Vec<Check> = pairs.into_iter().flat_map(faster).collect();
+    let mut checks: Vec<ClaimCheck> = pairs.into_iter().flat_map(faster).collect();
     for scene in scenes {
         let [kept, spheres] = [Seq, Sphere].map(|strategy| {
             results.by_seed(scene.name(), strategy, |run| run.counters.reported as f64)
         });
         let ratios: Vec<f64> = kept.iter().zip(&spheres).map(|(a, b)| a / b).collect();
         let quantity = format!("pairs passed on, Seq/Sphere, {scene}");
-        checks.push(Check::between(
+        checks.push(ClaimCheck::between(
             quantity,
             Estimate::of(&ratios),
             [f64::NEG_INFINITY, 1.0],
@@ -199,7 +203,7 @@ fn advantage(results: &Results, scenes: &[PaperScene]) -> Vec<Check> {
 }
 
 /// Frame rate of one strategy over another's in every scene of the most objects and for every F.
-fn rate_checks(results: &Results, of: [Strategy; 2], claimed: [f64; 2]) -> Vec<Check> {
+fn rate_checks(results: &Results, of: [Strategy; 2], claimed: [f64; 2]) -> Vec<ClaimCheck> {
     rate_checks_in(results, &largest(results), of, claimed)
 }
 
@@ -208,13 +212,13 @@ fn rate_checks_in(
     scenes: &[PaperScene],
     of: [Strategy; 2],
     claimed: [f64; 2],
-) -> Vec<Check> {
+) -> Vec<ClaimCheck> {
     let mut checks = Vec::new();
     for scene in scenes {
-        for elsewhere in ELSEWHERE {
+        for elsewhere in OTHER_FRAME_SECONDS {
             let [one, other] = of.map(paper_name);
             let quantity = format!("fps {one}/{other}, {scene}, F = {} ms", 1e3 * elsewhere);
-            checks.push(Check::between(
+            checks.push(ClaimCheck::between(
                 quantity,
                 ratio(results, scene.name(), of, elsewhere),
                 claimed,

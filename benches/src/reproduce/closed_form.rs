@@ -1,4 +1,4 @@
-//! The sphere percentage without a simulation.
+//! The closed form of the sphere percentage, without a simulation.
 //!
 //! Two points uniform in a cube of side L are within 2r of each other with probability
 //!
@@ -60,8 +60,9 @@ mod tests {
         }
     }
 
+    /// The paper's row inverts to a seventh or an eighth.
     #[test]
-    fn the_paper_s_row_inverts_to_a_seventh_or_an_eighth() {
+    fn paper_row_inverts_to_box_size() {
         let s = [0.0076, 0.0082, 0.0094, 0.0106].map(inverse);
         for (s, expected) in s.iter().zip([0.128, 0.132, 0.138, 0.144]) {
             assert!((s - expected).abs() < 5e-4, "{s} for {expected}");

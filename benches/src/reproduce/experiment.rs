@@ -1,4 +1,4 @@
-//! The runs: every scene with every seed, all strategies side by side on the same frames.
+//! The runs: every scene with every seed, all strategies on the same frames.
 
 use std::path::{Path, PathBuf};
 
@@ -63,11 +63,11 @@ impl PaperScene {
 }
 
 /// The scene whose or-DOPs are compared by k.
-pub(super) const COMPARED: PaperScene = PaperScene::Paper500;
+pub(super) const SURVIVAL_SCENE: PaperScene = PaperScene::Paper500;
 
 /// What to run.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct ExperimentPlan {
     /// Where the scene files are.
     pub scenes: PathBuf,
     /// Which of them.
@@ -84,7 +84,7 @@ pub struct Plan {
 
 /// One strategy in one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Run {
+pub struct StrategyRun {
     /// The scene's name.
     pub scene: String,
     /// N.
@@ -120,9 +120,9 @@ pub struct Run {
 #[derive(Clone, Debug)]
 pub struct Results {
     /// The plan.
-    pub plan: Plan,
+    pub plan: ExperimentPlan,
     /// One run a seed, scene and strategy.
-    pub runs: Vec<Run>,
+    pub runs: Vec<StrategyRun>,
     /// One pass a seed and scene, with its calibration: what the runs were taken from.
     pub passes: Vec<(PaperScene, Pass)>,
     /// The paper's sequential algorithm to the letter, a seed and scene of the most objects each.
@@ -150,7 +150,7 @@ pub enum ReproduceError {
     Simulation(#[from] SimulationError),
 }
 
-impl Plan {
+impl ExperimentPlan {
     /// The paper's scenes in the directory `scenes`, with seeds 1 … `seeds`.
     #[must_use]
     pub fn new(scenes: &Path, seeds: u64, frames: u32, effort: Effort, tier: Tier) -> Self {
@@ -164,14 +164,14 @@ impl Plan {
         }
     }
 
-    /// How many times [`Plan::run`] reports progress.
+    /// How many times [`ExperimentPlan::run`] reports progress.
     #[must_use]
     pub fn steps(&self) -> usize {
         (self.names.len() + 1) * self.seeds.len()
     }
 
-    /// Runs everything but the interpretations, here. `done` is called as often as [`Plan::steps`]
-    /// says.
+    /// Runs everything except the interpretations, in this process. `done` is called as often as
+    /// [`ExperimentPlan::steps`] says.
     ///
     /// # Errors
     /// Scene files that can't be read or don't suit the strategies.
@@ -201,7 +201,7 @@ pub fn run_scene(
     strategies: &[Strategy],
     frames: u32,
     tier: Tier,
-) -> Result<Vec<Run>, SimulationError> {
+) -> Result<Vec<StrategyRun>, SimulationError> {
     let variants = variants(scene, strategies);
     run_pass(scene, &variants, frames, tier, None).map(|(runs, _)| runs)
 }
@@ -233,7 +233,7 @@ pub(super) fn run_pass(
     frames: u32,
     tier: Tier,
     calibration: Option<&mut Calibration>,
-) -> Result<(Vec<Run>, Pass), SimulationError> {
+) -> Result<(Vec<StrategyRun>, Pass), SimulationError> {
     let mut hashing = VariantHashes {
         hashes: vec![PairsHash::default(); variants.len()],
         reported: Vec::new(),
@@ -252,7 +252,7 @@ pub(super) fn run_pass(
     let run = |((variant, culled), hash): ((&Variant, &Culled), PairsHash)| {
         let strategy = variant.settings.strategy;
         let warm = culled.times.medians(Regime::Warm);
-        Run {
+        StrategyRun {
             scene: scene.name.clone(),
             bodies: bodies.len(),
             statics: bodies.dynamic.iter().filter(|&&dynamic| !dynamic).count(),
@@ -292,15 +292,15 @@ impl Results {
         &self,
         scene: &str,
         strategy: Strategy,
-        value: impl Fn(&Run) -> f64,
+        value: impl Fn(&StrategyRun) -> f64,
     ) -> Vec<f64> {
-        let of = |run: &&Run| run.scene == scene && run.strategy == strategy;
+        let of = |run: &&StrategyRun| run.scene == scene && run.strategy == strategy;
         self.runs.iter().filter(of).map(value).collect()
     }
 
     /// Any run of a scene, for what all of them share.
     #[must_use]
-    pub fn example(&self, scene: &str) -> Option<&Run> {
+    pub fn example(&self, scene: &str) -> Option<&StrategyRun> {
         self.runs.iter().find(|run| run.scene == scene)
     }
 
@@ -322,8 +322,8 @@ impl Results {
         passes.map(|(_, pass)| pass).collect()
     }
 
-    /// The passes whose rounds calibrated scenes of the same kind as this one, in the order of time:
-    /// such scenes share their prices.
+    /// The passes whose rounds calibrated scenes of the same kind as this one, in the order of
+    /// time. Such scenes share their prices.
     #[must_use]
     pub fn priced_as(&self, scene: PaperScene) -> Vec<&Pass> {
         let level = |pass: &Pass| Some(pass.prices[0].first()?.level);

@@ -1,10 +1,10 @@
 //! The paper's experiments: the same seeded trajectories culled by each of its strategies, for each
 //! of its numbers of objects, and what that says of its results and of our own reading of them.
 //!
-//! > [`Plan`] → [`Run`]s → Table 1 ([`readings`]), frame rates ([`rates`]), T ([`Results::costs`]), [`claims`], [`study`]
+//! > [`ExperimentPlan`] → [`StrategyRun`]s → Table 1 ([`readings`]), frame rates ([`rates`]), T ([`Results::costs`]), [`claims`], [`study`]
 //!
-//! Everything behind the runs is a pure function of them, so that runs made elsewhere can be
-//! joined. Counts and hashes are equal on every CPU; seconds are this machine's.
+//! Everything after the runs is a pure function of them, so that runs made elsewhere can be joined.
+//! Counts and hashes are equal on every CPU; seconds are this machine's.
 
 pub mod check;
 pub mod claims;
@@ -20,7 +20,9 @@ mod survival;
 pub mod units;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
-pub use experiment::{PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, run_scene};
+pub use experiment::{
+    ExperimentPlan, PaperScene, ReproduceError, Results, STRATEGIES, StrategyRun, run_scene,
+};
 pub use survival::Survival;
 
 use sdop::settings::Strategy;

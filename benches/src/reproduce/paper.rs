@@ -38,7 +38,7 @@ pub fn pairs() -> [f64; 4] {
 }
 
 /// A row taken as counts of one frame: is it one percentage in all columns? χ² on three degrees of
-/// freedom, its probability, and the pooled percentage. `tests` are the tests a frame in each
+/// freedom, its probability, and the pooled percentage. `tests` are the tests per frame in each
 /// column.
 #[must_use]
 pub fn constant_row(row: &[f64; 4], tests: &[f64; 4]) -> (f64, f64, f64) {
@@ -78,8 +78,9 @@ pub fn extra_tests_of_all() -> Option<[f64; 4]> {
 mod tests {
     use super::*;
 
+    /// The sphere row is hardly constant and the sequential row may be.
     #[test]
-    fn the_sphere_row_is_hardly_constant_and_the_sequential_row_may_be() {
+    fn sphere_row_is_not_constant() {
         let sphere = &TABLE_1[0].1;
         let (chi_squared, p, pooled) = constant_row(sphere, &pairs());
         assert!((chi_squared - 10.05).abs() < 0.05, "{chi_squared}");
@@ -92,8 +93,9 @@ mod tests {
         assert!((chi_squared - 3.6).abs() < 0.2 && p > 0.2 && (pooled - 51.0).abs() < 0.5);
     }
 
+    /// All's dop has about a quarter n extra tests.
     #[test]
-    fn all_s_dop_has_about_a_quarter_n_extra_tests() {
+    fn batch_row_has_extra_tests() {
         let extra = extra_tests_of_all().unwrap_or_default();
         assert!(
             extra[1..].iter().all(|x| (0.26..0.30).contains(x)),

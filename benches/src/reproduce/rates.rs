@@ -11,7 +11,7 @@ use super::experiment::{Results, STRATEGIES};
 use sdop::settings::Strategy;
 
 /// Per-frame costs F of everything else, in seconds.
-pub const ELSEWHERE: [f64; 2] = [0.0, 16.7e-3];
+pub const OTHER_FRAME_SECONDS: [f64; 2] = [0.0, 16.7e-3];
 /// A frame of 60 Hz, in seconds.
 pub const FRAME_60_HZ: f64 = 1.0 / 60.0;
 
@@ -40,7 +40,7 @@ pub struct Rate {
 #[must_use]
 pub fn table(results: &Results) -> Vec<Rate> {
     let mut rates = Vec::new();
-    for elsewhere in ELSEWHERE {
+    for elsewhere in OTHER_FRAME_SECONDS {
         for scene in results.scenes() {
             rates.extend(STRATEGIES.map(|strategy| rate(results, scene, strategy, elsewhere)));
         }

@@ -72,7 +72,7 @@ impl Reading {
 
 /// One cell of Table 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cell {
+pub struct Table1Cell {
     /// The scene.
     pub scene: String,
     /// Whether that is the paper's one box.
@@ -90,7 +90,7 @@ pub struct Cell {
     pub paper: Option<f64>,
 }
 
-impl Cell {
+impl Table1Cell {
     /// Ours over the paper's.
     #[must_use]
     pub fn ratio(&self) -> Option<f64> {
@@ -100,13 +100,13 @@ impl Cell {
 
 /// One cell.
 #[must_use]
-pub fn cell(results: &Results, scene: &str, strategy: Strategy, reading: Reading) -> Cell {
+pub fn cell(results: &Results, scene: &str, strategy: Strategy, reading: Reading) -> Table1Cell {
     let bodies = results.example(scene).map_or(0, |run| run.bodies);
     let values = results.by_seed(scene, strategy, |run| {
         reading.percentage(strategy, &run.counters, run.frames, run.bodies)
     });
     let comparable = results.paper_scenes().any(|name| name == scene);
-    Cell {
+    Table1Cell {
         scene: scene.to_owned(),
         in_papers_box: comparable,
         bodies,
@@ -119,7 +119,7 @@ pub fn cell(results: &Results, scene: &str, strategy: Strategy, reading: Reading
 
 /// All cells: reading by reading, strategy by strategy, scene by scene.
 #[must_use]
-pub fn table(results: &Results) -> Vec<Cell> {
+pub fn table(results: &Results) -> Vec<Table1Cell> {
     let mut cells = Vec::new();
     for &reading in Reading::ALL {
         for strategy in TABLE_1_STRATEGIES {

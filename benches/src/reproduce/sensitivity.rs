@@ -12,7 +12,7 @@ use std::num::NonZeroU32;
 use serde::Serialize;
 use toml::Spanned;
 
-use super::experiment::{Plan, ReproduceError};
+use super::experiment::{ExperimentPlan, ReproduceError};
 use super::paper::{TABLE_1, TABLE_1_BODIES};
 use crate::effects::walls;
 use crate::measure::culling::Culling;
@@ -28,7 +28,7 @@ use sdop::simd::Tier;
 use sdop_judge::contestant::Contestant;
 
 /// Frames after which counts are looked at.
-const LENGTHS: [u32; 4] = [1, 10, 60, 400];
+const FRAME_COUNTS: [u32; 4] = [1, 10, 60, 400];
 /// The most seeds of each interpretation.
 const SEEDS: usize = 4;
 
@@ -91,7 +91,10 @@ pub fn ways() -> Vec<(Start, Bounce)> {
 ///
 /// # Errors
 /// Scenes that can't be read, built or simulated.
-pub fn counted(plan: &Plan, way: (Start, Bounce)) -> Result<Vec<TestCounts>, ReproduceError> {
+pub fn counted(
+    plan: &ExperimentPlan,
+    way: (Start, Bounce),
+) -> Result<Vec<TestCounts>, ReproduceError> {
     let lengths = lengths(plan);
     let mut all = vec![[[0; 4]; 4]; lengths.len() * kinds().len()];
     for (column, bodies) in TABLE_1_BODIES.into_iter().enumerate() {
@@ -107,7 +110,7 @@ pub fn counted(plan: &Plan, way: (Start, Bounce)) -> Result<Vec<TestCounts>, Rep
 /// What a reading's counts say of Table 1.
 #[must_use]
 pub fn interpretations(
-    plan: &Plan,
+    plan: &ExperimentPlan,
     (start, bounce): (Start, Bounce),
     counted: &[TestCounts],
 ) -> Vec<Interpretation> {
@@ -128,7 +131,7 @@ pub fn sort(interpretations: &mut [Interpretation]) {
 ///
 /// # Errors
 /// Scenes that can't be read, built or simulated.
-pub fn sweep(plan: &Plan) -> Result<Vec<Interpretation>, ReproduceError> {
+pub fn sweep(plan: &ExperimentPlan) -> Result<Vec<Interpretation>, ReproduceError> {
     let mut found = Vec::new();
     for way in ways() {
         found.extend(interpretations(plan, way, &counted(plan, way)?));
@@ -138,8 +141,8 @@ pub fn sweep(plan: &Plan) -> Result<Vec<Interpretation>, ReproduceError> {
 }
 
 /// After how many frames counts are looked at.
-fn lengths(plan: &Plan) -> Vec<u32> {
-    let mut lengths = LENGTHS.map(|length| length.min(plan.frames)).to_vec();
+fn lengths(plan: &ExperimentPlan) -> Vec<u32> {
+    let mut lengths = FRAME_COUNTS.map(|length| length.min(plan.frames)).to_vec();
     lengths.dedup();
     lengths
 }
@@ -157,7 +160,7 @@ fn kinds() -> Vec<(DirectionSet, Axes, Overlap)> {
 
 /// Counters of every kind of or-DOP after every length, summed over seeds.
 fn count(
-    plan: &Plan,
+    plan: &ExperimentPlan,
     assumed: (Start, Bounce),
     bodies: usize,
     lengths: &[u32],

@@ -1,6 +1,6 @@
 //! Our own reading of Table 1, checked: what its rows can and cannot be.
 
-use super::check::{Check, PaperClaim};
+use super::check::{ClaimCheck, PaperClaim};
 use super::closed_form::{inverse, probability, relative_reach};
 use super::experiment::Results;
 use super::readings::Reading;
@@ -11,7 +11,7 @@ use Strategy::{OrDop, SDopBatch as All, SDopSequential as Seq, Sphere};
 
 /// Where these claims come from.
 const SOURCE: &str = "own study";
-/// The additional tests a frame that reconcile the ALL row, as a multiple of N.
+/// The additional tests per frame that reconcile the ALL row, as a multiple of N.
 const EXTRA_TESTS: f64 = 0.28;
 
 /// All of them.
@@ -64,14 +64,14 @@ fn percent(results: &Results, scene: &str, strategy: Strategy, reading: Reading)
     })
 }
 
-fn closed_form(results: &Results) -> Vec<Check> {
+fn closed_form(results: &Results) -> Vec<ClaimCheck> {
     let family = results.plan.names.len();
     let check = |scene: &'static str| {
         let run = results.example(scene)?;
         let s = relative_reach(run.side, run.radius);
         let measured = Estimate::of(&percent(results, scene, Sphere, Reading::OwnTests));
         let quantity = format!("Sphere, {scene}, 2r/L = {s:.4}, %");
-        Some(Check::equal(
+        Some(ClaimCheck::equal(
             quantity,
             measured,
             100.0 * probability(s),
@@ -81,10 +81,10 @@ fn closed_form(results: &Results) -> Vec<Check> {
     results.scenes().filter_map(check).collect()
 }
 
-fn paper_reach() -> Vec<Check> {
+fn paper_reach() -> Vec<ClaimCheck> {
     let columns = paper::TABLE_1_BODIES.iter().zip(paper::TABLE_1[0].1);
     let check = |(n, percent)| {
-        Check::computed(
+        ClaimCheck::computed(
             format!("2r/L of the paper's sphere row, N = {n}"),
             inverse(0.01 * percent),
             [0.1275, 0.1445],
@@ -95,7 +95,7 @@ fn paper_reach() -> Vec<Check> {
 
 /// The difference between the most and the fewest objects, and the chance of the paper's row in a
 /// fixed box.
-fn no_trend(results: &Results) -> Vec<Check> {
+fn no_trend(results: &Results) -> Vec<ClaimCheck> {
     let scenes: Vec<&str> = results.paper_scenes().collect();
     let mut checks = Vec::new();
     if let (Some(first), Some(last)) = (scenes.first(), scenes.last().filter(|_| scenes.len() > 1))
@@ -112,10 +112,10 @@ fn no_trend(results: &Results) -> Vec<Check> {
             "Sphere, {last} − {first}, points (the paper: {:.2})",
             last_paper - first_paper
         );
-        checks.push(Check::equal(quantity, Estimate::of(&rises), 0.0, 1));
+        checks.push(ClaimCheck::equal(quantity, Estimate::of(&rises), 0.0, 1));
     }
     let (_, p, _) = paper::constant_row(&paper::TABLE_1[0].1, &paper::pairs());
-    checks.push(Check::computed(
+    checks.push(ClaimCheck::computed(
         "probability of the paper's sphere row in a fixed box, single-frame counts".to_owned(),
         p,
         [0.0, 0.05],
@@ -123,12 +123,12 @@ fn no_trend(results: &Results) -> Vec<Check> {
     checks
 }
 
-fn sequential(results: &Results) -> Vec<Check> {
+fn sequential(results: &Results) -> Vec<ClaimCheck> {
     let mut checks = Vec::new();
     if let (Some(sphere), Some(sequential)) = (paper::row(Sphere), paper::row(Seq)) {
         for ((n, sphere), sequential) in paper::TABLE_1_BODIES.iter().zip(sphere).zip(sequential) {
             let quantity = format!("the paper's sequential over its sphere row, N = {n}");
-            checks.push(Check::computed(
+            checks.push(ClaimCheck::computed(
                 quantity,
                 sequential / sphere,
                 [1.0, f64::INFINITY],
@@ -144,18 +144,18 @@ fn sequential(results: &Results) -> Vec<Check> {
             .map(|(all, sphere)| all / sphere)
             .collect();
         let quantity = format!("Seq by hits/all tests over Sphere, {scene}");
-        Check::between(quantity, Estimate::of(&ratios), [f64::NEG_INFINITY, 1.0])
+        ClaimCheck::between(quantity, Estimate::of(&ratios), [f64::NEG_INFINITY, 1.0])
     }));
     checks
 }
 
-fn survival(results: &Results) -> Vec<Check> {
+fn survival(results: &Results) -> Vec<ClaimCheck> {
     let [lo, .., hi] = paper::row(Seq).copied().unwrap_or_default();
-    let mut checks: Vec<Check> = results
+    let mut checks: Vec<ClaimCheck> = results
         .scenes()
         .map(|scene| {
             let measured = Estimate::of(&percent(results, scene, Seq, Reading::OwnTests));
-            Check::between(
+            ClaimCheck::between(
                 format!("Seq, {}, {scene}, %", Reading::OwnTests),
                 measured,
                 [lo, hi],
@@ -168,7 +168,7 @@ fn survival(results: &Results) -> Vec<Check> {
         .filter(|row| row.overlap == Overlap::TwoSided && row.k.k() == 18);
     checks.extend(two_sided.map(|row| {
         let share = Estimate::of(&row.shares).scaled(100.0);
-        Check::between(
+        ClaimCheck::between(
             format!(
                 "or-DOP hits among sphere hits, k = {}, {}, %",
                 row.k, row.overlap
@@ -181,16 +181,16 @@ fn survival(results: &Results) -> Vec<Check> {
 }
 
 /// The ALL row from the paper's other rows, and ours with the additional tests.
-fn list(results: &Results) -> Vec<Check> {
+fn list(results: &Results) -> Vec<ClaimCheck> {
     let extra = paper::extra_tests_of_all().unwrap_or_default();
     let check = |(n, extra): (&usize, f64)| {
-        Check::computed(
+        ClaimCheck::computed(
             format!("additional tests a frame over N in the paper's ALL row, N = {n}"),
             extra,
             [0.0, 0.3],
         )
     };
-    let mut checks: Vec<Check> = paper::TABLE_1_BODIES.iter().zip(extra).map(check).collect();
+    let mut checks: Vec<ClaimCheck> = paper::TABLE_1_BODIES.iter().zip(extra).map(check).collect();
     for scene in results.paper_scenes() {
         let Some(paper) = results
             .example(scene)
@@ -205,7 +205,7 @@ fn list(results: &Results) -> Vec<Check> {
         });
         let quantity =
             format!("ALL with list entries and .28·N more tests, {scene}, % (the paper: {paper})");
-        checks.push(Check::between(
+        checks.push(ClaimCheck::between(
             quantity,
             Estimate::of(&values),
             [0.9 * paper, 1.1 * paper],
@@ -214,7 +214,7 @@ fn list(results: &Results) -> Vec<Check> {
     checks
 }
 
-fn ordop_row() -> Vec<Check> {
+fn ordop_row() -> Vec<ClaimCheck> {
     let [Some(sphere), Some(sequential), Some(ordop)] = [Sphere, Seq, OrDop].map(paper::row) else {
         return Vec::new();
     };
@@ -224,7 +224,7 @@ fn ordop_row() -> Vec<Check> {
         let quantity = format!(
             "the paper's or-DOP percentage over its sphere × sequential ({product:.2} %), N = {n}"
         );
-        checks.push(Check::computed(
+        checks.push(ClaimCheck::computed(
             quantity,
             ordop[i] / product,
             [1.1, f64::INFINITY],
@@ -232,7 +232,7 @@ fn ordop_row() -> Vec<Check> {
     }
     let exceeds = |i: &usize| ordop[*i] > sphere[*i];
     let columns = (0..4).filter(exceeds).count() as f64;
-    checks.push(Check::computed(
+    checks.push(ClaimCheck::computed(
         "columns in which the paper's or-DOP row exceeds its sphere row".to_owned(),
         columns,
         [1.0, 4.0],
@@ -240,7 +240,7 @@ fn ordop_row() -> Vec<Check> {
     checks
 }
 
-fn product(results: &Results) -> Vec<Check> {
+fn product(results: &Results) -> Vec<ClaimCheck> {
     let mut checks = Vec::new();
     for scene in results.scenes() {
         let [ordop, sphere, sequential] = [OrDop, Sphere, Seq]
@@ -249,7 +249,7 @@ fn product(results: &Results) -> Vec<Check> {
             .map(|i| ordop[i] / (0.01 * sphere[i] * sequential[i]))
             .collect();
         let quantity = format!("or-DOPs over Sphere × Seq, {scene}");
-        checks.push(Check::between(
+        checks.push(ClaimCheck::between(
             quantity,
             Estimate::of(&ratios),
             [0.95, 1.05],
@@ -259,7 +259,7 @@ fn product(results: &Results) -> Vec<Check> {
             .zip(&sphere)
             .map(|(ordop, sphere)| ordop / sphere)
             .collect();
-        checks.push(Check::between(
+        checks.push(ClaimCheck::between(
             format!("or-DOPs over Sphere, {scene}"),
             Estimate::of(&below),
             [f64::NEG_INFINITY, 1.0],

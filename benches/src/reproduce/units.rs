@@ -9,7 +9,8 @@ use miette::{IntoDiagnostic as _, miette};
 use serde::{Deserialize, Serialize};
 
 use super::experiment::{
-    COMPARED, PaperScene, Plan, ReproduceError, Results, Run, STRATEGIES, run_pass, variants,
+    ExperimentPlan, PaperScene, ReproduceError, Results, STRATEGIES, SURVIVAL_SCENE, StrategyRun,
+    run_pass, variants,
 };
 use super::immediate::{self, Immediacy};
 use super::sensitivity::{self, TestCounts};
@@ -44,7 +45,7 @@ pub struct ExperimentSettings {
 
 /// The experiments, ready to run.
 pub struct Experiments {
-    plan: Plan,
+    plan: ExperimentPlan,
     interpretations: bool,
     compared: SceneFile,
     prepared: Vec<PreparedScene>,
@@ -63,7 +64,7 @@ struct PreparedScene {
 }
 
 /// One unit.
-enum Unit {
+enum ReproduceUnit {
     /// A scene, by its number, with a seed.
     Scene(usize, u64),
     /// The survivors of a seed.
@@ -81,7 +82,7 @@ pub enum UnitResult {
         /// Which.
         name: PaperScene,
         /// A run a strategy.
-        runs: Vec<Run>,
+        runs: Vec<StrategyRun>,
         /// What they were taken from.
         pass: Pass,
         /// The strategies as variants.
@@ -101,11 +102,11 @@ impl Experiments {
     ///
     /// # Errors
     /// Scene files that can't be read or built.
-    pub fn new(plan: &Plan, interpretations: bool) -> Result<Self, ReproduceError> {
+    pub fn new(plan: &ExperimentPlan, interpretations: bool) -> Result<Self, ReproduceError> {
         let load = |scene: PaperScene| {
             SceneFile::read(&plan.scenes.join(scene.name()).with_extension("toml"))
         };
-        let compared = load(COMPARED)?;
+        let compared = load(SURVIVAL_SCENE)?;
         let mut inputs = BTreeMap::new();
         let volumes = volumes_sha256(&compared.build()?.shapes);
         inputs.insert(VOLUMES.to_owned(), volumes);
@@ -165,14 +166,14 @@ impl Experiments {
         self.plan.steps() + readings
     }
 
-    fn unit(&self, unit: usize) -> Unit {
+    fn unit(&self, unit: usize) -> ReproduceUnit {
         let of_seed = self.prepared.len() + 1;
         match self.plan.seeds.get(unit / of_seed) {
             Some(&seed) if unit % of_seed < self.prepared.len() => {
-                Unit::Scene(unit % of_seed, seed)
+                ReproduceUnit::Scene(unit % of_seed, seed)
             }
-            Some(&seed) => Unit::Survival(seed),
-            None => Unit::Reading(unit - self.plan.steps()),
+            Some(&seed) => ReproduceUnit::Survival(seed),
+            None => ReproduceUnit::Reading(unit - self.plan.steps()),
         }
     }
 
@@ -182,14 +183,14 @@ impl Experiments {
     /// Scenes that can't be built with the seed or don't suit the strategies.
     pub fn find(&self, unit: usize) -> Result<UnitResult, ReproduceError> {
         match self.unit(unit) {
-            Unit::Scene(number, seed) => self.scene(&self.prepared[number], seed),
-            Unit::Survival(seed) => {
+            ReproduceUnit::Scene(number, seed) => self.scene(&self.prepared[number], seed),
+            ReproduceUnit::Survival(seed) => {
                 let scene = with_seed(&self.compared, seed)?;
                 let share = |row: Survival| row.share(&scene, self.plan.tier);
                 let shares = Survival::every().into_iter().map(share);
                 Ok(UnitResult::Survival(shares.collect::<Result<_, _>>()?))
             }
-            Unit::Reading(number) => {
+            ReproduceUnit::Reading(number) => {
                 let counted = sensitivity::counted(&self.plan, sensitivity::ways()[number])?;
                 Ok(UnitResult::Reading(number, counted))
             }
@@ -203,7 +204,7 @@ impl Experiments {
             largest,
             variants,
         } = prepared;
-        let Plan {
+        let ExperimentPlan {
             frames,
             tier,
             effort,
@@ -243,9 +244,11 @@ impl Sweep for Experiments {
 
     fn name(&self, unit: usize) -> String {
         match self.unit(unit) {
-            Unit::Scene(number, seed) => format!("{}, seed {seed}", self.prepared[number].name),
-            Unit::Survival(seed) => format!("survivors of seed {seed}"),
-            Unit::Reading(number) => {
+            ReproduceUnit::Scene(number, seed) => {
+                format!("{}, seed {seed}", self.prepared[number].name)
+            }
+            ReproduceUnit::Survival(seed) => format!("survivors of seed {seed}"),
+            ReproduceUnit::Reading(number) => {
                 let (start, bounce) = sensitivity::ways()[number];
                 format!("Table 1 with start: {start}, bounce: {bounce}")
             }
@@ -268,7 +271,7 @@ impl Results {
     /// Another command's header, a tier that this CPU lacks.
     pub fn of_header(header: &Header) -> miette::Result<Self> {
         let settings: ExperimentSettings = header.settings().into_diagnostic()?;
-        let plan = Plan {
+        let plan = ExperimentPlan {
             scenes: Default::default(),
             names: settings.names,
             seeds: settings.seeds,
@@ -281,7 +284,7 @@ impl Results {
         Ok(Self::none(plan, volumes.clone()))
     }
 
-    fn none(plan: Plan, volumes_sha256: String) -> Self {
+    fn none(plan: ExperimentPlan, volumes_sha256: String) -> Self {
         Self {
             plan,
             runs: Vec::new(),

@@ -1,5 +1,4 @@
-//! From a scene file to a scene: each group is checked, its shapes are made, its bodies are placed
-//! by the seed.
+//! Building a scene from its file: groups are checked, shapes built, and bodies placed by the seed.
 
 use std::ops::Range;
 
@@ -9,8 +8,8 @@ use super::density::PowerSums;
 use super::error::SceneError;
 use super::file::{Placement, SceneFile};
 use super::fine::FineTranslations;
-use super::group::{BodyGroup, Draws, Purpose};
-use super::library::{Form, Library};
+use super::group::{BodyDraws, BodyGroup, DrawPurpose};
+use super::library::{BodyForm, ShapeLibrary};
 use super::placement::Placer;
 use super::{Scene, Share};
 use crate::effects::{Velocities, world_centre};
@@ -61,10 +60,10 @@ impl SceneFile {
     pub fn build_share(&self, rank: usize, ranks: usize) -> Result<Scene, SceneError> {
         let groups = self.groups(ranks)?;
         let share = share_of(&groups, rank, ranks);
-        let mut library = Library::default();
+        let mut library = ShapeLibrary::default();
         let (mut bodies, mut velocities) = (Bodies::default(), Velocities::default());
         let mut fine = FineTranslations::default();
-        let mut sizes = Sizes::default();
+        let mut sizes = RadiusSums::default();
         for (group, run) in runs(&groups) {
             let held = share.within(&run);
             self.add_shapes(group, held, &mut library, &mut bodies, &mut sizes)?;
@@ -109,18 +108,18 @@ impl SceneFile {
         }
     }
 
-    /// Draws the radii of all the group's bodies, makes their shapes, and adds one shape and
-    /// dynamic entry a body held.
+    /// Draws the radii of all the group's bodies, makes their shapes, and adds one shape and one
+    /// dynamic entry per body held.
     fn add_shapes(
         &self,
         group: &BodyGroup<'_>,
         held: Range<usize>,
-        library: &mut Library,
+        library: &mut ShapeLibrary,
         bodies: &mut Bodies,
-        sizes: &mut Sizes,
+        sizes: &mut RadiusSums,
     ) -> Result<(), SceneError> {
         let mesh = library.mesh(self, group)?;
-        let mut draws = group.draws(Purpose::Radius);
+        let mut draws = group.draws(DrawPurpose::Radius);
         let range = group.spec.radius.as_ref().map(|range| *range.get_ref());
         let uniform = group.is_uniform();
         let mut widest = 0.0_f32;
@@ -137,7 +136,7 @@ impl SceneFile {
             };
             let shape = shape.map_err(|(message, hint)| {
                 let span = match group.form {
-                    Form::File(name) | Form::Procedural(name, _) => name.span(),
+                    BodyForm::File(name) | BodyForm::Procedural(name, _) => name.span(),
                 };
                 self.source.error(
                     group.spec.radius.as_ref().map_or(span, Spanned::span),
@@ -161,7 +160,11 @@ impl SceneFile {
     }
 
     /// The box's side: given, or from the seeded bodies' radii and the wished density.
-    fn side(&self, groups: &[BodyGroup<'_>], sizes: &Sizes) -> Result<Option<f32>, SceneError> {
+    fn side(
+        &self,
+        groups: &[BodyGroup<'_>],
+        sizes: &RadiusSums,
+    ) -> Result<Option<f32>, SceneError> {
         let Some(bounds) = &self.spec.bounds else {
             return Ok(None);
         };
@@ -213,7 +216,7 @@ impl SceneFile {
         group: &BodyGroup<'_>,
         held: Range<usize>,
         (side, widest): (Option<f32>, f32),
-        library: &Library,
+        library: &ShapeLibrary,
         bodies: &mut Bodies,
     ) -> Result<(), SceneError> {
         let first = bodies.translation.len();
@@ -238,12 +241,12 @@ impl SceneFile {
         }
         let wished = group.spec.placement.as_ref();
         let placement = wished.map_or(Placement::Uniform, |placement| *placement.get_ref());
-        let mut centres = group.draws(Purpose::Centre);
+        let mut centres = group.draws(DrawPurpose::Centre);
         let placer = Placer::new(placement, group.bodies, half, widest, centres.common());
         let placer = placer.map_err(|(message, hint)| {
             self.wrong(wished.map_or(count_span, Spanned::span), &message, &hint)
         })?;
-        let mut turns = group.draws(Purpose::Rotation);
+        let mut turns = group.draws(DrawPurpose::Rotation);
         for index in centres.visited(&held) {
             let (turns, centres) = (turns.of(index), centres.of(index));
             let rotation = turns.rotation();
@@ -278,14 +281,14 @@ impl SceneFile {
         if let Some(given) = &spec.velocities {
             linear.extend(given.get_ref()[held.clone()].iter().map(|v| *v.get_ref()));
         } else if let Some(speed) = &spec.speed {
-            let draws = group.draws(Purpose::Velocity);
+            let draws = group.draws(DrawPurpose::Velocity);
             linear.extend(vectors(draws, *speed.get_ref(), &held));
         } else {
             linear.resize(all, [0.0; 3]);
         }
         match &self.spec.effects.spin {
             Some(spin) if !spec.fixed => {
-                let draws = group.draws(Purpose::Spin);
+                let draws = group.draws(DrawPurpose::Spin);
                 angular.extend(vectors(draws, spin.get_ref().rate, &held));
             }
             _ => angular.resize(all, [0.0; 3]),
@@ -326,7 +329,7 @@ fn add_pose(pose: [f64; 7], bodies: &mut Bodies, fine: &mut FineTranslations) {
 
 /// What is known of radii once all shapes are made.
 #[derive(Default)]
-struct Sizes {
+struct RadiusSums {
     /// Of bodies that are spread uniformly.
     uniform: PowerSums,
     /// The largest of each group.
@@ -353,7 +356,7 @@ fn share_of(groups: &[BodyGroup<'_>], rank: usize, ranks: usize) -> Share {
 
 /// Drawn vectors of the bodies held.
 fn vectors(
-    mut draws: Draws,
+    mut draws: BodyDraws,
     length: Interval,
     held: &Range<usize>,
 ) -> impl Iterator<Item = [f32; 3]> {

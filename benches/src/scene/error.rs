@@ -1,4 +1,4 @@
-//! What can be wrong with a scene: where, what, and how to mend it.
+//! The errors of scenes: where, what, and how to mend it.
 
 use std::io::ErrorKind;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use sdop::choice::suggest;
 use sdop::files;
 use sdop::settings::SettingsError;
 
-/// Why a scene could not be made.
+/// Why a scene could not be built.
 #[derive(Debug, Error, Diagnostic)]
 pub enum SceneError {
     /// The scene file itself could not be read.
@@ -23,7 +23,7 @@ pub enum SceneError {
     Unreadable {
         /// The path as given.
         file: String,
-        /// What the system said.
+        /// The system's error.
         cause: std::io::Error,
     },
     /// More bytes than the caller allows.
@@ -74,12 +74,12 @@ pub struct TextError {
 
 /// A scene file's name and text: what an error needs to point at a place.
 #[derive(Clone, Debug)]
-pub(super) struct Source {
+pub(super) struct SceneText {
     pub(super) file: String,
     pub(super) text: String,
 }
 
-impl Source {
+impl SceneText {
     pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         match files::read_text(path, max_bytes) {

@@ -1,5 +1,4 @@
-//! A scene file as written: TOML into plain structures, every value checked as far as it is
-//! alone.
+//! A scene file as written: TOML as plain structures. Each value is checked on its own.
 
 use std::collections::BTreeMap;
 use std::num::NonZeroU32;
@@ -9,7 +8,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-use super::error::{SceneError, Source};
+use super::error::{SceneError, SceneText};
 use crate::effects::EffectsSpec;
 use crate::number::{Factors, Interval, Positive, Real};
 use sdop::choice::choices;
@@ -21,7 +20,7 @@ use sdop::volume::Origin;
 /// [`SceneFile::build`].
 #[derive(Clone, Debug)]
 pub struct SceneFile {
-    pub(super) source: Source,
+    pub(super) source: SceneText,
     pub(super) directory: PathBuf,
     /// Larger meshes are refused.
     pub(super) max_bytes: u64,
@@ -29,21 +28,21 @@ pub struct SceneFile {
     pub spec: SceneSpec,
 }
 
-/// The keys of a scene file (design, section 7).
+/// The keys of a scene file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
-    /// What records and tables call the scene.
+    /// The scene's name in records and tables.
     pub name: String,
-    /// Where all random draws start.
+    /// The seed of all random draws.
     #[serde(default = "first_seed")]
     pub seed: u64,
-    /// Which draws are a body's own.
+    /// How bodies share random draws.
     #[serde(default = "by_group")]
     pub seeding: Seeding,
     /// Frames to cull: the initial state and `frames − 1` steps.
     pub frames: NonZeroU32,
-    /// Seconds a step.
+    /// Seconds per step.
     #[serde(default = "sixtieth")]
     pub dt: Positive,
     /// The walls, centred on the origin.
@@ -65,7 +64,7 @@ pub struct SceneSpec {
 pub struct BoxSpec {
     /// Distance between opposite walls.
     pub side: Option<Spanned<Positive>>,
-    /// Mean number of sphere overlaps a body, edges ignored, instead of the side.
+    /// Mean number of sphere overlaps per body, ignoring the walls, instead of the side.
     pub partners: Option<Spanned<Positive>>,
 }
 
@@ -96,7 +95,7 @@ pub struct GroupSpec {
     pub fixed: bool,
     /// Initial speed; directions are drawn.
     pub speed: Option<Spanned<Interval>>,
-    /// Explicit initial velocities, one a pose.
+    /// Explicit initial velocities, one per pose.
     pub velocities: Option<Spanned<Vec<Spanned<[f32; 3]>>>>,
     /// How seeded bodies are spread over the box.
     pub placement: Option<Spanned<Placement>>,
@@ -123,11 +122,12 @@ pub enum Placement {
 }
 
 choices! {
-    /// Which draws are a body's own.
+    /// How bodies share random draws.
     Seeding, "seeding", {
-        /// Bodies of a group draw one after the other: who wants the last must draw for all.
+        /// Bodies of a group draw from one stream in order, so that the last one's draws require
+        /// all others.
         ByGroup = "by-group",
-        /// Each body has streams of its own, so that any share of a scene can be made without the
+        /// Each body has its own streams, so that any part of a scene can be built without the
         /// rest.
         ByBody = "by-body",
     }
@@ -161,7 +161,7 @@ impl SceneFile {
     /// As [`SceneFile::read`], and a file with more bytes.
     pub fn read_within(path: &Path, max_bytes: u64) -> Result<Self, SceneError> {
         let directory = path.parent().unwrap_or(Path::new("")).to_owned();
-        let file = Self::parse_source(Source::read(path, max_bytes)?, directory)?;
+        let file = Self::parse_source(SceneText::read(path, max_bytes)?, directory)?;
         Ok(Self { max_bytes, ..file })
     }
 
@@ -171,14 +171,14 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::read`].
     pub fn parse(text: &str, file: &str, directory: &Path) -> Result<Self, SceneError> {
-        let source = Source {
+        let source = SceneText {
             file: file.to_owned(),
             text: text.to_owned(),
         };
         Self::parse_source(source, directory.to_owned())
     }
 
-    fn parse_source(source: Source, directory: PathBuf) -> Result<Self, SceneError> {
+    fn parse_source(source: SceneText, directory: PathBuf) -> Result<Self, SceneError> {
         match read_spec(&source.text) {
             Ok(spec) => Ok(Self {
                 source,

@@ -1,17 +1,17 @@
-//! Translations that f32 doesn't hold.
+//! [`FineTranslations`]: the translations of a scene that f32 can't represent.
 //!
 //! A scene's poses have f64 translations, its trajectories f32 ones. A body whose f32 translation
-//! is that of the start has not moved: it is where its pose says, to the last bit. Any other body
-//! is where its f32 translation says.
+//! is still that of the start has not moved, and its position is that of its pose, to the last bit.
+//! The position of any other body is its f32 translation.
 
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::{ContractError, check_pose};
 use sdop::volume::Shape;
 
 /// How far f32 may move a body of a scene that is studied in f32, as a share of its ball's radius.
-const COARSE: f64 = 1.0 / 1024.0;
+const MOST_ROUNDING_SHARE: f64 = 1.0 / 1024.0;
 
-/// The f64 translations of the bodies that f32 would move, sorted by body.
+/// The f64 translations of the bodies that rounding to f32 would move, sorted by body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FineTranslations(Vec<(usize, [f64; 3])>);
 
@@ -68,7 +68,7 @@ impl FineTranslations {
         let radius = |body: usize| f64::from(shapes[bodies.shape[body] as usize].ball.radius);
         moved
             .into_iter()
-            .find(|&(body, moved)| moved > COARSE * radius(body))
+            .find(|&(body, moved)| moved > MOST_ROUNDING_SHARE * radius(body))
     }
 }
 
@@ -81,8 +81,9 @@ fn rounded(translation: [f64; 3]) -> [f32; 3] {
 mod tests {
     use super::*;
 
+    /// Bodies that move are where f32 says.
     #[test]
-    fn bodies_that_move_are_where_f32_says() {
+    fn moved_bodies_use_f32_positions() {
         let mut fine = FineTranslations::default();
         let mut bodies = Bodies::default();
         for (body, t) in [[0.5, 1.0, 2.0], [0.1, 1.0e9 + 0.5, -0.0]]

@@ -1,4 +1,4 @@
-//! A group of alike bodies as a scene file lists it, its keys checked against each other.
+//! A group of bodies in a scene file, with its keys checked against each other.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use toml::Spanned;
 
 use super::error::SceneError;
 use super::file::{GroupSpec, Placement, SceneFile, Seeding};
-use super::library::Form;
+use super::library::BodyForm;
 use crate::random::Stream;
 use sdop::volume::Origin;
 
@@ -15,11 +15,11 @@ use sdop::volume::Origin;
 const MOST_BODIES: usize = 1 << 24;
 
 /// The most that a u32 numbers, with a bit to spare.
-const MOST_NUMBERED: usize = (1 << 31) - 1;
+const MOST_BODY_NUMBERS: usize = (1 << 31) - 1;
 
 /// The independent streams of draws that a group has, in the order of their numbers.
 #[derive(Clone, Copy)]
-pub(super) enum Purpose {
+pub(super) enum DrawPurpose {
     Radius,
     Centre,
     Rotation,
@@ -33,7 +33,7 @@ pub(super) struct BodyGroup<'a> {
     pub(super) number: u64,
     pub(super) seed: u64,
     pub(super) seeding: Seeding,
-    pub(super) form: Form<'a>,
+    pub(super) form: BodyForm<'a>,
     pub(super) origin: Origin,
     pub(super) bodies: usize,
 }
@@ -41,7 +41,7 @@ pub(super) struct BodyGroup<'a> {
 impl BodyGroup<'_> {
     /// The group's stream of draws for one purpose: what one purpose draws leaves the others as
     /// they are.
-    pub(super) fn stream(&self, purpose: Purpose) -> Stream {
+    pub(super) fn stream(&self, purpose: DrawPurpose) -> Stream {
         Stream::new(self.seed, self.number * 8 + purpose as u64)
     }
 
@@ -52,8 +52,8 @@ impl BodyGroup<'_> {
     }
 
     /// The draws of the group's bodies for one purpose.
-    pub(super) fn draws(&self, purpose: Purpose) -> Draws {
-        Draws {
+    pub(super) fn draws(&self, purpose: DrawPurpose) -> BodyDraws {
+        BodyDraws {
             seed: self.seed,
             seeding: self.seeding,
             stream: self.stream(purpose),
@@ -63,17 +63,17 @@ impl BodyGroup<'_> {
 }
 
 /// Streams of bodies are numbered from here on, above those of groups and effects.
-const OF_BODIES: u64 = 1 << 63;
+const FIRST_BODY_STREAM: u64 = 1 << 63;
 
 /// What a group's bodies draw from for one purpose.
-pub(super) struct Draws {
+pub(super) struct BodyDraws {
     seed: u64,
     seeding: Seeding,
     stream: Stream,
     number: u64,
 }
 
-impl Draws {
+impl BodyDraws {
     /// The bodies of the group that must draw, in order, so that those in `wanted` have what is
     /// theirs.
     pub(super) fn visited(&self, wanted: &Range<usize>) -> Range<usize> {
@@ -92,7 +92,7 @@ impl Draws {
     pub(super) fn of(&mut self, index: usize) -> &mut Stream {
         if self.seeding == Seeding::ByBody {
             // Fewer than 2²⁸ groups, and a group has fewer than 2³² bodies.
-            let stream = OF_BODIES | self.number << 32 | index as u64;
+            let stream = FIRST_BODY_STREAM | self.number << 32 | index as u64;
             self.stream = Stream::new(self.seed, stream);
         }
         &mut self.stream
@@ -107,10 +107,10 @@ impl SceneFile {
         for (number, spec) in self.spec.bodies.iter().enumerate() {
             let group = self.group(number as u64, spec)?;
             total = total.saturating_add(group.bodies);
-            if total.div_ceil(ranks) > MOST_BODIES || total > MOST_NUMBERED {
+            if total.div_ceil(ranks) > MOST_BODIES || total > MOST_BODY_NUMBERS {
                 let span = group.spec.count.as_ref().map_or(spec.span(), Spanned::span);
                 let message = format!("{total} bodies are too many");
-                let most = MOST_BODIES.saturating_mul(ranks).min(MOST_NUMBERED);
+                let most = MOST_BODIES.saturating_mul(ranks).min(MOST_BODY_NUMBERS);
                 let hint = format!("a scene has up to {most} bodies");
                 return Err(self.wrong(span, &message, &hint));
             }
@@ -154,18 +154,18 @@ impl SceneFile {
     }
 
     /// What the group's bodies look like: a mesh file or a procedural shape.
-    fn form_of<'a>(&self, spanned: &'a Spanned<GroupSpec>) -> Result<Form<'a>, SceneError> {
+    fn form_of<'a>(&self, spanned: &'a Spanned<GroupSpec>) -> Result<BodyForm<'a>, SceneError> {
         let spec = spanned.get_ref();
         match (&spec.mesh, &spec.shape) {
             (Some(mesh), None) => match spec.sizes.first_key_value() {
-                None => Ok(Form::File(mesh)),
+                None => Ok(BodyForm::File(mesh)),
                 Some((size, _)) => Err(self.wrong(
                     size.span(),
                     "`sizes` belong to a `shape`",
                     "scale a mesh by `scale` or `radius`",
                 )),
             },
-            (None, Some(shape)) => Ok(Form::Procedural(shape, &spec.sizes)),
+            (None, Some(shape)) => Ok(BodyForm::Procedural(shape, &spec.sizes)),
             (Some(_), Some(shape)) => Err(self.wrong(
                 shape.span(),
                 "`mesh` and `shape` exclude each other",

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use toml::Spanned;
 
-use super::error::{SceneError, Source};
+use super::error::{SceneError, SceneText};
 use super::file::SceneFile;
 use super::group::BodyGroup;
 use crate::number::{Factors, Real};
@@ -16,20 +16,20 @@ use sdop::settings::CullSettings;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
 /// The sizes of a procedural shape, as the scene file has them.
-pub(super) type Sizes = BTreeMap<Spanned<String>, Spanned<Real>>;
+pub(super) type ShapeSizes = BTreeMap<Spanned<String>, Spanned<Real>>;
 
 /// What a group's bodies look like, as the scene file has it.
 #[derive(Clone, Copy)]
-pub(super) enum Form<'a> {
+pub(super) enum BodyForm<'a> {
     /// A mesh file.
     File(&'a Spanned<String>),
     /// A procedural shape.
-    Procedural(&'a Spanned<String>, &'a Sizes),
+    Procedural(&'a Spanned<String>, &'a ShapeSizes),
 }
 
 /// Meshes and shapes made so far.
 #[derive(Default)]
-pub(super) struct Library {
+pub(super) struct ShapeLibrary {
     meshes: Vec<TriangleMesh>,
     /// By path and scale.
     files: HashMap<(PathBuf, Option<[u64; 3]>), usize>,
@@ -40,7 +40,7 @@ pub(super) struct Library {
     seconds: f64,
 }
 
-impl Library {
+impl ShapeLibrary {
     /// The number of a group's mesh, read or made when it is the first of its kind and scale.
     pub(super) fn mesh(
         &mut self,
@@ -51,7 +51,7 @@ impl Library {
         let scale = group.spec.scale.as_ref();
         let bits = scale.map(|scale| scale.get_ref().0.map(f64::to_bits));
         let mesh = match group.form {
-            Form::File(name) => {
+            BodyForm::File(name) => {
                 let key = (file.directory.join(name.get_ref()), bits);
                 if let Some(&known) = self.files.get(&key) {
                     return Ok(known);
@@ -60,7 +60,7 @@ impl Library {
                 self.files.insert(key, number);
                 mesh
             }
-            Form::Procedural(name, sizes) => {
+            BodyForm::Procedural(name, sizes) => {
                 let (shape, mesh) = procedural(&file.source, name, sizes)?;
                 let known =
                     |known: &&(ProceduralShape, _, usize)| known.0 == shape && known.1 == bits;
@@ -148,9 +148,9 @@ fn read_mesh(
 }
 
 fn procedural(
-    source: &Source,
+    source: &SceneText,
     name: &Spanned<String>,
-    sizes: &Sizes,
+    sizes: &ShapeSizes,
 ) -> Result<(ProceduralShape, TriangleMesh), SceneError> {
     let known = ProceduralShape::NAMES;
     if !known.contains(&name.get_ref().as_str()) {

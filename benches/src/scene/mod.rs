@@ -19,7 +19,7 @@ pub use file::SceneFile;
 pub use fine::FineTranslations;
 pub use share::Share;
 
-use crate::effects::{EffectError, Effects, EffectsSpec, Start, Velocities};
+use crate::effects::{EffectError, Effects, EffectsSpec, InitialState, Velocities};
 use sdop::bodies::Bodies;
 use sdop::settings::CullSettings;
 use sdop::volume::Shape;
@@ -29,11 +29,11 @@ use sdop::volume::Shape;
 pub struct Scene {
     /// What records and tables call it.
     pub name: String,
-    /// Where all random draws started.
+    /// The seed of all random draws.
     pub seed: u64,
     /// Frames to cull: the initial state and `frames − 1` steps.
     pub frames: u32,
-    /// Seconds a step.
+    /// Seconds per step.
     pub dt: f32,
     /// Distance between opposite walls of the box about the origin, if there is one.
     pub side: Option<f32>,
@@ -69,7 +69,7 @@ impl Scene {
     /// An effect that the scene can't have, such as walls without a box.
     pub fn start_effects(&self) -> Result<Effects, EffectError> {
         let share = self.share();
-        let start = Start {
+        let start = InitialState {
             seed: self.seed,
             dt: self.dt,
             side: self.side,

@@ -46,8 +46,9 @@ impl Share {
 mod tests {
     use super::*;
 
+    /// Shares follow one another and differ by one.
     #[test]
-    fn shares_follow_one_another_and_differ_by_one() {
+    fn shares_differ_by_at_most_one() {
         for (all, ranks) in [(0, 1), (1, 3), (10, 3), (16, 8), (7, 7)] {
             let mut next = 0;
             for rank in 0..ranks {
@@ -60,8 +61,9 @@ mod tests {
         }
     }
 
+    /// A run is held as far as the share goes.
     #[test]
-    fn a_run_is_held_as_far_as_the_share_goes() {
+    fn run_is_clipped_to_its_share() {
         let share = Share::of_rank(1, 3, 30, Vec::new());
         assert_eq!(share.within(&(0..30)), 10..20);
         assert_eq!(share.within(&(15..18)), 0..3);

@@ -115,7 +115,7 @@ pub struct Simulation<'a> {
 
 /// One culled frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame<'a> {
+pub struct SimulatedFrame<'a> {
     /// Counted from 0.
     pub number: u32,
     /// The poses that were culled, with translations rounded to f32.
@@ -216,14 +216,14 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     /// A body that left the contract, by its index and the frame.
-    pub fn next_frame(&mut self) -> Result<Option<Frame<'_>>, SimulationError> {
+    pub fn next_frame(&mut self) -> Result<Option<SimulatedFrame<'_>>, SimulationError> {
         let number = self.trajectory.next_number();
         let Some(bodies) = self.trajectory.advance()? else {
             return Ok(None);
         };
         let (counted, took) = (*self.culler.counters(), self.culler.seconds());
         self.culler.cull(self.scene, bodies)?;
-        Ok(Some(Frame {
+        Ok(Some(SimulatedFrame {
             number,
             pairs: self.culler.pairs(),
             bodies,
@@ -257,7 +257,7 @@ impl<'a> Simulation<'a> {
     /// As [`Self::next_frame`], or what `observe` returns.
     pub fn run<E: From<SimulationError>>(
         mut self,
-        mut observe: impl FnMut(&Frame<'_>) -> Result<(), E>,
+        mut observe: impl FnMut(&SimulatedFrame<'_>) -> Result<(), E>,
     ) -> Result<Summary, E> {
         let (mut hash, mut digest) = (PairsHash::default(), PairsDigest::default());
         let mut frames = Vec::new();
@@ -289,7 +289,7 @@ impl<'a> Simulation<'a> {
 pub fn run<E: From<SimulationError>>(
     scene: &Scene,
     tier: Tier,
-    observe: impl FnMut(&Frame<'_>) -> Result<(), E>,
+    observe: impl FnMut(&SimulatedFrame<'_>) -> Result<(), E>,
 ) -> Result<Summary, E> {
     Simulation::new(scene, tier)?.run(observe)
 }

@@ -1,4 +1,5 @@
-//! What units belong to: results of different code, settings or input don't go together.
+//! [`Header`]: which work units belong to. Results with different code, settings or input can't be
+//! merged.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Debug, Write as _};
@@ -11,7 +12,7 @@ use super::Shard;
 use crate::hash::hex;
 
 /// The form of a header and the lines after it.
-const FORM: &str = "sdop units 1";
+const FORMAT: &str = "sdop units 1";
 
 /// What work is: all that decides the results of its units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,15 +45,15 @@ pub fn code() -> String {
 /// A digest of all that a value holds: of its debug text, which gives every number to the bit.
 #[must_use]
 pub fn digest(value: &impl Debug) -> String {
-    struct Text(Sha256);
-    impl fmt::Write for Text {
+    struct DebugHash(Sha256);
+    impl fmt::Write for DebugHash {
         fn write_str(&mut self, text: &str) -> fmt::Result {
             self.0.update(text);
             Ok(())
         }
     }
-    let mut text = Text(Sha256::new());
-    // Nothing stands against adding to a hash.
+    let mut text = DebugHash(Sha256::new());
+    // Adding to a hash can't fail.
     let _ = write!(text, "{value:?}");
     hex(&text.0.finalize())
 }
@@ -69,7 +70,7 @@ impl Header {
         units: usize,
     ) -> serde_json::Result<Self> {
         Ok(Self {
-            form: FORM.to_owned(),
+            form: FORMAT.to_owned(),
             command: command.to_owned(),
             code: code(),
             settings: serde_json::from_value(serde_json::to_value(settings)?)?,

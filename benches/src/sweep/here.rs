@@ -1,4 +1,4 @@
-//! Units done by this process alone, as many at a time as the usual pool has threads.
+//! Running units in this process, as many at a time as the default pool has threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -7,7 +7,7 @@ use std::thread;
 use super::{OnEnd, Sweep, attempt};
 
 /// Does these units; `on` is called for each when it ends. Those that need all threads come last,
-/// one at a time. When one fails, those under way are still finished and told.
+/// one at a time. When one fails, running ones are still finished and reported.
 ///
 /// # Errors
 /// A unit that fails, the first that is seen; what `on` says.
@@ -21,7 +21,7 @@ pub fn here(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> 
     Ok(())
 }
 
-/// On threads of its own: a worker of the pool that waits within a unit would take up another unit
+/// Uses its own threads, because a pool's worker that waits within a unit would start another unit
 /// on top of it.
 fn side_by_side(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> {
     let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
@@ -117,8 +117,9 @@ mod tests {
         (ended, told)
     }
 
+    /// Every unit is done or left out once.
     #[test]
-    fn every_unit_is_done_or_left_out_once() {
+    fn every_unit_is_handled_once() {
         for timed in [false, true] {
             let (ended, told) = run(&[0, 2, 3, 4], timed);
             ended.unwrap();
@@ -127,8 +128,9 @@ mod tests {
         }
     }
 
+    /// A unit that fails or panics is named.
     #[test]
-    fn a_unit_that_fails_or_panics_is_named() {
+    fn failed_unit_is_named() {
         for (unit, why) in [(5, "five"), (7, "panicked")] {
             for timed in [false, true] {
                 let (ended, _) = run(&[0, unit], timed);

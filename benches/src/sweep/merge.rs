@@ -1,4 +1,4 @@
-//! Shards' files put together: all of them, of one work, each once.
+//! Merging shards' files: all shards of one work, each once.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

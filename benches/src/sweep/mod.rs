@@ -1,11 +1,11 @@
-//! Work cut into units, so that many processes and machines can share it: each unit has its place
-//! in one order and a result of its own, and results are taken in that order. What comes out
-//! doesn't depend on who did what, or when.
+//! Sweeps: work that is split into units, so that many processes and machines can share it. Units
+//! have a fixed order, and results are merged in that order, so that the whole does not depend on
+//! which process did which unit, or when.
 //!
 //! > [`Sweep`] → [`here()`] → [`InOrder`] → the result; or in shards, by files and [`merge()`], or by ranks and [`on_ranks`]
 //!
-//! A shard's file has a part of the units. It begins with the [`Header`] that says of which work
-//! they are, and is refused for any other.
+//! A shard's file has some of the units. It begins with a [`Header`] that identifies the work, and
+//! is rejected for any other work.
 
 mod file;
 mod header;
@@ -41,7 +41,7 @@ pub trait Sweep: Sync {
     /// Does a unit: its result as a line of text, which any process can take.
     ///
     /// # Errors
-    /// What stands against it.
+    /// Why the unit can't be done.
     fn run(&self, unit: usize) -> miette::Result<String>;
 
     /// Whether a unit is timed, so that none may run next to it on a machine.

@@ -1,4 +1,4 @@
-//! Results taken in the order of units, in whichever they come.
+//! [`InOrder`]: passes on results in the order of units, in whatever order they arrive.
 
 use std::collections::BTreeMap;
 
@@ -50,8 +50,9 @@ mod tests {
 
     use super::*;
 
+    /// Results are taken in the order of units.
     #[test]
-    fn results_are_taken_in_the_order_of_units() {
+    fn results_keep_unit_order() {
         let mut taken = Vec::new();
         let mut take = |unit, result: &str| {
             taken.push((unit, result.to_owned()));

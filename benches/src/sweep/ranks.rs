@@ -1,7 +1,7 @@
-//! Ranks of `mpirun` as shards: rank i of n does part i + 1 of n, and rank 0 receives all results.
+//! Ranks of `mpirun` as shards: rank i of n does shard i + 1 of n, and rank 0 receives all results.
 //!
-//! Units that are only counted are done by all ranks at once. Then the ranks of one machine time
-//! their units one rank after the other, while those that wait sleep.
+//! All ranks do units without timing at the same time. Then the ranks of one machine do their timed
+//! units one rank at a time, while the others sleep.
 
 use std::collections::BTreeMap;
 

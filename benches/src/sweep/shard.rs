@@ -72,8 +72,9 @@ mod tests {
         }
     }
 
+    /// A part is read as it is written and none that is not there.
     #[test]
-    fn a_part_is_read_as_it_is_written_and_none_that_is_not_there() {
+    fn shard_argument_round_trips() {
         assert_eq!("2/3".parse::<Shard>().unwrap().to_string(), "2/3");
         for text in ["0/3", "4/3", "0/0"] {
             assert!(matches!(text.parse::<Shard>(), Err(ShardError::Range(_))));

@@ -1,4 +1,4 @@
-//! How large a volume is: the numbers behind "volume over hull volume" tables.
+//! The sizes of volumes, for tables of volume over hull volume.
 //!
 //! In the coordinates u_j = column_j·x a k-DOP is lo ≤ c·u ≤ hi with integer normals c, and
 //! ‖column‖³ times as large. Its volume is the sum over its faces of area·distance/3 from any one

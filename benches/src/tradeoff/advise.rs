@@ -1,9 +1,9 @@
-//! Which volume, axes and finder to use for one scene: every candidate timed and counted on it,
-//! without an exact truth.
+//! Recommends a volume, axes and a finder for one scene: every candidate is timed and counted on
+//! it, without an exact truth.
 //!
 //! All variants report every pair that meets, so fewer reported pairs are fewer false ones: T +
-//! Np·Cp needs no truth. The finder is chosen first, since it takes the same part in every variant;
-//! `auto` is kept where nothing is surely faster.
+//! Np·Cp needs no truth. The finder is chosen first, since its time is the same in every variant;
+//! `auto` is kept unless another one is certainly faster.
 
 use serde::Serialize;
 
@@ -18,33 +18,33 @@ use crate::scene::{Scene, SceneFile};
 use sdop::settings::{Axes, CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 
-/// The most frames of the scene that are looked at: enough to see its pairs, few enough for a
-/// minute.
+/// The most frames of the scene that are used: enough for its pairs, few enough for a minute.
 pub const FRAMES: u32 = 200;
-/// The fewest: a scene with fewer is simulated further, since the first frame of a run is cold.
-const FEWEST: u32 = 24;
+/// The fewest frames: a scene with fewer is simulated further, since the first frame of a run is
+/// cold.
+const FEWEST_FRAMES: u32 = 24;
 /// Sample frames among them.
 const SAMPLES: u32 = 10;
-/// The most bodies whose every pair is tried as a candidate, 50 million of them.
+/// The most bodies for which all-pairs is tried: 50 million pairs.
 const MOST_FOR_ALL_PAIRS: usize = 10_000;
 
-/// What is tried; `None` is everything.
+/// The candidates; `None` means all.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tried {
-    /// This finder alone.
+    /// Only this finder.
     pub finder: Option<Finder>,
-    /// These axes alone.
+    /// Only these axes.
     pub axes: Option<Axes>,
 }
 
-/// What to use, and the numbers behind it.
+/// The recommendation, and its numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct Advice {
     /// The scene.
     pub scene: String,
     /// Its bodies.
     pub bodies: usize,
-    /// Frames that were looked at, from the first on.
+    /// Number of frames that were used, from the first on.
     pub frames: u32,
     /// Seconds of a narrow-phase check.
     pub check: f64,
@@ -52,21 +52,21 @@ pub struct Advice {
     pub best: String,
     /// The settings of the cheapest variant.
     pub cull: CullSettings,
-    /// Whether convex hulls are to be tested after them.
+    /// Whether convex hulls should be tested after them.
     pub hulls: bool,
     /// Its total T + Np·Cp, seconds per frame.
     pub total: f64,
-    /// What can't be told from it: the interval of the difference covers zero.
+    /// The variants tied with it: the interval of the difference contains zero.
     pub tied: Vec<String>,
-    /// The finders that can't be told from the chosen one.
+    /// The finders tied with the chosen one.
     pub tied_finders: Vec<String>,
-    /// The cheapest variant as a check grows dearer.
+    /// The cheapest variant for each price of a check.
     pub cheapest: Vec<Stretch>,
-    /// Every finder, with S-DOP as the scene has it.
+    /// Every finder, with the scene's S-DOP.
     pub finders: Vec<Candidate>,
     /// Every variant, with the chosen finder.
     pub candidates: Vec<Candidate>,
-    /// What else the machine did.
+    /// Other load of the machine.
     pub conditions: Conditions,
 }
 
@@ -77,18 +77,18 @@ pub struct Candidate {
     pub name: String,
     /// T, seconds per warm frame.
     pub time: Estimate,
-    /// Np: pairs that it leaves per frame.
+    /// Np: reported pairs per frame.
     pub pairs: f64,
     /// T + Np·Cp, seconds per frame.
     pub total: f64,
-    /// By how much that lies above the best one's, pass by pass.
+    /// The difference of that from the best one's, pass by pass.
     pub beyond: Estimate,
 }
 
-/// Looks at a scene. `check` is what a narrow-phase check takes, in seconds.
+/// Measures a scene and recommends. `check` is the price of a narrow-phase check, in seconds.
 ///
 /// # Errors
-/// A scene that can't be built or run.
+/// The scene can't be built or run.
 pub fn advise(
     file: &SceneFile,
     tried: Tried,
@@ -97,7 +97,7 @@ pub fn advise(
 ) -> Result<Option<Advice>, TradeoffError> {
     let before = Conditions::before();
     let mut scene = file.build()?;
-    scene.frames = scene.frames.clamp(FEWEST, FRAMES);
+    scene.frames = scene.frames.clamp(FEWEST_FRAMES, FRAMES);
     let found = lines_of_a_run(&scene, &finders(&scene, tried.finder), tier)?;
     let Some((finder, tied_finders)) = chosen_finder(&found) else {
         return Ok(None);
@@ -134,7 +134,7 @@ pub fn advise(
     }))
 }
 
-/// S-DOP with the scene's own settings, by each finder.
+/// S-DOP with the scene's settings and each finder.
 fn finders(scene: &Scene, only: Option<Finder>) -> Vec<Variant> {
     let few = scene.bodies.len() <= MOST_FOR_ALL_PAIRS;
     let is_tried = |finder: &Finder| match only {
@@ -153,8 +153,7 @@ fn finders(scene: &Scene, only: Option<Finder>) -> Vec<Variant> {
     all.map(variant).collect()
 }
 
-/// The fastest finder, or `auto` where that can't be told from it, and those that can't be told
-/// from it either.
+/// The fastest finder, or `auto` if it is tied with it, and the other tied ones.
 fn chosen_finder(lines: &[Line]) -> Option<(Finder, Vec<String>)> {
     let Choice { best, mut tied, .. } = choose_measured(lines, 0.0)?;
     let auto = Finder::Auto.name();
@@ -168,7 +167,7 @@ fn chosen_finder(lines: &[Line]) -> Option<(Finder, Vec<String>)> {
     Some((chosen.parse().ok()?, tied))
 }
 
-/// Spheres, boxes, S-DOP at each k along both kinds of axes by the tests of sides, and hulls.
+/// Spheres, boxes, S-DOP with each k and both kinds of axes by the tests of sides, and hulls.
 fn variants(own: &CullSettings, axes: Option<Axes>) -> Vec<Variant> {
     let boxes = CullSettings {
         strategy: Strategy::Aabb,
@@ -183,7 +182,7 @@ fn variants(own: &CullSettings, axes: Option<Axes>) -> Vec<Variant> {
     list
 }
 
-/// The numbers of each, cheapest first.
+/// The numbers of each candidate, cheapest first.
 fn candidates(lines: &[Line], best: &Line, check: f64) -> Vec<Candidate> {
     let candidate = |line: &Line| Candidate {
         name: line.name.clone(),
@@ -212,8 +211,9 @@ mod tests {
         }
     }
 
+    /// Auto is kept unless another is surely faster.
     #[test]
-    fn auto_is_kept_unless_another_is_surely_faster() {
+    fn auto_is_kept_if_tied() {
         let grid = line("grid", [1.0, 1.1, 0.9]);
         let near = [
             line("all-pairs", [9.0, 9.1, 9.2]),

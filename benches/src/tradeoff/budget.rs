@@ -1,7 +1,7 @@
 //! Time-critical culling: precision against the budget, for each order of refinement.
 //!
-//! A budget of tests gives reproducible counts; one of microseconds shows by how much the clock is
-//! overrun. A pair that spheres report and the budget doesn't reach is starved: its age counts the
+//! A budget of tests gives reproducible counts; a budget of microseconds shows how far it is
+//! exceeded. A pair that passes the sphere test but isn't refined within the budget has an age: the
 //! frames since it was last refined, or since its spheres first met.
 
 use std::collections::HashMap;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::TradeoffError;
 use super::counts::{share, shared};
 use super::interest::spread;
-use super::truth::{Judge, Sample};
+use super::truth::{ExactJudge, Sample};
 use super::variant::Variant;
 use crate::cost::pass::{Culled, Simulated, pass};
 use crate::measure::turns::{Regime, median};
@@ -21,38 +21,38 @@ use sdop::culler::Culler;
 use sdop::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
 use sdop::simd::Tier;
 
-/// Budgets as shares of what refining everything takes.
+/// Budgets as shares of the cost of refining all pairs.
 const SHARES: [f64; 7] = [0.0, 0.125, 0.25, 0.5, 0.75, 1.0, 1.25];
 
-/// One order under one budget of tests.
+/// One order with one budget of tests.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BudgetRow {
     /// Order of refinement.
     pub order: Order,
-    /// Tests a frame.
+    /// Tests per frame.
     pub tests: u64,
     /// Refined pairs / pairs whose spheres overlap.
     pub refined: f64,
-    /// True pairs / reported pairs, on the frames with a truth.
+    /// True pairs / reported pairs, in the frames with a truth.
     pub precision: f64,
     /// True pairs found / true pairs.
     pub recall: f64,
     /// Mean age, in frames, of the pairs that are not refined in a frame.
     pub mean_age: f64,
-    /// The oldest.
+    /// The largest age.
     pub oldest: u32,
 }
 
-/// How far a budget by the clock is overrun.
+/// How far a budget of time is exceeded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClockRow {
-    /// The budget, microseconds a frame, from the start of the strategy.
+    /// The budget in microseconds per frame, from the start of the strategy.
     pub microseconds: u64,
     /// Refined pairs / pairs whose spheres overlap.
     pub refined: f64,
-    /// Median of the time past the budget, microseconds; negative when it is not used up.
+    /// Median of the time past the budget in microseconds; negative if the budget isn't used up.
     pub p50: f64,
-    /// 99th percentile of it.
+    /// 99th percentile of that time.
     pub p99: f64,
 }
 
@@ -61,19 +61,19 @@ pub struct ClockRow {
 pub struct Window<'a> {
     /// Consecutive frames.
     pub frames: &'a [Sample],
-    /// Every so many frames are judged.
+    /// One in this number of frames is judged.
     pub stride: usize,
 }
 
-/// Every order under every budget. `tests` is the mean number of sphere hits a frame.
+/// Measures every order with every budget. `tests` is the mean number of sphere hits per frame.
 ///
 /// # Errors
-/// What culling or judging may meet.
+/// Culling or judging fails.
 pub fn by_tests(
     scene: &Scene,
     tier: Tier,
     window: Window<'_>,
-    judge: &Judge,
+    judge: &ExactJudge,
     cache: Option<&std::path::Path>,
     tests: f64,
 ) -> Result<Vec<BudgetRow>, TradeoffError> {
@@ -97,7 +97,7 @@ pub fn by_tests(
 
 fn settings(scene: &Scene, budget: Budget, order: Order) -> CullSettings {
     let own = &scene.cull;
-    // A tenth of the bodies: with one alone, a few pairs of a thousand would come first, and no row
+    // A tenth of the bodies: with only one, a few pairs in a thousand would come first, and no row
     // would show it.
     let bodies = scene.bodies.len();
     CullSettings {
@@ -164,7 +164,7 @@ struct Starvation {
 }
 
 impl Starvation {
-    /// Takes one frame's pairs in the order of refinement; the last `untested` were not refined.
+    /// Adds one frame's pairs in the order of refinement; the last `untested` were not refined.
     fn frame(
         &mut self,
         frame: u32,
@@ -180,7 +180,7 @@ impl Starvation {
                 before.get(&pair).copied().unwrap_or(frame)
             };
             if place >= refined {
-                // A pair first listed now has waited for this frame.
+                // A pair that is listed for the first time has the age 1.
                 let age = frame - since + 1;
                 self.sum += u64::from(age);
                 self.count += 1;
@@ -191,12 +191,12 @@ impl Starvation {
     }
 }
 
-/// Clock budgets: shares of the median seconds that culling without a budget takes after its
-/// updates. All budgets take turns on the scene's first `frames` frames. No rows where a run is too
-/// short for a warm frame.
+/// Measures budgets of time: shares of the median seconds of culling without a budget after its
+/// updates. All budgets take turns on the scene's first `frames` frames. The result is empty if a
+/// run is too short for a warm frame.
 ///
 /// # Errors
-/// Settings that can't be carried out.
+/// The settings can't be carried out.
 pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>, TradeoffError> {
     let variant = |budget| Variant::of(String::new(), settings(scene, budget, Order::AsFound));
     let culled = |budgets: &[Budget]| -> Result<Vec<Culled>, TradeoffError> {

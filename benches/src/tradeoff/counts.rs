@@ -1,9 +1,9 @@
-//! Counts against the truth: precision, reported per true, recall. The same to the bit on every
-//! machine.
+//! Counts compared with the truth: precision, reported pairs per true pair, recall. They are the
+//! same to the bit on every machine.
 
 use serde::{Deserialize, Serialize};
 
-use super::truth::{Sample, Truth};
+use super::truth::{Sample, TruePairs};
 use super::variant::Variant;
 use crate::hash::PairsHash;
 use crate::scene::Scene;
@@ -12,7 +12,7 @@ use sdop::culler::CullError;
 use sdop::simd::Tier;
 use sdop_judge::contestant::Contestant;
 
-/// What a variant counted on the sample frames of one seed.
+/// The counts of a variant on the sample frames of one seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tally {
@@ -32,15 +32,15 @@ pub struct Tally {
     pub pairs_sha256: String,
 }
 
-/// A share of pairs.
+/// Precision and recall.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quality {
-    /// True pairs / reported pairs; 1 where nothing is reported.
+    /// True pairs / reported pairs; 1 if nothing is reported.
     pub precision: f64,
-    /// Reported pairs / true pairs, infinite where nothing is true.
+    /// Reported pairs / true pairs; infinite if there are no true pairs.
     #[serde(deserialize_with = "crate::measure::estimate::or_infinite")]
     pub per_true: f64,
-    /// True pairs found / true pairs; 1 where nothing is true.
+    /// True pairs found / true pairs; 1 if there are no true pairs.
     pub recall: f64,
 }
 
@@ -48,13 +48,13 @@ impl Tally {
     /// Culls the sample frames and compares with the truth.
     ///
     /// # Errors
-    /// Settings that can't be carried out.
+    /// The settings can't be carried out.
     pub fn of(
         scene: &Scene,
         variant: &Variant,
         tier: Tier,
         samples: &[Sample],
-        truth: &Truth,
+        truth: &TruePairs,
     ) -> Result<Self, CullError> {
         let mut culling = variant.culling(scene, tier)?;
         let (mut reported, mut found, mut hash) = (0, 0, PairsHash::default());
@@ -78,10 +78,10 @@ impl Tally {
         })
     }
 
-    /// The same where nothing is known of the truth: none of the reported pairs counts as found.
+    /// The same without a truth: none of the reported pairs counts as found.
     ///
     /// # Errors
-    /// Settings that can't be carried out.
+    /// The settings can't be carried out.
     pub fn unjudged(
         scene: &Scene,
         variant: &Variant,
@@ -92,7 +92,7 @@ impl Tally {
         Self::of(scene, variant, tier, samples, &nothing)
     }
 
-    /// Pairs reported a frame.
+    /// Pairs reported per frame.
     #[must_use]
     pub fn reported_a_frame(&self) -> f64 {
         self.reported as f64 / f64::from(self.frames)
@@ -109,7 +109,7 @@ impl Tally {
     }
 }
 
-/// A part of a whole; all of nothing.
+/// `part` / `whole`; 1 if both are 0.
 pub(super) fn share(part: u64, whole: u64) -> f64 {
     match whole {
         0 => 1.0,
@@ -117,7 +117,7 @@ pub(super) fn share(part: u64, whole: u64) -> f64 {
     }
 }
 
-/// How many of the truth's pairs are among the reported; both sorted.
+/// Number of the truth's pairs among the reported; both are sorted.
 #[must_use]
 pub fn shared(reported: &[[u32; 2]], truth: &[[u32; 2]]) -> u64 {
     let found = truth

@@ -1,10 +1,10 @@
-//! Which variant to use: by density, class of shapes and price of a narrow-phase check.
+//! Decides which variant to use, by density, class of shapes and price of a narrow-phase check.
 //!
-//! T of a variant is measured at each density on the scene's own shapes. How many pairs it leaves
-//! to the narrow phase is the number of sphere hits times the share that survives its or-DOP, which
-//! depends on the shape: the means over each class are taken. The cheapest total T + Np·Cp is
-//! recommended; variants whose difference from it has an interval that covers zero are tied with
-//! it.
+//! T of a variant is measured at each density on the scene's own shapes. The number of pairs that
+//! it leaves to the narrow phase is the number of sphere hits times the share that its or-DOP
+//! doesn't separate. That share depends on the shape, so its mean over each class is used. The
+//! cheapest total T + Np·Cp is recommended; variants whose difference from it has an interval that
+//! contains zero are tied with it.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,15 +16,15 @@ use sdop::choice::choices;
 
 /// Prices of a narrow-phase check in seconds.
 pub const CHECKS: [f64; 4] = [10e-9, 100e-9, 1e-6, 10e-6];
-/// Hulls that meet per sphere hit: from here on shapes are round.
-const ROUND: f64 = 0.7;
-/// And below this they are thin.
-const THIN: f64 = 0.2;
+/// Shapes with at least this share of sphere hits whose hulls meet are round.
+const LEAST_ROUND_SHARE: f64 = 0.7;
+/// Shapes with less than this share are thin.
+const LEAST_COMPACT_SHARE: f64 = 0.2;
 
 choices! {
-    /// How much of its bounding sphere a shape fills, by the share of sphere hits whose hulls meet.
+    /// How well a shape fills its bounding sphere, by the share of sphere hits whose hulls meet.
     ShapeClass, "class of shapes", {
-        /// Balls and what is nearly one.
+        /// Balls and nearly round shapes.
         Round = "round",
         /// Most meshes.
         Compact = "compact",
@@ -36,14 +36,14 @@ choices! {
 impl ShapeClass {
     fn of(shape: &ShapeSurvival) -> Self {
         match shape.hull.mean {
-            share if share >= ROUND => Self::Round,
-            share if share < THIN => Self::Thin,
+            share if share >= LEAST_ROUND_SHARE => Self::Round,
+            share if share < LEAST_COMPACT_SHARE => Self::Thin,
             _ => Self::Compact,
         }
     }
 }
 
-/// What to use at one density for one class of shapes and one price of a check.
+/// The recommendation for one density, one class of shapes and one price of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
     /// Mean sphere overlaps per body.
@@ -56,9 +56,9 @@ pub struct Decision {
     pub best: String,
     /// Its total T + Np·Cp, seconds per frame.
     pub total: f64,
-    /// What spheres alone take in total, seconds per frame.
+    /// The total of spheres alone, seconds per frame.
     pub spheres: f64,
-    /// The variants that can't be told from it.
+    /// The variants tied with it.
     pub tied: Vec<String>,
 }
 
@@ -113,12 +113,12 @@ pub struct Choice {
     pub best: String,
     /// T + Np·Cp, seconds per frame.
     pub total: f64,
-    /// The names of those that can't be told from it.
+    /// The names of the variants tied with it.
     pub tied: Vec<String>,
 }
 
-/// Chooses among variants by the pairs that each left where it was timed, when a check takes
-/// `check` seconds.
+/// Chooses among variants by the pairs that each left when it was timed, if a check takes `check`
+/// seconds.
 #[must_use]
 pub fn choose_measured(lines: &[Line], check: f64) -> Option<Choice> {
     let own: Vec<(Line, f64)> = lines
@@ -128,7 +128,7 @@ pub fn choose_measured(lines: &[Line], check: f64) -> Option<Choice> {
     choose(&own, check)
 }
 
-/// Chooses among variants, each with the pairs that it leaves, when a check takes `check` seconds.
+/// Chooses among variants, each with the pairs that it leaves, if a check takes `check` seconds.
 #[must_use]
 fn choose(lines: &[(Line, f64)], check: f64) -> Option<Choice> {
     let total = |(line, pairs): &(Line, f64)| line.time() + check * pairs;
@@ -148,7 +148,7 @@ fn choose(lines: &[(Line, f64)], check: f64) -> Option<Choice> {
     })
 }
 
-/// Pairs that a variant leaves, per sphere hit: the mean over some shapes; `None` where that wasn't
+/// Pairs that a variant leaves, per sphere hit: the mean over some shapes. `None` if that wasn't
 /// measured.
 fn survivors(line: &Line, shapes: &[&ShapeSurvival]) -> Option<f64> {
     let of = |shape: &&ShapeSurvival| match (line.decides?, line.ordop) {
@@ -181,8 +181,9 @@ mod tests {
         }
     }
 
+    /// The cheapest total wins, and variants within its interval are tied.
     #[test]
-    fn the_cheapest_total_wins_and_what_can_t_be_told_from_it_is_tied() {
+    fn cheapest_total_wins() {
         let lines = [
             (line("coarse", [1.0, 1.1, 0.9]), 10.0),
             (line("same", [1.1, 1.0, 1.0]), 10.0),

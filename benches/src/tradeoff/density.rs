@@ -1,8 +1,7 @@
-//! The same scene in other boxes: how the break-even of S-DOP moves with density.
+//! The same scene in other boxes: how the break-even of S-DOP depends on density.
 //!
-//! Crowding raises Np in proportion while finding pairs stays what it is, so an or-DOP test pays
-//! the sooner the denser a scene. Only counts of reported pairs and times are needed here, no
-//! truth.
+//! Np is proportional to density, while the time of finding pairs stays the same, so an or-DOP test
+//! pays earlier in a denser scene. This needs only counts of reported pairs and times, no truth.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +12,7 @@ use super::timing::{PASSES, measure};
 use super::truth::{Sample, samples};
 use super::variant::{Variant, s_dops};
 use crate::cost::pass::{Pass, Simulated, pass};
-use crate::measure::turns::{Regime, Times, median};
+use crate::measure::turns::{FrameTimes, Regime, median};
 use crate::number::Positive;
 use crate::scene::{Scene, SceneError, SceneFile};
 use sdop::settings::{CullSettings, Overlap, Strategy};
@@ -21,7 +20,7 @@ use sdop::simd::Tier;
 
 /// Densities as multiples of the scene's.
 pub(super) const FACTORS: [f32; 7] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
-/// Bodies times frames of a timed run, about.
+/// Approximate number of bodies times frames of a timed run.
 const RUN_BODIES: usize = 500_000;
 /// Frames of a timed run whose pairs are counted.
 const RUN_SAMPLES: u32 = 6;
@@ -31,31 +30,30 @@ const RUN_SAMPLES: u32 = 6;
 pub struct Density {
     /// Multiple of the scene's own density.
     pub factor: f32,
-    /// Mean sphere overlaps a body.
+    /// Mean sphere overlaps per body.
     pub partners: f64,
-    /// T and Np of every variant that takes part.
+    /// T and Np of every compared variant.
     pub lines: Vec<Line>,
     /// The cheapest variant as Cp grows.
     pub cheapest: Vec<Stretch>,
-    /// For each S-DOP that takes part: the Cp, in seconds, above which it is cheaper than spheres
-    /// alone.
+    /// For each compared S-DOP: the Cp in seconds above which it is cheaper than spheres alone.
     pub break_even: Vec<BreakEven>,
 }
 
-/// Where an S-DOP begins to pay.
+/// The price from which an S-DOP pays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BreakEven {
     /// The variant.
     pub name: String,
-    /// Seconds a pair.
+    /// Seconds per pair.
     pub cp: f64,
 }
 
-/// Runs the scene at a multiple of its density; `None` where its box has no room for that, or it
+/// Runs the scene at a multiple of its density. `None` if its box is too small for that, or if it
 /// has no box.
 ///
 /// # Errors
-/// What running a scene may meet.
+/// Running the scene fails.
 pub fn at(
     file: &SceneFile,
     factor: f32,
@@ -70,11 +68,11 @@ pub fn at(
     Ok(Some(density(factor, scene.bodies.len(), lines)))
 }
 
-/// The scene of a file whose values were changed; `None` where it can't have them, such as spheres
+/// The scene of a file whose values were changed. `None` if it can't have them, such as spheres
 /// larger than its box.
 ///
 /// # Errors
-/// Whatever else is wrong with it: files that can't be read, bodies outside of the contract.
+/// Any other problem: files can't be read, or bodies are outside of the contract.
 pub(super) fn built_if_possible(file: &SceneFile) -> Result<Option<Scene>, SceneError> {
     match file.build() {
         Ok(scene) => Ok(Some(scene)),
@@ -83,10 +81,10 @@ pub(super) fn built_if_possible(file: &SceneFile) -> Result<Option<Scene>, Scene
     }
 }
 
-/// Time, passes apart, and pairs per frame of some variants on a scene's sample frames.
+/// Times in separate passes, and pairs per frame, of some variants on a scene's sample frames.
 ///
 /// # Errors
-/// Settings that can't be carried out, a body that leaves the contract.
+/// The settings can't be carried out, or a body leaves the contract.
 pub fn lines(
     scene: &Scene,
     variants: &[Variant],
@@ -94,7 +92,7 @@ pub fn lines(
     count: u32,
 ) -> Result<Vec<Line>, TradeoffError> {
     let passes = measure(scene, variants, tier, count)?;
-    let median = |times: &Times| times.quartiles(Regime::Warm).median;
+    let median = |times: &FrameTimes| times.quartiles(Regime::Warm).median;
     lines_of(
         (scene, variants, tier),
         &samples(scene, count)?,
@@ -103,11 +101,11 @@ pub fn lines(
     )
 }
 
-/// The same on frames that follow one another from the scene's first on, by the mean of warm ones:
-/// a finder may do more in some of them than in others.
+/// The same on consecutive frames from the scene's first on, with the mean of warm ones, since a
+/// finder may do more in some frames than in others.
 ///
 /// # Errors
-/// Settings that can't be carried out, a body that leaves the contract.
+/// The settings can't be carried out, or a body leaves the contract.
 pub fn lines_of_a_run(
     scene: &Scene,
     variants: &[Variant],
@@ -125,7 +123,7 @@ pub fn lines_of_a_run(
         frames,
         ..scene.clone()
     };
-    let mean = |times: &Times| times.mean_of(Regime::Warm);
+    let mean = |times: &FrameTimes| times.mean_of(Regime::Warm);
     lines_of(
         (scene, variants, tier),
         &samples(&first, RUN_SAMPLES)?,
@@ -134,12 +132,12 @@ pub fn lines_of_a_run(
     )
 }
 
-/// A line a variant: times from passes, pairs from sample frames.
+/// One line per variant: times from passes, pairs from sample frames.
 fn lines_of(
     (scene, variants, tier): (&Scene, &[Variant], Tier),
     samples: &[Sample],
     passes: &[Pass],
-    statistic: impl Fn(&Times) -> f64,
+    statistic: impl Fn(&FrameTimes) -> f64,
 ) -> Result<Vec<Line>, TradeoffError> {
     let mut lines = Vec::new();
     for (at, variant) in variants.iter().enumerate() {
@@ -188,7 +186,7 @@ fn crowded(file: &SceneFile, factor: f32) -> Option<SceneFile> {
     Some(file)
 }
 
-/// Spheres first, boxes, S-DOP at each k with the scene's axes, and hulls.
+/// Spheres, boxes, S-DOP with each k and the scene's axes, and hulls.
 #[must_use]
 pub fn variants(own: &CullSettings) -> Vec<Variant> {
     let boxes = CullSettings {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::counts::{Quality, Tally};
 use super::timing::measure;
-use super::truth::{Sample, Truth};
+use super::truth::{Sample, TruePairs};
 use super::variant::Variant;
 use super::{Estimate, TradeoffError};
 use crate::cost::pass::medians;
@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use sdop::settings::{CullSettings, Interest, Strategy, Updates};
 use sdop::simd::Tier;
 
-/// Parts of the bodies that are of interest; the first is one body.
+/// Shares of the bodies that are of interest; the first means one body.
 const SHARES: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0];
 
 /// One size of the interest set.
@@ -21,26 +21,26 @@ const SHARES: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0];
 pub struct InterestRow {
     /// Bodies of interest.
     pub bodies: usize,
-    /// or-DOP tests a frame.
+    /// or-DOP tests per frame.
     pub tests: f64,
-    /// Pairs reported a frame.
+    /// Pairs reported per frame.
     pub reported: f64,
     /// Precision and recall.
     #[serde(flatten)]
     pub quality: Quality,
     /// Median seconds of a warm frame, all or-DOP poses updated.
     pub seconds: Estimate,
-    /// Median seconds of a warm frame, poses updated where a pair needs them.
+    /// Median seconds of a warm frame, with or-DOP poses updated only if a pair needs them.
     pub lazy_seconds: Estimate,
 }
 
-/// What an interest set of some size counts.
+/// The counts of an interest set of one size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Counted {
     /// Bodies of interest.
     bodies: usize,
-    /// On the sample frames.
+    /// Counts on the sample frames.
     tally: Tally,
 }
 
@@ -53,7 +53,7 @@ fn sizes(scene: &Scene) -> Vec<usize> {
     sizes
 }
 
-/// A set of so many bodies, evenly spread.
+/// A variant with `size` bodies of interest, evenly spread.
 fn variant(scene: &Scene, size: usize, updates: Updates) -> Variant {
     let settings = CullSettings {
         strategy: Strategy::SDopObjectOfInterest,
@@ -64,15 +64,15 @@ fn variant(scene: &Scene, size: usize, updates: Updates) -> Variant {
     Variant::of(format!("{size} of interest"), settings)
 }
 
-/// Counts with every size.
+/// Counts for every size.
 ///
 /// # Errors
-/// Settings that can't be carried out.
+/// The settings can't be carried out.
 pub fn counts(
     scene: &Scene,
     tier: Tier,
     samples: &[Sample],
-    truth: &Truth,
+    truth: &TruePairs,
 ) -> Result<Vec<Counted>, TradeoffError> {
     let counted = |bodies: usize| {
         let variant = variant(scene, bodies, Updates::Eager);
@@ -82,11 +82,11 @@ pub fn counts(
     sizes(scene).into_iter().map(counted).collect()
 }
 
-/// Median seconds of a warm frame with every size: all or-DOP poses updated, and those that a pair
-/// needs.
+/// Median seconds of a warm frame for every size: with all or-DOP poses updated, and with only
+/// those that a pair needs.
 ///
 /// # Errors
-/// Settings that can't be carried out.
+/// The settings can't be carried out.
 pub fn times(scene: &Scene, tier: Tier, count: u32) -> Result<Vec<[Estimate; 2]>, TradeoffError> {
     let sizes = sizes(scene);
     let all = |updates| sizes.iter().map(move |&size| variant(scene, size, updates));
@@ -97,7 +97,7 @@ pub fn times(scene: &Scene, tier: Tier, count: u32) -> Result<Vec<[Estimate; 2]>
     Ok((0..sizes.len()).map(of).collect())
 }
 
-/// Counts and times together.
+/// Joins counts and times.
 pub(super) fn rows(counts: &[Counted], times: &[[Estimate; 2]]) -> Vec<InterestRow> {
     let row = |(counted, times): (&Counted, &[Estimate; 2])| {
         let Counted { bodies, tally } = counted;

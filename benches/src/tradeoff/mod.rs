@@ -1,10 +1,11 @@
-//! What accuracy costs in time: every volume and strategy on one scene, judged by the exact truth.
+//! What accuracy costs in time: compares every volume and strategy on one scene, judged by the
+//! exact truth.
 //!
 //! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`], [`decide`] (when does it pay?)
 //!
-//! Done in [`units`]. Counts come first and reproduce to the bit; time is measured afterwards and
-//! never decides a count. Every variant must report every true pair: a recall below 1 is a failed
-//! check.
+//! The work is divided into [`units`]. Counts come first and are reproducible to the bit; time is
+//! measured afterwards and never decides a count. Every variant must report every true pair: a
+//! recall below 1 is a failed check.
 
 pub mod advise;
 pub mod budget;
@@ -25,7 +26,7 @@ pub mod vary;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate};
 pub use result::{Tradeoff, VariantResult};
-pub use study::{Findings, Plan};
+pub use study::{Findings, TradeoffPlan};
 
 use std::path::PathBuf;
 
@@ -36,22 +37,22 @@ use crate::scene::SceneError;
 use crate::simulate::SimulationError;
 use sdop::culler::CullError;
 
-/// Why there is no answer.
+/// Errors of a comparison.
 #[derive(Debug, Error, Diagnostic)]
 pub enum TradeoffError {
     /// The scene can't be built.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Scene(#[from] SceneError),
-    /// The scene can't be run on.
+    /// The simulation fails.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
-    /// A culler that can't be made, or bodies that it refuses.
+    /// A culler can't be built, or rejects bodies.
     #[error(transparent)]
     #[diagnostic(help("{}", .0.help()))]
     Cull(#[from] CullError),
-    /// A number that the exact reference refuses to judge.
+    /// The exact reference rejects a number.
     #[error("the exact reference refuses the scene: {0}")]
     Refused(#[from] sdop_reference::InvalidInput),
     /// A shape can't be made.
@@ -62,13 +63,13 @@ pub enum TradeoffError {
     #[error(transparent)]
     #[diagnostic(help("{}", .0.help()))]
     Volume(#[from] sdop::volume::VolumeError),
-    /// The truth can't be kept.
+    /// The truth can't be stored.
     #[error("cannot write {}", file.display())]
     #[diagnostic(help("choose a writable directory with --cache"))]
     Cache {
         /// The file.
         file: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
 }

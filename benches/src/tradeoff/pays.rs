@@ -1,10 +1,9 @@
-//! When a cull pays: the full cost T + Np·Cp (Gottschalk, Lin & Manocha 1996), Np the pairs handed
-//! to a narrow phase.
+//! When culling pays: the full cost T + Np·Cp (Gottschalk, Lin & Manocha 1996), where Np are the
+//! pairs passed to a narrow phase.
 //!
-//! In Cp each variant's cost is a line with the intercept T and the slope Np, so the cheapest
-//! variant as Cp grows is their lower envelope. All break-evens lie between neighbours on it. The
-//! pairs by which two variants differ are false ones: the Cp that counts is that of a pair that
-//! doesn't meet.
+//! As a function of Cp, each variant's cost is a line with the intercept T and the slope Np, so the
+//! cheapest variants are their lower envelope. All break-evens are between neighbours on it. Two
+//! variants differ only in false pairs, so Cp is the price of a pair that doesn't meet.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,14 +14,14 @@ use crate::measure::variant::Variant;
 use sdop::choice::choices;
 use sdop::settings::{Axes, Overlap};
 
-/// One variant's cost a frame.
+/// One variant's cost per frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// The variant.
     pub name: String,
     /// The volume that decides last.
     pub decides: Option<Volume>,
-    /// Its or-DOP, where that decides behind spheres.
+    /// Its or-DOP, if that decides after spheres.
     pub ordop: Option<OrDopKind>,
     /// T, seconds per warm frame, of each pass in the order of time.
     pub times: Vec<f64>,
@@ -44,7 +43,7 @@ pub struct OrDopKind {
 }
 
 impl OrDopKind {
-    /// The or-DOP of an S-DOP variant; `None` of others.
+    /// The or-DOP of an S-DOP variant; `None` for others.
     #[must_use]
     pub fn of(variant: &Variant) -> Option<Self> {
         let settings = &variant.settings;
@@ -63,9 +62,8 @@ impl Line {
         self.times.iter().sum::<f64>() / self.times.len() as f64
     }
 
-    /// By how much this one takes longer than the other in a frame when a narrow-phase check takes
-    /// `cp` seconds, each having `pairs` pairs checked: pass by pass, so that what both share
-    /// cancels.
+    /// The difference of both costs per frame, pass by pass so that common disturbances cancel, if
+    /// a narrow-phase check takes `cp` seconds and each has `pairs` pairs checked.
     #[must_use]
     pub fn beyond(&self, other: &Self, cp: f64, pairs: [f64; 2]) -> Estimate {
         let checks = cp * (pairs[0] - pairs[1]);
@@ -75,12 +73,12 @@ impl Line {
     }
 }
 
-/// A stretch of Cp in which one variant is the cheapest.
+/// A range of Cp in which one variant is the cheapest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stretch {
     /// The cheapest variant.
     pub name: String,
-    /// Where the stretch begins, seconds a pair; it ends where the next begins.
+    /// The start of the range, in seconds per pair; it ends at the start of the next.
     pub from: f64,
 }
 
@@ -101,7 +99,7 @@ pub fn envelope(lines: &[Line]) -> Vec<Stretch> {
             name: line.name.clone(),
             from,
         });
-        // The next to undercut it is the flatter line that it meets first; of those, the flattest.
+        // The next cheapest is the flatter line that it meets first; of several, the flattest.
         let next = lines
             .iter()
             .filter(|other| other.pairs < line.pairs)
@@ -119,7 +117,7 @@ pub fn break_even(steep: &Line, flat: &Line) -> f64 {
     ((flat.time() - steep.time()) / (steep.pairs - flat.pairs)).max(0.0)
 }
 
-/// One line: which variant to take, by what a narrow-phase check costs.
+/// One line that says which variant to use, by the price of a narrow-phase check.
 #[must_use]
 pub fn advice(cheapest: &[Stretch], narrow_phase: &NarrowPhase) -> String {
     let parts: Vec<String> = cheapest
@@ -140,13 +138,13 @@ pub fn advice(cheapest: &[Stretch], narrow_phase: &NarrowPhase) -> String {
 }
 
 choices! {
-    /// How a variant stands to the Pareto front of time and precision.
+    /// The relation of a variant to the Pareto front of time and precision.
     Standing, "standing", {
-        /// Nothing is as precise in less time, or more precise in the same.
+        /// No variant is as precise in less time, or more precise in the same time.
         Front = "front",
-        /// Something is by its mean, but the interval of the difference doesn't say so.
+        /// Another one is better in the mean, but within the interval of the difference.
         Tied = "tied",
-        /// Something is, and the interval of the difference says so.
+        /// Another one is better by more than the interval of the difference.
         Beaten = "beaten",
     }
 }
@@ -160,7 +158,7 @@ pub struct Point {
     pub precisions: Vec<f64>,
 }
 
-/// Where each variant stands.
+/// The standing of each variant.
 #[must_use]
 pub fn standings(points: &[Point]) -> Vec<Standing> {
     let differences = |a: &[f64], b: &[f64]| {
@@ -204,8 +202,9 @@ mod tests {
         }
     }
 
+    /// The envelope is the cheapest at every price.
     #[test]
-    fn the_envelope_is_the_cheapest_at_every_price() {
+    fn envelope_is_cheapest() {
         let lines = [
             line("coarse", 1.0, 10.0),
             line("dominated", 4.0, 9.0),
@@ -238,9 +237,9 @@ mod tests {
         };
         let points = [
             point([1.00, 1.01, 0.99], 0.1),
-            // Slower and no finer, and surely so.
+            // Slower and not more precise, beyond the interval.
             point([2.00, 2.01, 1.99], 0.1),
-            // Slower by the mean alone: the second pass says otherwise.
+            // Slower only in the mean: it is faster in the second pass.
             point([1.10, 0.90, 1.15], 0.1),
             point([3.00, 3.01, 2.99], 0.5),
         ];

@@ -1,4 +1,4 @@
-//! What the comparison of one scene finds.
+//! The results of comparing variants on one scene.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,53 +20,53 @@ use sdop::settings::{Axes, Overlap, Strategy};
 /// One variant's result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VariantResult {
-    /// What tables call it.
+    /// Its name in tables.
     pub name: String,
     /// The strategy.
     pub strategy: Strategy,
-    /// Whether hulls stand behind it.
+    /// Whether hulls are tested after it.
     pub hulls: bool,
     /// The volume that decides last.
     pub volume: Option<Volume>,
-    /// Half-spaces, where the strategy has or-DOPs or k-DOPs.
+    /// Half-spaces, if the strategy has or-DOPs or k-DOPs.
     pub k: Option<usize>,
-    /// The or-DOP's axes, where it has or-DOPs.
+    /// The or-DOP's axes, if it has or-DOPs.
     pub axes: Option<Axes>,
-    /// The overlap test, where it has or-DOPs.
+    /// The overlap test, if it has or-DOPs.
     pub overlap: Option<Overlap>,
-    /// Pairs reported a frame.
+    /// Pairs reported per frame.
     pub reported: Estimate,
     /// True pairs / reported pairs.
     pub precision: Estimate,
-    /// The same, a seed each.
+    /// Precision per seed.
     pub precisions: Vec<f64>,
     /// Reported pairs / true pairs.
     pub per_true: Estimate,
     /// True pairs found / true pairs, over all seeds.
     pub recall: f64,
-    /// Mean volume over hull volume; none when a hull is flat.
+    /// Mean volume / hull volume; `None` if a hull is flat.
     pub volume_over_hull: Option<f64>,
-    /// The formula beside the clock, warm frames.
+    /// Predicted and measured cost of warm frames.
     pub warm: Option<Cost>,
-    /// The same, cold frames.
+    /// Predicted and measured cost of cold frames.
     pub cold: Option<Cost>,
-    /// Seconds of a warm frame, a pass each in the order of time.
+    /// Seconds of a warm frame per pass, in the order of time.
     pub times: Vec<f64>,
-    /// How it stands to the Pareto front of time and precision.
+    /// Its relation to the Pareto front of time and precision.
     pub standing: Standing,
-    /// The hash of the pairs reported on the sample frames, a seed.
+    /// The hash of the pairs reported on the sample frames, per seed.
     pub pairs_sha256: Vec<String>,
 }
 
 impl VariantResult {
-    /// Seconds of a warm frame, construction not included.
+    /// Seconds of a warm frame, without construction.
     #[must_use]
     pub fn seconds(&self) -> Estimate {
         Estimate::in_order(&self.times)
     }
 }
 
-/// Everything about one scene.
+/// All results of one scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tradeoff {
     /// The scene.
@@ -81,9 +81,9 @@ pub struct Tradeoff {
     pub seeds: Vec<u64>,
     /// The SIMD tier.
     pub simd: String,
-    /// True pairs a frame.
+    /// True pairs per frame.
     pub truth: Estimate,
-    /// Sphere overlaps a body.
+    /// Sphere overlaps per body.
     pub partners: f64,
     /// The exact reference as narrow phase.
     pub narrow_phase: NarrowPhase,
@@ -101,17 +101,17 @@ pub struct Tradeoff {
     pub clock: Vec<ClockRow>,
     /// Interest sets.
     pub interest: Vec<InterestRow>,
-    /// The scene's shapes and some of known form, each against itself.
+    /// The scene's shapes and some with known answers, each against itself.
     pub shapes: Vec<ShapeSurvival>,
     /// Margins, arithmetic and tiers.
     pub safety: Vec<SafetyRow>,
     /// Prices of every variant's volumes, warm and cold.
     pub prices: Vec<PriceRow>,
-    /// Which variant for which density, class of shapes and price of a check.
+    /// The recommended variant by density, class of shapes and price of a check.
     pub decisions: Vec<Decision>,
-    /// What else the machine did.
+    /// Other load of the machine.
     pub conditions: Conditions,
-    /// What to do.
+    /// The advice.
     pub advice: String,
 }
 

@@ -1,10 +1,10 @@
-//! The price of safety: margins on against off, f32 against f64, tier by tier: time and extra pairs
-//! side by side.
+//! The price of safety, in time and extra pairs: with and without margins, f32 and f64, in each
+//! tier.
 //!
-//! Margins live in the volumes, not in the tests. "Off" is therefore the same culler on volumes
-//! shrunk by what it will add, so that it tests the true ones to the last bit or two; nobody can
-//! ask for that from outside of this measurement, since it loses touching pairs. f64 is the
-//! reference's plain scalar loops: the same predicate, uninflated.
+//! Margins are in the volumes, not in the tests. "No margins" is therefore the same culler on
+//! volumes that are shrunk by the margins it will add, so that it tests the true ones to within a
+//! bit or two. Only this measurement can do that, since it loses touching pairs. f64 is the
+//! reference's plain scalar loops: the same predicate without margins.
 
 use sdop_reference as reference;
 use serde::{Deserialize, Serialize};
@@ -28,9 +28,9 @@ use sdop_judge::ours::judged::{Shapes, overlap};
 choices! {
     /// How the same predicate is computed.
     Arithmetic, "arithmetic", {
-        /// As the culler does.
+        /// The culler's.
         F32 = "f32",
-        /// As the culler does, on volumes shrunk by the margins.
+        /// The culler's, on volumes shrunk by the margins.
         Bare = "f32, no margins",
         /// The reference's plain loops.
         F64 = "f64",
@@ -48,23 +48,23 @@ pub struct SafetyRow {
     pub simd: String,
     /// Pairs reported on the sample frames.
     pub reported: u64,
-    /// Reported here, not by the f64 predicate.
+    /// Pairs reported here, but not by the f64 predicate.
     pub extra: u64,
-    /// Reported by the f64 predicate, not here.
+    /// Pairs reported by the f64 predicate, but not here.
     pub lost: u64,
     /// Seconds of a warm frame.
     pub seconds: Quartiles,
 }
 
-/// The strategies whose price is asked: those of the volumes that [`without_margins`] shrinks,
-/// first one alone, then both. Volumes that are refitted each frame get their margins there.
+/// The measured strategies: those with the volumes that [`without_margins`] shrinks, first one
+/// alone, then both. Volumes that are refitted each frame get their margins in the frame.
 pub const STRATEGIES: [Strategy; 2] = [Strategy::Sphere, Strategy::SDopSequential];
 
-/// The [`STRATEGIES`] with the scene's or-DOPs, in every tier that this CPU has, in turns on
-/// `count` sample frames and those that follow them.
+/// The [`STRATEGIES`] with the scene's or-DOPs, in every tier of this CPU, in turns on `count`
+/// sample frames and the frames after each.
 ///
 /// # Errors
-/// Settings that can't be carried out, numbers that the reference refuses.
+/// The settings can't be carried out, or the reference rejects a number.
 pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffError> {
     let bare: Vec<Shape> = scene.shapes.iter().map(without_margins).collect();
     let shapes = Shapes::new(scene.shapes.clone())?;
@@ -90,7 +90,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
         let mut found = vec![Found::default(); contestants.len()];
         let mut turns = Turns::default();
         for (_, poses) in windows(scene, count, turn_frames(scene.bodies.len()))? {
-            // The reference refuses no pose of the contract.
+            // The reference accepts all poses of the contract.
             poses
                 .iter()
                 .try_for_each(|bodies| shapes.bodies(bodies).map(drop))?;
@@ -112,7 +112,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
     Ok(rows)
 }
 
-/// The reference's plain loops, from the poses on.
+/// The reference's plain loops, including its updates.
 struct InF64<'a> {
     shapes: &'a Shapes,
     strategy: reference::Strategy<'static>,
@@ -149,7 +149,7 @@ impl Contestant for InF64<'_> {
 
 type Frames = Vec<Vec<[u32; 2]>>;
 
-/// What one contestant found, and its warm frames' seconds.
+/// The pairs of one contestant, and the seconds of its warm frames.
 #[derive(Clone, Default)]
 struct Found {
     frames: Frames,

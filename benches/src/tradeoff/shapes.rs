@@ -1,15 +1,15 @@
-//! P(or-DOP hit | sphere hit): what each volume lets through when two bodies' spheres overlap, by
-//! Monte Carlo.
+//! P(or-DOP hit | sphere hit): the share of pairs that each volume doesn't separate when two
+//! bodies' spheres overlap, by Monte Carlo.
 //!
 //! Two copies of a shape are turned at random, the second's ball centre is uniform in the ball of
 //! twice the radius around the first's: exactly the sphere hits of a uniform scene. For convex
 //! bodies the share that meets is the mean Minkowski volume (2V + SM/2π, M the mean width integral)
-//! over that of two balls, 32πR³/3, which makes known answers.
+//! over that of two balls, 32πR³/3, which gives known answers.
 
 use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
-use super::truth::Judge;
+use super::truth::ExactJudge;
 use crate::hull_test::{HullGraph, PosedHull, may_touch};
 use crate::measure::estimate::Estimate;
 use crate::random::Stream;
@@ -23,15 +23,15 @@ use sdop::settings::{Axes, DirectionSet, Overlap};
 use sdop::simd::Tier;
 use sdop::volume::{Hull, OrDop, Origin, Shape, ShapeSpec};
 
-/// Where the draws start; scenes count their seeds from 1.
+/// The seed of the draws; scenes count their seeds from 1.
 const SEED: u64 = 0x5a3e_7000_0000_0000;
-/// How far apart pairs whose spheres don't overlap are drawn, in sums of radii: an 18-DOP of a ball
-/// reaches 1.23 radii.
-const FAR: f32 = 1.3;
+/// The largest distance of drawn pairs whose spheres don't overlap, in sums of radii: an 18-DOP of
+/// a ball reaches 1.23 radii.
+const MOST_DISTANCE: f32 = 1.3;
 /// Batches of pairs, each an observation of the intervals.
 const BATCHES: usize = 8;
 
-/// What is let through with one kind of or-DOP.
+/// The share of pairs that one kind of or-DOP doesn't separate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Survival {
     /// Half-spaces.
@@ -44,7 +44,7 @@ pub struct Survival {
     pub share: Estimate,
 }
 
-/// What one shape's volumes let through.
+/// The shares of pairs that one shape's volumes don't separate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShapeSurvival {
     /// The mesh.
@@ -84,7 +84,8 @@ impl Crowd {
             for (shape, centre) in [(a, [0.0; 3]), (b, centre)] {
                 let q = draws.rotation();
                 let ball = shapes[shape as usize].ball.centre;
-                // The ball's centre is put where it is drawn, whatever the body's origin.
+                // The drawn position is that of the ball's centre, independent of the body's
+                // origin.
                 let offset = rotate(&rotation(q), ball);
                 let t = [0, 1, 2].map(|axis| (f64::from(centre[axis]) - offset[axis]) as f32);
                 bodies.push(shape, true, q, t);
@@ -98,7 +99,7 @@ impl Crowd {
         (0..self.bodies.len() as u32 / 2).map(|pair| [2 * pair, 2 * pair + 1])
     }
 
-    /// The pairs whose or-DOPs, one a shape and all with the same directions, overlap.
+    /// The pairs whose or-DOPs overlap. Each shape has one, and all have the same directions.
     #[must_use]
     pub fn ordop_hits(
         &self,
@@ -116,7 +117,7 @@ impl Crowd {
         out
     }
 
-    /// How many pairs' hulls meet.
+    /// Number of pairs whose hulls meet.
     #[must_use]
     pub fn hull_hits(&self, shapes: &[Shape]) -> usize {
         let graphs: Vec<_> = shapes.iter().map(HullGraph::new).collect();
@@ -127,10 +128,10 @@ impl Crowd {
     }
 }
 
-/// Shapes of known form to compare with: two boxes whose answer is known, and the procedural ones.
+/// Shapes for comparison: two boxes with known answers, and the procedural ones.
 ///
 /// # Errors
-/// None: the sizes are the library's own.
+/// Never: the library accepts these sizes.
 pub fn builtin() -> Result<Vec<Shape>, TradeoffError> {
     let boxes = [("cube", 1.0), ("box 1:1:2", 2.0)].map(|(name, z)| {
         let sizes = [("x", 1.0), ("y", 1.0), ("z", z)];
@@ -155,10 +156,10 @@ pub fn builtin() -> Result<Vec<Shape>, TradeoffError> {
         .collect()
 }
 
-/// Measures a shape by `pairs` pairs in all; meshes are judged exactly on a tenth of them.
+/// Measures a shape with `pairs` pairs in total; meshes are judged exactly on a tenth of them.
 ///
 /// # Errors
-/// A mesh that the reference refuses.
+/// The reference rejects a mesh.
 pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, TradeoffError> {
     let shape = std::slice::from_ref(shape);
     let each = pairs.div_ceil(BATCHES as u32).max(1);
@@ -181,7 +182,7 @@ pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, 
             }
         }
     }
-    let judge = Judge::new(shape)?;
+    let judge = ExactJudge::new(shape)?;
     let few: Vec<Crowd> = (0..BATCHES as u64)
         .map(|batch| Crowd::new(shape, 1.0, each.div_ceil(10), batch))
         .collect();
@@ -200,13 +201,13 @@ pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, 
     })
 }
 
-/// 18-DOP hits outside of the spheres' hits, per hit inside, of `pairs` pairs up to [`FAR`] times
-/// as far apart.
+/// 18-DOP hits outside of the spheres' hits, per hit inside, of `pairs` pairs up to
+/// [`MOST_DISTANCE`] times as far apart as radii sum to.
 #[must_use]
 pub fn outside(shape: &[Shape], pairs: u32, tier: Tier) -> f64 {
     let ordop = [shape[0].ordop_along(Axes::Principal, DirectionSet::K18)];
     let reach = 2.0 * f64::from(shape[0].ball.radius);
-    let crowd = Crowd::new(shape, FAR, pairs, BATCHES as u64);
+    let crowd = Crowd::new(shape, MOST_DISTANCE, pairs, BATCHES as u64);
     let centre = |body: u32| {
         let ball = shape[0].ball.centre;
         let body = body as usize;

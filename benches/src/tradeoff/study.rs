@@ -1,4 +1,4 @@
-//! What the units of a comparison found, put together.
+//! Joins the results of the units of a comparison.
 
 use std::path::PathBuf;
 
@@ -23,26 +23,26 @@ use crate::measure::counts::Volume;
 use crate::measure::turns::Regime;
 use sdop::simd::Tier;
 
-/// How much is done.
+/// The amount of work.
 #[derive(Clone, Debug)]
-pub struct Plan {
-    /// Seeds from the scene's on; a run each.
+pub struct TradeoffPlan {
+    /// Number of seeds from the scene's on, with one run each.
     pub seeds: u64,
-    /// Judged frames a run.
+    /// Judged frames per run.
     pub samples: u32,
-    /// Random pairs a shape.
+    /// Random pairs per shape.
     pub pairs: u32,
     /// Consecutive frames for time-critical culling.
     pub window: u32,
-    /// Every so many of them are judged.
+    /// One in this number of them is judged.
     pub stride: usize,
     /// The SIMD tier.
     pub tier: Tier,
-    /// Where truths are kept.
+    /// The directory in which truths are stored.
     pub cache: Option<PathBuf>,
 }
 
-/// What units have found so far.
+/// The results of units so far.
 #[derive(Debug, Default)]
 pub struct Findings {
     compared: Option<Compared>,
@@ -59,7 +59,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Takes up what a unit found; units come in their order.
+    /// Adds the results of a unit; units come in their order.
     pub(super) fn add(&mut self, found: Found) {
         match found {
             Found::Compared(compared) => self.compared = Some(compared),
@@ -76,8 +76,8 @@ impl Findings {
         }
     }
 
-    /// The comparison; `None` where units are missing or are those of another. `before` is what the
-    /// machine was like.
+    /// The comparison. `None` if units are missing or belong to another one. `before` are the
+    /// machine's conditions at the start.
     #[must_use]
     pub fn finish(self, settings: &Settings, before: Conditions) -> Option<Tradeoff> {
         let Compared {
@@ -133,9 +133,9 @@ impl Findings {
     }
 }
 
-/// Counts a seed and times a pass of every variant.
+/// Counts per seed and times per pass of every variant.
 struct Measured<'a> {
-    /// Its name and the number of its bodies.
+    /// The scene's name and its number of bodies.
     scene: (&'a str, usize),
     seeds: &'a [Counts],
     passes: Vec<&'a Pass>,
@@ -195,7 +195,7 @@ impl Measured<'_> {
         }
     }
 
-    /// Pairs a frame whose meshes meet.
+    /// Pairs per frame whose meshes meet.
     fn true_pairs(&self) -> Estimate {
         let tallies = self.seeds.iter().filter_map(|seed| seed.tallies.first());
         let a_frame = |tally: &Tally| tally.truth as f64 / f64::from(tally.frames);

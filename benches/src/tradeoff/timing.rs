@@ -1,7 +1,7 @@
-//! Time: the formula's prices for each variant, and its seconds per frame measured beside all
-//! others.
+//! Time: the formula's prices for each variant, and its seconds per frame, measured in turns with
+//! all others.
 //!
-//! Each sample frame with those that follow it is a turn. Turns of the judged scene take turns with
+//! Each sample frame with the frames after it is a turn. Turns of the judged scene take turns with
 //! those of its calibration ([`pass`](crate::cost::pass)): the same protocol as everywhere.
 
 use super::truth::windows;
@@ -13,10 +13,10 @@ use crate::simulate::SimulationError;
 use sdop::bodies::Bodies;
 use sdop::simd::Tier;
 
-/// The fewest passes behind a number, each apart in time.
+/// The fewest passes of a result, separated in time.
 pub const PASSES: usize = 3;
 
-/// Sample frames, each with those that follow it.
+/// Sample frames, each with the frames after it.
 #[derive(Clone, Debug)]
 pub struct Windows {
     windows: Vec<(u32, Vec<Bodies>)>,
@@ -24,10 +24,10 @@ pub struct Windows {
 }
 
 impl Windows {
-    /// So many windows of a scene's run, at equal distances.
+    /// `count` windows of a scene's run, at equal distances.
     ///
     /// # Errors
-    /// Effects that the scene can't have, a body that leaves the contract.
+    /// The scene can't have one of its effects, or a body leaves the contract.
     pub fn new(scene: &Scene, count: u32) -> Result<Self, SimulationError> {
         Ok(Self {
             windows: windows(scene, count, turn_frames(scene.bodies.len()))?,
@@ -48,10 +48,10 @@ impl Frames for Windows {
     }
 }
 
-/// Times variants on a scene's windows in passes apart in time, without a calibration.
+/// Times variants on a scene's windows in passes separated in time, without a calibration.
 ///
 /// # Errors
-/// Settings that can't be carried out, a body that leaves the contract.
+/// The settings can't be carried out, or a body leaves the contract.
 pub fn measure(
     scene: &Scene,
     variants: &[Variant],

@@ -1,9 +1,9 @@
 //! The truth: which pairs' meshes meet, decided by the exact reference on sample frames of a run.
 //!
-//! A precision needs a denominator that no culler had a hand in. Candidates are therefore all pairs
+//! The denominator of a precision must not depend on any culler. Candidates are therefore all pairs
 //! whose bodies' reaches overlap, found here in f64 from the poses alone, and
 //! [`sdop_reference::exact::meeting`] decides each. That takes a thousand times as long as culling,
-//! so answers are kept in a file named by the hash of everything that they depend on.
+//! so answers are stored in a file named by the hash of everything on which they depend.
 
 use std::fs;
 use std::io;
@@ -29,7 +29,7 @@ use sdop::volume::Shape;
 /// First word of a cache file; the number changes with its layout.
 const HEADER: &str = "sdop-truth-1";
 
-/// One frame that was kept.
+/// One sample frame.
 #[derive(Clone, Debug)]
 pub struct Sample {
     /// Its number in the run.
@@ -39,12 +39,12 @@ pub struct Sample {
 }
 
 /// The pairs i < j, sorted, whose meshes meet, sample by sample.
-pub type Truth = Vec<Vec<[u32; 2]>>;
+pub type TruePairs = Vec<Vec<[u32; 2]>>;
 
 /// Simulates the scene and keeps `count` frames (all, if it has fewer) at equal distances.
 ///
 /// # Errors
-/// Effects that the scene can't have, a body that leaves the contract.
+/// The scene can't have one of its effects, or a body leaves the contract.
 pub fn samples(scene: &Scene, count: u32) -> Result<Vec<Sample>, SimulationError> {
     let windows = windows(scene, count, 1)?.into_iter();
     let sample = |(frame, mut poses): (u32, Vec<Bodies>)| {
@@ -54,8 +54,8 @@ pub fn samples(scene: &Scene, count: u32) -> Result<Vec<Sample>, SimulationError
     Ok(windows.filter_map(sample).collect())
 }
 
-/// The frames that [`samples`] keeps, by number, each with those that follow it: `length` frames,
-/// as far as the scene has so many.
+/// The frames that [`samples`] keeps, by number, each with the frames after it: up to `length`
+/// frames, as far as the scene has them.
 ///
 /// # Errors
 /// As [`samples`].
@@ -84,17 +84,17 @@ pub fn windows(
 
 /// A scene's meshes, prepared for exact judgement.
 #[derive(Debug)]
-pub struct Judge {
+pub struct ExactJudge {
     meshes: Vec<Mesh>,
     reaches: Vec<f64>,
     key: Sha256,
 }
 
-impl Judge {
+impl ExactJudge {
     /// Prepares the shapes' meshes.
     ///
     /// # Errors
-    /// A mesh that the reference refuses; none that [`Shape::build`] made is.
+    /// The reference rejects a mesh, which never happens for meshes of [`Shape::build`].
     pub fn new(shapes: &[Shape]) -> Result<Self, InvalidInput> {
         let mut key = Sha256::new_with_prefix(HEADER);
         let mut meshes = Vec::new();
@@ -118,11 +118,15 @@ impl Judge {
         })
     }
 
-    /// The meetings of every sample, from the file in `cache` when an earlier call left one there.
+    /// The meetings of every sample, from the file in `cache` if an earlier call wrote one.
     ///
     /// # Errors
-    /// A pose that the reference refuses; a cache that can't be written.
-    pub fn truth(&self, samples: &[Sample], cache: Option<&Path>) -> Result<Truth, TradeoffError> {
+    /// The reference rejects a pose, or the cache can't be written.
+    pub fn truth(
+        &self,
+        samples: &[Sample],
+        cache: Option<&Path>,
+    ) -> Result<TruePairs, TradeoffError> {
         let file = cache.map(|directory| directory.join(self.file_name(samples)));
         if let Some(truth) = file.as_deref().and_then(|file| read(file, samples)) {
             return Ok(truth);
@@ -130,7 +134,7 @@ impl Judge {
         let truth = samples
             .par_iter()
             .map(|sample| self.meetings(&sample.bodies, None))
-            .collect::<Result<Truth, _>>()?;
+            .collect::<Result<TruePairs, _>>()?;
         if let Some(file) = file {
             write(&file, samples, &truth)
                 .map_err(|source| TradeoffError::Cache { file, source })?;
@@ -138,11 +142,11 @@ impl Judge {
         Ok(truth)
     }
 
-    /// The pairs, not both static, whose meshes meet. `translations` are those of all bodies, where
-    /// f32 doesn't hold them all.
+    /// The pairs, not both static, whose meshes meet. `translations` are those of all bodies, if
+    /// they aren't all f32.
     ///
     /// # Errors
-    /// A pose that the reference refuses.
+    /// The reference rejects a pose.
     pub fn meetings(
         &self,
         bodies: &Bodies,
@@ -170,7 +174,7 @@ impl Judge {
         order.sort_by(|&a, &b| x(a).total_cmp(&x(b)));
         let mut pairs = Vec::new();
         for (at, &i) in order.iter().enumerate() {
-            // Twice the slack of `near`, so that the sweep never ends before it.
+            // Twice the slack of `near`, so that the sweep never ends too early.
             let end = 1.000_002 * (reach(i) + farthest);
             for &j in order[at + 1..].iter().take_while(|&&j| x(j) - x(i) <= end) {
                 let moving = bodies.dynamic[i] || bodies.dynamic[j];
@@ -183,10 +187,10 @@ impl Judge {
         pairs
     }
 
-    /// How many of the listed pairs' meshes meet.
+    /// Number of the listed pairs whose meshes meet.
     ///
     /// # Errors
-    /// A pose that the reference refuses.
+    /// The reference rejects a pose.
     pub fn count(
         &self,
         bodies: &Bodies,
@@ -201,7 +205,7 @@ impl Judge {
     /// most `most` pairs are timed, one after the other.
     ///
     /// # Errors
-    /// A pose that the reference refuses.
+    /// The reference rejects a pose.
     pub fn price(
         &self,
         bodies: &Bodies,
@@ -224,7 +228,7 @@ impl Judge {
     /// [`price`](Self::price) of pairs whose spheres overlap.
     ///
     /// # Errors
-    /// A body that leaves the contract.
+    /// A body leaves the contract.
     pub fn price_of_spheres(
         &self,
         scene: &Scene,
@@ -245,8 +249,8 @@ impl Judge {
         meeting::meet(posed(i), posed(j)).meets
     }
 
-    /// Both meshes lie within their reaches of the body origins; the slack is far above f64's
-    /// rounding.
+    /// Whether two bodies' reaches overlap, which contain their meshes; the slack is far above the
+    /// rounding of f64.
     fn near(&self, bodies: &Bodies, poses: &[Pose], i: usize, j: usize) -> bool {
         let [a, b] = [i, j].map(|body| poses[body].translation());
         let squared: f64 = a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum();
@@ -280,12 +284,12 @@ impl Judge {
     }
 }
 
-/// Cp: seconds that the exact narrow phase takes for a pair.
+/// Cp: seconds of the exact narrow phase per pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct NarrowPhase {
-    /// A pair that doesn't meet: what culling saves.
+    /// Of a pair that doesn't meet, which culling saves.
     pub miss: f64,
-    /// A pair that meets.
+    /// Of a pair that meets.
     pub hit: f64,
 }
 
@@ -299,15 +303,15 @@ fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
         .collect()
 }
 
-/// Header, a line of numbers a sample, the hash of all pairs. Anything else in the file counts as
-/// no file.
-fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
+/// Reads a cache file: the header, a line of numbers per sample, and the hash of all pairs. A file
+/// with other contents is ignored.
+fn read(file: &Path, samples: &[Sample]) -> Option<TruePairs> {
     let text = files::read_text(file, files::MAX_BYTES).ok()?;
     let mut lines = text.lines();
     if lines.next()? != HEADER {
         return None;
     }
-    let mut truth = Truth::new();
+    let mut truth = TruePairs::new();
     for _ in samples {
         let numbers: Vec<u32> = lines
             .next()?
@@ -319,8 +323,8 @@ fn read(file: &Path, samples: &[Sample]) -> Option<Truth> {
     (lines.next()? == hash(samples, &truth)).then_some(truth)
 }
 
-/// Written whole, so that nobody reads half a file.
-fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
+/// Writes a cache file as a whole, so that nothing reads half a file.
+fn write(file: &Path, samples: &[Sample], truth: &TruePairs) -> io::Result<()> {
     let mut text = format!("{HEADER}\n");
     for pairs in truth {
         let numbers: Vec<String> = pairs.iter().flatten().map(u32::to_string).collect();
@@ -333,7 +337,7 @@ fn write(file: &Path, samples: &[Sample], truth: &Truth) -> io::Result<()> {
     files::write(file, text)
 }
 
-fn hash(samples: &[Sample], truth: &Truth) -> String {
+fn hash(samples: &[Sample], truth: &TruePairs) -> String {
     let mut hash = PairsHash::default();
     for (sample, pairs) in samples.iter().zip(truth) {
         hash.frame(sample.frame, pairs);
@@ -348,9 +352,10 @@ mod tests {
     use super::*;
     use crate::random::Stream;
 
+    /// The sweep lists what all pairs would.
     #[test]
-    fn the_sweep_lists_what_all_pairs_would() {
-        let judge = Judge {
+    fn sweep_lists_all_pairs() {
+        let judge = ExactJudge {
             meshes: Vec::new(),
             reaches: vec![0.05, 0.4, 6.0],
             key: Sha256::new(),

@@ -1,6 +1,7 @@
-//! A comparison cut into units: what depends on the scene alone, and can be counted anywhere; and
-//! what is timed, which has a machine to itself. Joined in their order they are the results of one
-//! process: counts to the bit, times as whoever measured them found them.
+//! A comparison divided into units: counts, which depend only on the scene and can be made on any
+//! machine, and times, which need a machine without other load. Joined in their order they are the
+//! results of one process: the same counts to the bit, and the times of the machine that measured
+//! them.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -14,11 +15,11 @@ use super::density::{self, Density};
 use super::interest;
 use super::safety::{self, SafetyRow};
 use super::shapes::{self, ShapeSurvival};
-use super::study::{Findings, Plan};
+use super::study::{Findings, TradeoffPlan};
 use super::timing::{PASSES, Windows};
-use super::truth::{Judge, NarrowPhase, Sample, samples};
+use super::truth::{ExactJudge, NarrowPhase, Sample, samples};
 use super::variant::{self, Variant};
-use super::vary::{self, Change, Variation};
+use super::vary::{self, SceneChange, Variation};
 use super::{Estimate, TradeoffError};
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::{Pass, pass};
@@ -27,21 +28,21 @@ use crate::scene::{Scene, SceneFile};
 use crate::sweep::{Header, Sweep, digest};
 use sdop::volume::Shape;
 
-/// What its files are called.
+/// The name in its files.
 pub const NAME: &str = "tradeoff";
 
 /// Pairs on which the narrow phase is timed.
-const CHECKED: usize = 2000;
-/// Sample frames of a scene with something changed.
+const CHECKED_PAIRS: usize = 2000;
+/// Sample frames of a changed scene.
 const CHANGED_SAMPLES: u32 = 6;
-/// What calibrates a pass.
+/// The calibration of a pass.
 const EFFORT: Effort = Effort {
     turns: 1,
     builds: 5,
 };
 
-/// What is compared and how thoroughly, and on what kind of machine: times of different ones don't
-/// go together.
+/// What is compared, how thoroughly, and on what kind of machine: times of different machines can't
+/// be joined.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -64,25 +65,25 @@ pub struct Settings {
 /// A comparison, ready to run.
 pub struct Comparison {
     file: SceneFile,
-    plan: Plan,
-    /// That of the first seed.
+    plan: TradeoffPlan,
+    /// The scene of the first seed.
     scene: Scene,
-    /// Mean sphere hits a frame.
+    /// Mean sphere hits per frame.
     hits: f64,
     variants: Vec<Variant>,
-    /// The scene's and some of known form.
+    /// The scene's shapes, and some with known answers.
     shapes: Vec<Shape>,
-    units: Vec<Unit>,
-    /// From the first pass in this process on.
+    units: Vec<TradeoffUnit>,
+    /// `None` before the first pass in this process.
     calibration: Mutex<Option<Calibration>>,
 }
 
 /// One unit.
 #[derive(Clone, Copy, Debug)]
-enum Unit {
-    /// What the variants are.
+enum TradeoffUnit {
+    /// The variants.
     Compared,
-    /// The truth of a seed's run, and every variant's counts.
+    /// The truth of the run of a seed, and every variant's counts.
     Seed(u64),
     /// Time-critical culling by tests.
     Budgets,
@@ -90,7 +91,7 @@ enum Unit {
     Shape(usize),
     /// Every variant timed once, on the run of a seed.
     Pass(u64),
-    /// What the exact narrow phase takes.
+    /// The price of the exact narrow phase.
     NarrowPhase,
     /// Time-critical culling by the clock.
     Clock,
@@ -98,13 +99,13 @@ enum Unit {
     Interest,
     /// The scene at a multiple of its density.
     Density(f32),
-    /// The scene with something changed.
-    Variation(Change),
+    /// The scene with one change.
+    Variation(SceneChange),
     /// Margins, arithmetic and tiers.
     Safety,
 }
 
-/// What a unit found.
+/// The result of a unit.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) enum Found {
@@ -122,14 +123,14 @@ pub(super) enum Found {
     Safety(Vec<SafetyRow>),
 }
 
-/// What is compared.
+/// The compared variants.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Compared {
-    /// Mean sphere hits a frame.
+    /// Mean sphere hits per frame.
     pub(super) hits: f64,
     pub(super) variants: Vec<Variant>,
-    /// Of each variant, over the hulls'.
+    /// Volume / hull volume of each variant.
     pub(super) volumes: Vec<Option<f64>>,
 }
 
@@ -137,18 +138,18 @@ pub(super) struct Compared {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Counts {
-    /// A variant each.
+    /// The counts of each variant.
     pub(super) tallies: Vec<Tally>,
-    /// Of interest sets, with the first seed alone.
+    /// Counts of interest sets, only with the first seed.
     pub(super) interest: Vec<interest::Counted>,
 }
 
 impl Comparison {
-    /// Builds the scene and says what there is to compare.
+    /// Builds the scene and the comparison.
     ///
     /// # Errors
-    /// A scene that can't be built, run or culled.
-    pub fn new(file: &SceneFile, plan: &Plan) -> Result<Self, TradeoffError> {
+    /// The scene can't be built, run or culled.
+    pub fn new(file: &SceneFile, plan: &TradeoffPlan) -> Result<Self, TradeoffError> {
         let scene = Scene {
             construct_seconds: 0.0,
             ..file.build()?
@@ -175,7 +176,7 @@ impl Comparison {
     /// The settings, of this machine.
     #[must_use]
     pub fn settings(&self) -> Settings {
-        let Plan {
+        let TradeoffPlan {
             samples,
             pairs,
             window,
@@ -196,33 +197,40 @@ impl Comparison {
         }
     }
 
-    fn find(&self, unit: Unit) -> Result<Found, TradeoffError> {
+    fn find(&self, unit: TradeoffUnit) -> Result<Found, TradeoffError> {
         let (file, scene, tier) = (&self.file, &self.scene, self.plan.tier);
         Ok(match unit {
-            Unit::Compared => Found::Compared(self.compared()),
-            Unit::Seed(seed) => Found::Seed(self.counts(seed)?),
-            Unit::Budgets => Found::Budgets(self.budgets()?),
-            Unit::Shape(number) => {
+            TradeoffUnit::Compared => Found::Compared(self.compared()),
+            TradeoffUnit::Seed(seed) => Found::Seed(self.counts(seed)?),
+            TradeoffUnit::Budgets => Found::Budgets(self.budgets()?),
+            TradeoffUnit::Shape(number) => {
                 let shape = &self.shapes[number];
                 Found::Shape(shapes::survival(shape, self.plan.pairs, tier)?)
             }
-            Unit::Pass(seed) => Found::Pass(self.pass(seed)?),
-            Unit::NarrowPhase => {
-                let judge = Judge::new(&scene.shapes)?;
-                Found::NarrowPhase(judge.price_of_spheres(scene, &scene.bodies, tier, CHECKED)?)
+            TradeoffUnit::Pass(seed) => Found::Pass(self.pass(seed)?),
+            TradeoffUnit::NarrowPhase => {
+                let judge = ExactJudge::new(&scene.shapes)?;
+                Found::NarrowPhase(judge.price_of_spheres(
+                    scene,
+                    &scene.bodies,
+                    tier,
+                    CHECKED_PAIRS,
+                )?)
             }
-            Unit::Clock => {
+            TradeoffUnit::Clock => {
                 let frames = self.plan.window.min(scene.frames);
                 Found::Clock(budget::by_clock(scene, tier, frames)?)
             }
-            Unit::Interest => Found::Interest(interest::times(scene, tier, self.plan.samples)?),
-            Unit::Density(factor) => {
+            TradeoffUnit::Interest => {
+                Found::Interest(interest::times(scene, tier, self.plan.samples)?)
+            }
+            TradeoffUnit::Density(factor) => {
                 Found::Density(density::at(file, factor, tier, self.samples_of_changed())?)
             }
-            Unit::Variation(change) => {
+            TradeoffUnit::Variation(change) => {
                 Found::Variation(vary::varied(file, change, tier, self.samples_of_changed())?)
             }
-            Unit::Safety => Found::Safety(safety::compare(scene, self.plan.samples)?),
+            TradeoffUnit::Safety => Found::Safety(safety::compare(scene, self.plan.samples)?),
         })
     }
 
@@ -242,7 +250,7 @@ impl Comparison {
     fn counts(&self, seed: u64) -> Result<Counts, TradeoffError> {
         let scene = with_seed(&self.file, seed)?;
         let samples = samples(&scene, self.plan.samples)?;
-        let truth = Judge::new(&scene.shapes)?.truth(&samples, self.plan.cache.as_deref())?;
+        let truth = ExactJudge::new(&scene.shapes)?.truth(&samples, self.plan.cache.as_deref())?;
         let tally = |variant| Tally::of(&scene, variant, self.plan.tier, &samples, &truth);
         let interest = if seed == self.scene.seed {
             interest::counts(&scene, self.plan.tier, &samples, &truth)?
@@ -256,14 +264,14 @@ impl Comparison {
     }
 
     fn budgets(&self) -> Result<Vec<BudgetRow>, TradeoffError> {
-        let Plan {
+        let TradeoffPlan {
             window,
             stride,
             tier,
             ref cache,
             ..
         } = self.plan;
-        let judge = Judge::new(&self.scene.shapes)?;
+        let judge = ExactJudge::new(&self.scene.shapes)?;
         let frames = first_frames(&self.scene, window)?;
         let window = Window {
             frames: &frames,
@@ -296,25 +304,29 @@ impl Comparison {
     }
 }
 
-/// All units: first what is counted, then what is timed.
-fn units(seeds: &[u64], shapes: usize) -> Vec<Unit> {
-    // One pass a seed, and not too few.
+/// All units: first counts, then times.
+fn units(seeds: &[u64], shapes: usize) -> Vec<TradeoffUnit> {
+    // One pass per seed, and not too few.
     let passes = seeds.iter().cycle().take(seeds.len().max(PASSES));
-    let once = [Unit::NarrowPhase, Unit::Clock, Unit::Interest];
-    let mut units = vec![Unit::Compared];
-    units.extend(seeds.iter().copied().map(Unit::Seed));
-    units.push(Unit::Budgets);
-    units.extend((0..shapes).map(Unit::Shape));
-    units.extend(passes.copied().map(Unit::Pass));
+    let once = [
+        TradeoffUnit::NarrowPhase,
+        TradeoffUnit::Clock,
+        TradeoffUnit::Interest,
+    ];
+    let mut units = vec![TradeoffUnit::Compared];
+    units.extend(seeds.iter().copied().map(TradeoffUnit::Seed));
+    units.push(TradeoffUnit::Budgets);
+    units.extend((0..shapes).map(TradeoffUnit::Shape));
+    units.extend(passes.copied().map(TradeoffUnit::Pass));
     units.extend(once);
-    units.extend(density::FACTORS.map(Unit::Density));
-    units.extend(vary::changes().into_iter().map(Unit::Variation));
-    units.push(Unit::Safety);
+    units.extend(density::FACTORS.map(TradeoffUnit::Density));
+    units.extend(vary::changes().into_iter().map(TradeoffUnit::Variation));
+    units.push(TradeoffUnit::Safety);
     units
 }
 
-/// The runs' seeds, from the scene's own on.
-fn seeds(file: &SceneFile, plan: &Plan) -> Vec<u64> {
+/// The runs' seeds, from the scene's on.
+fn seeds(file: &SceneFile, plan: &TradeoffPlan) -> Vec<u64> {
     let seed = |number| file.spec.seed.wrapping_add(number);
     (0..plan.seeds.max(1)).map(seed).collect()
 }
@@ -334,7 +346,7 @@ fn first_frames(scene: &Scene, count: u32) -> Result<Vec<Sample>, TradeoffError>
     Ok(samples(&scene, count)?)
 }
 
-/// One shape a mesh name: sizes of one mesh let the same shares through.
+/// One shape per mesh name: the shares don't depend on the size of a mesh.
 fn distinct(scene: &Scene) -> impl Iterator<Item = &Shape> {
     let shapes = &scene.shapes;
     let first = |name: &str| shapes.iter().position(|shape| shape.name == name);
@@ -354,17 +366,17 @@ impl Sweep for Comparison {
 
     fn name(&self, unit: usize) -> String {
         match self.units[unit] {
-            Unit::Compared => "what is compared".to_owned(),
-            Unit::Seed(seed) => format!("truth and counts of seed {seed}"),
-            Unit::Budgets => "budgets of tests".to_owned(),
-            Unit::Shape(number) => format!("shape {}", self.shapes[number].name),
-            Unit::Pass(seed) => format!("times on seed {seed}"),
-            Unit::NarrowPhase => "times of the narrow phase".to_owned(),
-            Unit::Clock => "budgets of time".to_owned(),
-            Unit::Interest => "times of interest sets".to_owned(),
-            Unit::Density(factor) => format!("{factor} times the density"),
-            Unit::Variation(change) => change.to_string(),
-            Unit::Safety => "the price of safety".to_owned(),
+            TradeoffUnit::Compared => "what is compared".to_owned(),
+            TradeoffUnit::Seed(seed) => format!("truth and counts of seed {seed}"),
+            TradeoffUnit::Budgets => "budgets of tests".to_owned(),
+            TradeoffUnit::Shape(number) => format!("shape {}", self.shapes[number].name),
+            TradeoffUnit::Pass(seed) => format!("times on seed {seed}"),
+            TradeoffUnit::NarrowPhase => "times of the narrow phase".to_owned(),
+            TradeoffUnit::Clock => "budgets of time".to_owned(),
+            TradeoffUnit::Interest => "times of interest sets".to_owned(),
+            TradeoffUnit::Density(factor) => format!("{factor} times the density"),
+            TradeoffUnit::Variation(change) => change.to_string(),
+            TradeoffUnit::Safety => "the price of safety".to_owned(),
         }
     }
 
@@ -374,23 +386,26 @@ impl Sweep for Comparison {
 
     fn timed(&self, unit: usize) -> bool {
         match self.units[unit] {
-            Unit::Compared | Unit::Seed(_) | Unit::Budgets | Unit::Shape(_) => false,
-            Unit::Pass(_)
-            | Unit::NarrowPhase
-            | Unit::Clock
-            | Unit::Interest
-            | Unit::Density(_)
-            | Unit::Variation(_)
-            | Unit::Safety => true,
+            TradeoffUnit::Compared
+            | TradeoffUnit::Seed(_)
+            | TradeoffUnit::Budgets
+            | TradeoffUnit::Shape(_) => false,
+            TradeoffUnit::Pass(_)
+            | TradeoffUnit::NarrowPhase
+            | TradeoffUnit::Clock
+            | TradeoffUnit::Interest
+            | TradeoffUnit::Density(_)
+            | TradeoffUnit::Variation(_)
+            | TradeoffUnit::Safety => true,
         }
     }
 }
 
 impl Findings {
-    /// Takes a unit's result up; units come in their order.
+    /// Reads a unit's result; units come in their order.
     ///
     /// # Errors
-    /// Text that no unit of a comparison gives.
+    /// The text is not the result of a unit.
     pub fn take(&mut self, result: &str) -> miette::Result<()> {
         self.add(serde_json::from_str(result).into_diagnostic()?);
         Ok(())

@@ -1,4 +1,5 @@
-//! What is compared: every volume and strategy, as culling settings with the shapes that they need.
+//! The compared variants: every volume and strategy, as culling settings with the shapes that they
+//! need.
 
 use crate::tightness::PolytopeVolume as _;
 
@@ -14,8 +15,8 @@ use sdop::volume::{Hull, Shape};
 /// Random rotations over which a world-aligned volume is averaged.
 const TURNS: u32 = 64;
 
-/// Mean volume over hull volume of the scene's bodies; world-aligned volumes are averaged over
-/// rotations. `None` when a hull is flat, or nothing is tested.
+/// Mean volume / hull volume of the scene's bodies; world-aligned volumes are averaged over
+/// rotations. `None` if a hull is flat, or if nothing is tested.
 #[must_use]
 pub fn tightness(variant: &Variant, scene: &Scene) -> Option<f64> {
     let shapes = variant.shapes(scene);
@@ -45,8 +46,8 @@ fn shape_tightness(variant: &Variant, shape: &Shape) -> Option<f64> {
     (inner > 0.0).then_some(volume / inner)
 }
 
-/// Every variant for a scene: its own settings give what is not varied. `hits` is the mean number
-/// of sphere hits a frame; half of it is time-critical culling's budget here.
+/// Every variant for a scene, with the scene's settings for everything else. `hits` is the mean
+/// number of sphere hits per frame; half of it is the budget of time-critical culling.
 #[must_use]
 pub fn all(scene: &Scene, hits: u64) -> Vec<Variant> {
     let own = &scene.cull;
@@ -101,7 +102,7 @@ pub fn s_dops(own: &CullSettings) -> Vec<Variant> {
     list
 }
 
-/// The other strategies, with the scene's own or-DOPs.
+/// The other strategies, with the scene's or-DOPs.
 fn strategies(scene: &Scene, hits: u64) -> Vec<Variant> {
     let own = &scene.cull;
     let with = |strategy, updates| CullSettings {

@@ -1,10 +1,9 @@
-//! The same scene with one thing changed: how many bodies, of how many triangles, how far they
-//! move, which shapes they have.
+//! The same scene with one change: the number of bodies, their triangles, motion or shapes.
 //!
-//! [Density](super::density) has a sweep of its own, since the decision table stands on it. Bodies
-//! and motion are judged through the finder `auto`, whose choice they move, on frames that follow
-//! one another over a run; and by the mean of its warm frames, since a finder that keeps lists
-//! makes them anew in some frames and not in most.
+//! [Density](super::density) has a separate study, since the decision table depends on it. Bodies
+//! and motion are measured with the finder `auto`, whose choice depends on them, on consecutive
+//! frames of a run, and by the mean of warm frames, since a finder that keeps lists rebuilds them
+//! only in some frames.
 
 use std::fmt;
 use std::num::NonZeroU32;
@@ -15,7 +14,7 @@ use super::TradeoffError;
 use super::decide::{CHECKS, choose_measured};
 use super::density::{self, built_if_possible, variants};
 use super::pays::Line;
-use super::truth::{Judge, NarrowPhase};
+use super::truth::{ExactJudge, NarrowPhase};
 use crate::number::{Interval, Positive};
 use crate::scene::{Scene, SceneFile};
 use crate::simulate::{SimulationError, Trajectory};
@@ -27,13 +26,13 @@ use sdop::simd::Tier;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
 choices! {
-    /// What of a scene is changed.
+    /// The changed property of a scene.
     Aspect, "aspect", {
-        /// How many bodies, at the scene's density.
+        /// Number of bodies, at the scene's density.
         Bodies = "bodies",
         /// Triangles of a mesh.
         Triangles = "triangles",
-        /// How far bodies move and turn from frame to frame, at ten times the scene's bodies.
+        /// Motion and rotation per frame, with ten times the scene's bodies.
         Motion = "motion",
         /// The shapes, in balls as large as the scene's.
         Shapes = "shapes",
@@ -41,7 +40,7 @@ choices! {
 }
 
 choices! {
-    /// Which shapes the bodies have.
+    /// The shapes of the bodies.
     Mix, "mix of shapes", {
         /// Balls.
         Round = "balls",
@@ -49,27 +48,27 @@ choices! {
         Compact = "cubes",
         /// Needles.
         Thin = "needles",
-        /// The three in turns.
+        /// All three alternately.
         Mixed = "balls, cubes, needles",
-        /// The scene's own meshes, each with a radius from half to twice its own.
+        /// The scene's meshes, each with a radius from half to twice its own.
         Sizes = "own, radii 1 : 4",
     }
 }
 
 /// One change of a scene.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Change {
-    /// So many times the bodies, in so many times the room.
+pub(super) enum SceneChange {
+    /// This multiple of the bodies, in this multiple of the volume.
     Bodies(f32),
-    /// At most so many triangles a mesh.
+    /// At most this number of triangles per mesh.
     Triangles(usize),
-    /// So many times as far per frame.
+    /// This multiple of the motion per frame.
     Motion(f32),
     /// Other shapes.
     Shapes(Mix),
 }
 
-impl Change {
+impl SceneChange {
     fn aspect(self) -> Aspect {
         match self {
             Self::Bodies(_) => Aspect::Bodies,
@@ -80,7 +79,7 @@ impl Change {
     }
 }
 
-impl fmt::Display for Change {
+impl fmt::Display for SceneChange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Bodies(factor) => write!(f, "{factor} times the bodies"),
@@ -93,69 +92,71 @@ impl fmt::Display for Change {
 }
 
 impl Aspect {
-    fn changes(self) -> Vec<Change> {
+    fn changes(self) -> Vec<SceneChange> {
         match self {
-            Self::Bodies => [0.1, 1.0, 10.0, 40.0].map(Change::Bodies).to_vec(),
-            Self::Triangles => [100, 1000, usize::MAX].map(Change::Triangles).to_vec(),
-            Self::Motion => [0.1, 1.0, 10.0, 40.0].map(Change::Motion).to_vec(),
-            Self::Shapes => Mix::ALL.iter().map(|mix| Change::Shapes(*mix)).collect(),
+            Self::Bodies => [0.1, 1.0, 10.0, 40.0].map(SceneChange::Bodies).to_vec(),
+            Self::Triangles => [100, 1000, usize::MAX].map(SceneChange::Triangles).to_vec(),
+            Self::Motion => [0.1, 1.0, 10.0, 40.0].map(SceneChange::Motion).to_vec(),
+            Self::Shapes => Mix::ALL
+                .iter()
+                .map(|mix| SceneChange::Shapes(*mix))
+                .collect(),
         }
     }
 }
 
-/// A scene with one thing changed.
+/// A scene with one change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variation {
-    /// What was changed.
+    /// The changed property.
     pub aspect: Aspect,
-    /// The mix of shapes, where shapes were changed.
+    /// The mix of shapes, if shapes were changed.
     pub mix: Option<Mix>,
-    /// How many bodies it has.
+    /// Number of bodies.
     pub bodies: usize,
     /// Mean triangles of a body's mesh.
     pub triangles: f64,
-    /// How far a moving body's centre comes in a frame, in radii of its ball; the mean of the first
-    /// frame.
+    /// Mean motion of a moving body's centre in the first frame, in radii of its ball.
     pub motion: f64,
-    /// Mean sphere overlaps a body.
+    /// Mean sphere overlaps per body.
     pub partners: f64,
     /// The exact reference as narrow phase.
     pub narrow_phase: NarrowPhase,
-    /// T and Np of every variant that takes part.
+    /// T and Np of every compared variant.
     pub lines: Vec<Line>,
     /// The cheapest variant for each price of a narrow-phase check.
     pub best: Vec<Best>,
 }
 
 /// Pairs on which a variation's narrow phase is timed.
-const CHECKED: usize = 500;
+const CHECKED_PAIRS: usize = 500;
 
-/// What to use for one price of a check.
+/// The recommendation for one price of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Best {
     /// Seconds of a narrow-phase check of a pair that doesn't meet.
     pub check: f64,
     /// The cheapest variant.
     pub name: String,
-    /// The variants that can't be told from it.
+    /// The variants tied with it.
     pub tied: Vec<String>,
 }
 
 /// Every change.
-pub(super) fn changes() -> Vec<Change> {
+pub(super) fn changes() -> Vec<SceneChange> {
     Aspect::ALL
         .iter()
         .flat_map(|aspect| aspect.changes())
         .collect()
 }
 
-/// Runs the scene with a change; `None` where it can't have it.
+/// Runs the scene with a change. `None` if it can't have it.
 ///
 /// # Errors
-/// What running a scene may meet.
+/// Running the scene fails.
 pub(super) fn varied(
     file: &SceneFile,
-    change: Change,
+    change: SceneChange,
     tier: Tier,
     count: u32,
 ) -> Result<Option<Variation>, TradeoffError> {
@@ -165,15 +166,19 @@ pub(super) fn varied(
 }
 
 fn variation(
-    change: Change,
+    change: SceneChange,
     scene: &Scene,
     tier: Tier,
     count: u32,
 ) -> Result<Variation, TradeoffError> {
     let variants = variants(&scene.cull);
     let lines = match change {
-        Change::Bodies(_) | Change::Motion(_) => density::lines_of_a_run(scene, &variants, tier)?,
-        Change::Triangles(_) | Change::Shapes(_) => density::lines(scene, &variants, tier, count)?,
+        SceneChange::Bodies(_) | SceneChange::Motion(_) => {
+            density::lines_of_a_run(scene, &variants, tier)?
+        }
+        SceneChange::Triangles(_) | SceneChange::Shapes(_) => {
+            density::lines(scene, &variants, tier, count)?
+        }
     };
     let bodies = &scene.bodies;
     let triangles = bodies
@@ -191,7 +196,7 @@ fn variation(
     Ok(Variation {
         aspect: change.aspect(),
         mix: match change {
-            Change::Shapes(mix) => Some(mix),
+            SceneChange::Shapes(mix) => Some(mix),
             _ => None,
         },
         bodies: bodies.len(),
@@ -200,13 +205,18 @@ fn variation(
         partners: lines
             .first()
             .map_or(0.0, |spheres| 2.0 * spheres.pairs / bodies.len() as f64),
-        narrow_phase: Judge::new(&scene.shapes)?.price_of_spheres(scene, bodies, tier, CHECKED)?,
+        narrow_phase: ExactJudge::new(&scene.shapes)?.price_of_spheres(
+            scene,
+            bodies,
+            tier,
+            CHECKED_PAIRS,
+        )?,
         best: best.collect(),
         lines,
     })
 }
 
-/// How far moving bodies come in the first frame, in radii.
+/// Mean motion of moving bodies in the first frame, in radii.
 fn motion(scene: &Scene) -> Result<f64, TradeoffError> {
     let mut trajectory = Trajectory::new(scene)
         .map_err(SimulationError::from)?
@@ -229,19 +239,19 @@ fn motion(scene: &Scene) -> Result<f64, TradeoffError> {
     Ok(ways.iter().sum::<f64>() / ways.len().max(1) as f64)
 }
 
-/// The scene with a change; `None` where it can't have it: bodies at given places, spheres larger
-/// than the box.
-fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffError> {
+/// The scene with a change. `None` if it can't have it: bodies at given places, spheres larger than
+/// the box.
+fn changed(file: &SceneFile, change: SceneChange) -> Result<Option<Scene>, TradeoffError> {
     let mut file = file.clone();
     let mut possible = true;
     match change {
-        Change::Bodies(factor) => possible = multiply(&mut file, factor),
-        Change::Motion(factor) => {
+        SceneChange::Bodies(factor) => possible = multiply(&mut file, factor),
+        SceneChange::Motion(factor) => {
             possible = multiply(&mut file, 10.0);
             file.spec.dt = Positive(file.spec.dt.0 * factor);
         }
-        Change::Shapes(Mix::Sizes) => spread_radii(&mut file),
-        Change::Triangles(_) | Change::Shapes(_) => {}
+        SceneChange::Shapes(Mix::Sizes) => spread_radii(&mut file),
+        SceneChange::Triangles(_) | SceneChange::Shapes(_) => {}
     }
     if !possible {
         return Ok(None);
@@ -250,14 +260,15 @@ fn changed(file: &SceneFile, change: Change) -> Result<Option<Scene>, TradeoffEr
         return Ok(None);
     };
     match change {
-        Change::Triangles(most) => fewer_triangles(&mut scene, most)?,
-        Change::Shapes(mix) => other_shapes(&mut scene, mix)?,
-        Change::Bodies(_) | Change::Motion(_) => {}
+        SceneChange::Triangles(most) => fewer_triangles(&mut scene, most)?,
+        SceneChange::Shapes(mix) => other_shapes(&mut scene, mix)?,
+        SceneChange::Bodies(_) | SceneChange::Motion(_) => {}
     }
     Ok(Some(scene))
 }
 
-/// So many times the bodies at the same density, found by `auto`; whether the scene can have them.
+/// Multiplies the bodies at the same density, with the finder `auto`. Returns whether the scene can
+/// have them.
 fn multiply(file: &mut SceneFile, factor: f32) -> bool {
     file.spec.cull.pairs = Finder::Auto;
     let counts = file
@@ -279,7 +290,7 @@ fn multiply(file: &mut SceneFile, factor: f32) -> bool {
     true
 }
 
-/// Radii from half to twice what they are.
+/// Sets radii from half to twice the present ones.
 fn spread_radii(file: &mut SceneFile) {
     for group in &mut file.spec.bodies {
         if let Some(radius) = &mut group.get_mut().radius {
@@ -322,7 +333,7 @@ fn other_shapes(scene: &mut Scene, mix: Mix) -> Result<(), TradeoffError> {
     Ok(())
 }
 
-/// A shape as large as another, built as the scene's settings say.
+/// The specification of a shape as large as another, with the scene's settings.
 fn spec(cull: &sdop::settings::CullSettings, like: &Shape) -> ShapeSpec {
     ShapeSpec {
         origin: Origin::Ball,

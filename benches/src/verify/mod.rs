@@ -1,7 +1,7 @@
-//! The optimised culler against the exact reference ([`sdop_judge::ours`]), on scenes and shared
-//! among many.
+//! Verification of the optimised culler by the exact reference ([`sdop_judge::ours`]), on scenes,
+//! and divided among processes.
 //!
-//! When a pair is missed, [`shrink`] makes the smallest scene that shows it.
+//! If a pair is missed, [`shrink`] makes the smallest scene that shows it.
 
 pub mod scenes;
 pub mod shrink;

@@ -1,5 +1,5 @@
-//! A scene's run judged frame by frame, end to end: every mesh pair that meets exactly must be in
-//! every strategy's list.
+//! Judges a scene's run frame by frame: every pair of meshes that meet exactly must be in every
+//! strategy's list.
 
 use std::ops::Range;
 
@@ -15,40 +15,40 @@ use sdop_judge::ours::judged::Shapes;
 use sdop_judge::ours::rounds::{Ledger, RoundError, Run};
 use sdop_judge::ours::ways::{Rotation, rows};
 
-/// Frames that are judged at once, to bound memory. A culler lives for one block, and each block is
-/// a turn of the rotation: a hundred frames show every way in twenty modes.
-const BLOCK: usize = 5;
+/// Frames that are judged at once, to bound memory. A culler is used for one block, and each block
+/// takes the next modes of the rotation: a hundred frames test every configuration in twenty modes.
+const FRAMES_PER_BLOCK: usize = 5;
 
-/// How many blocks so many frames have.
+/// Number of blocks of this number of frames.
 #[must_use]
 pub const fn blocks(frames: usize) -> usize {
-    frames.div_ceil(BLOCK)
+    frames.div_ceil(FRAMES_PER_BLOCK)
 }
 
 /// The frames of a block.
 #[must_use]
 pub fn frames_of(block: usize, frames: usize) -> Range<usize> {
-    block * BLOCK..frames.min((block + 1) * BLOCK)
+    block * FRAMES_PER_BLOCK..frames.min((block + 1) * FRAMES_PER_BLOCK)
 }
 
-/// Why a scene can't be judged.
+/// The error of a scene that can't be judged.
 #[derive(Debug, Error, Diagnostic)]
 pub enum JudgeError {
     /// Culling or the reference refuses it.
     #[error(transparent)]
     Round(#[from] RoundError),
-    /// The scene can't be run on.
+    /// The simulation fails.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
 }
 
 /// Runs a scene of `frames` frames up to the end of a block, judges every pair of the block by
-/// every predicate, meshes included, and culls its frames in every way, in the modes whose turn it
-/// is.
+/// every predicate, meshes included, and culls its frames in every configuration, in the block's
+/// modes.
 ///
 /// # Errors
-/// A scene that can't be run or judged.
+/// The scene can't be run or judged.
 pub fn block(
     scene: &Scene,
     frames: usize,

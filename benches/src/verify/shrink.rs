@@ -1,4 +1,4 @@
-//! The smallest case of a failure as files: a scene that `sdop run` takes, where one frame shows it.
+//! Writes the smallest case of a failure as files: a scene for `sdop run`, if one frame shows it.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -19,7 +19,7 @@ const SHRINK_TIME: Duration = Duration::from_secs(60);
 
 /// A small case that our culler fails.
 #[derive(Clone, Debug)]
-pub struct Smallest {
+pub struct SmallestScene {
     /// The failure, of which the settings and the mode still hold.
     pub failure: Failure,
     /// The settings, with interest in bodies of the small case.
@@ -28,7 +28,7 @@ pub struct Smallest {
     pub shrunk: shrink::Smallest,
 }
 
-impl Smallest {
+impl SmallestScene {
     /// Shrinks a failure. `None` when it doesn't show again.
     #[must_use]
     pub fn of(failure: &Failure) -> Option<Self> {
@@ -45,7 +45,7 @@ impl Smallest {
     /// Returns the scene's path, or else the case's, and whether the scene, read back, still fails.
     ///
     /// # Errors
-    /// A file that can't be written.
+    /// A file can't be written.
     pub fn write(&self, directory: &Path) -> io::Result<(PathBuf, bool)> {
         let (name, bytes) = case_file(&self.shrunk)?;
         let path = directory.join(name);

@@ -1,6 +1,6 @@
-//! A verification run cut into units: a group of hard cases for one or-DOP, a seed's rounds for one
-//! or-DOP, a block of a scene's frames. Ledgers travel as text, without the frames that failed: a
-//! unit that has some can be done again.
+//! A verification run divided into units: a group of hard cases for one or-DOP, a seed's rounds for
+//! one or-DOP, or a block of a scene's frames. Ledgers are passed as text without the failed
+//! frames: a unit with failures can be repeated.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -22,10 +22,10 @@ use sdop_judge::ours::matrix::Cell;
 use sdop_judge::ours::rounds::{Judged, Ledger, Source, boxes, group, round};
 use sdop_judge::ours::ways::{Rotation, variants};
 
-/// What its files are called.
+/// The name in its files.
 pub const NAME: &str = "verify";
 
-/// What a verification run is asked for: enough to take its results, not to make them.
+/// The settings of a verification run: enough to read its results, not to make them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -33,9 +33,9 @@ pub struct Settings {
     pub groups: Vec<String>,
     /// The first seed.
     pub first_seed: u64,
-    /// How many.
+    /// Number of seeds.
     pub seeds: u64,
-    /// Scenes: what the report calls each.
+    /// The names of scenes in the report.
     pub scenes: Vec<String>,
     /// Frames of each scene.
     pub frames: usize,
@@ -53,13 +53,13 @@ pub struct Verification {
     cells: Vec<Cell>,
     places: BTreeMap<Cell, usize>,
     box_cells: Vec<BoxCell>,
-    /// After which no round is started.
+    /// No round starts after this time.
     deadline: Option<Instant>,
 }
 
 /// One unit.
-enum Unit {
-    /// A group of hard cases, by its place among those chosen.
+enum VerifyUnit {
+    /// A group of hard cases, by its index among the chosen ones.
     Hard(usize, (DirectionSet, Axes)),
     /// A seed's rounds.
     Rounds(u64, (DirectionSet, Axes)),
@@ -67,9 +67,9 @@ enum Unit {
     Frames(usize, usize),
 }
 
-/// What reports tell apart.
+/// The origin of judged pairs, which reports distinguish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Origin {
+pub enum UnitOrigin {
     /// Hard cases.
     Hard,
     /// Rounds of near pairs.
@@ -83,10 +83,10 @@ pub enum Origin {
 }
 
 impl Verification {
-    /// The run of these settings.
+    /// A run with these settings.
     ///
     /// # Errors
-    /// A group that isn't there, a tier that this CPU lacks.
+    /// A group doesn't exist, or this CPU lacks a tier.
     pub fn new(settings: Settings) -> miette::Result<Self> {
         let tier = |name: &String| {
             let known = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
@@ -122,8 +122,8 @@ impl Verification {
         })
     }
 
-    /// With the scenes that the settings name, so that units can be done, and a time after which no
-    /// round is started.
+    /// Adds the scenes that the settings name, so that units can be run, and a time after which no
+    /// round starts.
     #[must_use]
     pub fn with_scenes(self, scenes: Vec<Scene>, deadline: Option<Instant>) -> Self {
         Self {
@@ -139,13 +139,13 @@ impl Verification {
         &self.settings
     }
 
-    /// Which modes take turns.
+    /// The modes of the rotation.
     #[must_use]
     pub fn rotation(&self) -> &Rotation {
         &self.rotation
     }
 
-    /// How many units there are.
+    /// Number of units.
     #[must_use]
     pub fn units(&self) -> usize {
         let (variants, scenes) = (self.variants.len(), self.settings.scenes.len());
@@ -153,64 +153,68 @@ impl Verification {
         self.groups.len() * variants + rounds + scenes * blocks(self.settings.frames)
     }
 
-    fn unit(&self, unit: usize) -> Unit {
+    fn unit(&self, unit: usize) -> VerifyUnit {
         let variants = self.variants.len();
         let hard = self.groups.len() * variants;
         let rounds = hard + self.settings.seeds as usize * variants;
         if unit < hard {
-            return Unit::Hard(unit / variants, self.variants[unit % variants]);
+            return VerifyUnit::Hard(unit / variants, self.variants[unit % variants]);
         }
         if unit < rounds {
             let (n, variant) = ((unit - hard) / variants, (unit - hard) % variants);
             let seed = self.settings.first_seed.wrapping_add(n as u64);
-            return Unit::Rounds(seed, self.variants[variant]);
+            return VerifyUnit::Rounds(seed, self.variants[variant]);
         }
         let (n, blocks) = (unit - rounds, blocks(self.settings.frames));
-        Unit::Frames(n / blocks, n % blocks)
+        VerifyUnit::Frames(n / blocks, n % blocks)
     }
 
-    /// Does a unit: its ledgers, by what reports tell apart.
+    /// Runs a unit and returns its ledgers by origin.
     ///
     /// # Errors
-    /// Culling or the reference refuses it, or its scene isn't there.
-    pub fn judge(&self, unit: usize) -> miette::Result<Vec<(Origin, Ledger)>> {
+    /// Culling or the reference fails, or its scene is missing.
+    pub fn judge(&self, unit: usize) -> miette::Result<Vec<(UnitOrigin, Ledger)>> {
         let rotation = &self.rotation;
         match self.unit(unit) {
-            Unit::Hard(n, variant) => {
+            VerifyUnit::Hard(n, variant) => {
                 let (number, cases) = &self.groups[n];
                 let judged = group(*number, cases, variant, rotation).into_diagnostic()?;
                 let boxes = boxes(!(unit as u64), rotation).into_diagnostic()?;
-                Ok(vec![(Origin::Hard, judged), (Origin::Boxes, boxes)])
+                Ok(vec![(UnitOrigin::Hard, judged), (UnitOrigin::Boxes, boxes)])
             }
-            Unit::Rounds(seed, variant) => {
+            VerifyUnit::Rounds(seed, variant) => {
                 let judge = |source| round(source, seed, variant, rotation).into_diagnostic();
                 let draw = self.variants.iter().position(|&known| known == variant);
                 let draw = draw.map_or(0, |at| seed.wrapping_mul(64).wrapping_add(at as u64));
                 Ok(vec![
-                    (Origin::Near, judge(Source::Near)?),
-                    (Origin::Random, judge(Source::Random)?),
-                    (Origin::Boxes, boxes(draw, rotation).into_diagnostic()?),
+                    (UnitOrigin::Near, judge(Source::Near)?),
+                    (UnitOrigin::Random, judge(Source::Random)?),
+                    (UnitOrigin::Boxes, boxes(draw, rotation).into_diagnostic()?),
                 ])
             }
-            Unit::Frames(n, number) => {
+            VerifyUnit::Frames(n, number) => {
                 let scene = self.scenes.get(n);
                 let scene = scene.ok_or_else(|| miette!("its scene was not read"))?;
                 let judged = block(scene, self.settings.frames, number, rotation)?;
-                Ok(vec![(Origin::Scene(n), judged)])
+                Ok(vec![(UnitOrigin::Scene(n), judged)])
             }
         }
     }
 
-    /// Takes a unit's result up: ledgers without failures, and which of them had some.
+    /// Reads a unit's result: ledgers without failures, and whether each had some.
     ///
     /// # Errors
-    /// Text that is no result of this unit.
-    pub fn take(&self, unit: usize, result: &str) -> miette::Result<Vec<(Origin, Ledger, bool)>> {
+    /// The text is not a result of this unit.
+    pub fn take(
+        &self,
+        unit: usize,
+        result: &str,
+    ) -> miette::Result<Vec<(UnitOrigin, Ledger, bool)>> {
         let texts: Vec<LedgerText> = serde_json::from_str(result).into_diagnostic()?;
         let origins = match self.unit(unit) {
-            Unit::Hard(..) => vec![Origin::Hard, Origin::Boxes],
-            Unit::Rounds(..) => vec![Origin::Near, Origin::Random, Origin::Boxes],
-            Unit::Frames(n, _) => vec![Origin::Scene(n)],
+            VerifyUnit::Hard(..) => vec![UnitOrigin::Hard, UnitOrigin::Boxes],
+            VerifyUnit::Rounds(..) => vec![UnitOrigin::Near, UnitOrigin::Random, UnitOrigin::Boxes],
+            VerifyUnit::Frames(n, _) => vec![UnitOrigin::Scene(n)],
         };
         let wrong = || miette!("the result of unit {unit} is none of `sdop verify`");
         if texts.len() != origins.len() {
@@ -277,16 +281,16 @@ impl Verification {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LedgerText {
-    /// Pairs that overlap, and which stage decided.
+    /// Number of pairs that overlap, and of those that each stage decided.
     predicates: [[u64; 4]; Predicate::ALL.len()],
     rows: Vec<(Strategy, Option<Overlap>, Count)>,
-    /// Lists judged, by a cell's place among all.
+    /// Lists judged, by the index of their cell.
     cells: Vec<(usize, u64)>,
-    /// Lists of given boxes and wrong pairs in them, by a cell's place among all of those.
+    /// Lists of given boxes and wrong pairs in them, by the index of their cell.
     boxes: Vec<(usize, [u64; 2])>,
     /// Pairs of given boxes that meet.
     box_pairs: u64,
-    /// How many are known in full to who did the unit.
+    /// Number of failures, which only the process that ran the unit has in full.
     failures: usize,
 }
 
@@ -306,12 +310,12 @@ impl Sweep for Verification {
     fn name(&self, unit: usize) -> String {
         let variant = |(k, axes): (DirectionSet, Axes)| format!("k = {k}, {axes} axes");
         match self.unit(unit) {
-            Unit::Hard(n, or_dop) => {
+            VerifyUnit::Hard(n, or_dop) => {
                 let name = &self.settings.groups[n];
                 format!("hard cases {name}, {}", variant(or_dop))
             }
-            Unit::Rounds(seed, or_dop) => format!("seed {seed}, {}", variant(or_dop)),
-            Unit::Frames(scene, block) => {
+            VerifyUnit::Rounds(seed, or_dop) => format!("seed {seed}, {}", variant(or_dop)),
+            VerifyUnit::Frames(scene, block) => {
                 let frames = frames_of(block, self.settings.frames);
                 let name = &self.settings.scenes[scene];
                 format!("{name}: frames {} to {}", frames.start, frames.end - 1)
@@ -325,14 +329,14 @@ impl Sweep for Verification {
         serde_json::to_string(&texts.collect::<Vec<_>>()).into_diagnostic()
     }
 
-    /// A block's frames are judged on all threads, since the answers of several blocks are too many
-    /// to hold.
+    /// A block's frames are judged on all threads, since the answers of several blocks would take
+    /// too much memory.
     fn alone(&self, unit: usize) -> bool {
-        matches!(self.unit(unit), Unit::Frames(..))
+        matches!(self.unit(unit), VerifyUnit::Frames(..))
     }
 
     fn starts(&self, unit: usize) -> bool {
-        let rounds = matches!(self.unit(unit), Unit::Rounds(..));
+        let rounds = matches!(self.unit(unit), VerifyUnit::Rounds(..));
         !rounds || self.deadline.is_none_or(|end| Instant::now() < end)
     }
 }

@@ -7,10 +7,10 @@ use sdop::volume::{Hull, Shape};
 /// of a frame.
 const LEVELS: [usize; 4] = [3000, 500, 120, 40];
 
-/// One shape, ready to be drawn.
+/// One shape, prepared for drawing.
 #[derive(Debug)]
 pub struct Drawn {
-    /// The finest first; none has as many triangles as the one before.
+    /// The finest first; each has fewer triangles than the one before.
     pub levels: Vec<TriangleMesh>,
     /// The convex hull's vertices, for boxes fitted to the posed body.
     pub hull: Vec<[f32; 3]>,

@@ -1,4 +1,4 @@
-//! The page's header: what a run is, and which blocks follow.
+//! The page's header: the facts about a run, and the list of blocks that follow.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use sdop::settings::{Interest, Strategy};
 use sdop_judge::Claim;
 use sdop_judge::record::{EffectLine, OrDopLine, RecordError};
 
-/// What the header calls itself.
+/// The format's name in the header.
 const FORMAT: &str = "sdop-view";
 /// The layout of header and blocks; `web/src/data.ts` has the same number.
 const VERSION: u32 = 1;
@@ -33,7 +33,7 @@ pub struct Header {
     pub shapes: Vec<ShapeHeader>,
     pub runs: Vec<RunHeader>,
     pub truth: bool,
-    /// What is said to meet.
+    /// The text that says what meets.
     pub meet: &'static str,
     /// Layers that are switched on at first.
     pub layers: Vec<&'static str>,
@@ -79,7 +79,7 @@ pub struct BlockHeader {
 }
 
 impl Header {
-    /// What is known before the frames are looked at.
+    /// The facts that are known without the frames.
     pub fn of(show: &Show) -> Self {
         let header = &show.header;
         let interest = match header
@@ -109,7 +109,7 @@ impl Header {
         }
     }
 
-    /// What is said of a record that can't be shown.
+    /// The header for a record that can't be shown.
     pub fn broken(path: &Path, error: &RecordError) -> Self {
         let name = file_name(path);
         Self {
@@ -123,7 +123,7 @@ impl Header {
     }
 }
 
-/// What meets, in the page's words, when a claim holds of a pair.
+/// The page's text for what meets if a claim holds for a pair.
 fn meet(claim: Claim) -> &'static str {
     match claim {
         Claim::Sphere => "bounding balls",
@@ -136,7 +136,7 @@ fn meet(claim: Claim) -> &'static str {
     }
 }
 
-/// The volumes that a claim is about, by their names in the page's address.
+/// The volumes of a claim, by their names in the page's address.
 fn layers(claim: Claim) -> Vec<&'static str> {
     match claim {
         Claim::Sphere => vec!["spheres"],

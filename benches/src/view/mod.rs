@@ -19,17 +19,17 @@ pub use show::{Culled, Focus, Show};
 use rayon::prelude::*;
 
 use crate::tradeoff::TradeoffError;
-use crate::tradeoff::truth::Judge;
+use crate::tradeoff::truth::ExactJudge;
 use sdop::bodies::Bodies;
 use sdop_judge::record::FrameLine;
 
-/// Has every frame know which meshes meet, in exact arithmetic; frames that know it already stay as
-/// they are. `done` is called once per frame, from any thread.
+/// Adds to every frame the pairs whose meshes meet, in exact arithmetic. Frames that have them stay
+/// unchanged. `done` is called once per frame, from any thread.
 ///
 /// # Errors
-/// Numbers that the exact reference refuses; none that a reader of records let through.
+/// The exact reference rejects a number, which never happens for a record that was read.
 pub fn decide_truth(show: &mut Show, done: impl Fn() + Sync) -> Result<(), TradeoffError> {
-    let judge = Judge::new(&show.shapes)?;
+    let judge = ExactJudge::new(&show.shapes)?;
     let bodies = &show.bodies;
     let decide = |frame: &mut FrameLine| -> Result<(), TradeoffError> {
         if frame.meets.is_none() {

@@ -23,22 +23,22 @@ use sdop_judge::record::{FrameLine, RecordError, ShapeLine};
 
 /// The page without data, as `web/build.mjs` makes it.
 const PAGE: &str = include_str!("web/dist/page.html");
-/// Where the data go.
+/// The place of the data.
 const MARK: &str = "<!--DATA-->";
 /// The longest block that a browser reads, in bytes: its base64 must be one string.
 const LONGEST: usize = 380 << 20;
 
-/// A page ready to be written.
+/// A page, ready to be written.
 #[derive(Debug)]
 pub struct Page {
     header: Header,
     blocks: Vec<Block>,
 }
 
-/// Why a page can't be made.
+/// The error of a page that can't be made.
 #[derive(Debug, Error, Diagnostic)]
 pub enum PageError {
-    /// More than a browser reads.
+    /// The data are larger than a browser can read.
     #[error("{name} of {frames} frames take {megabytes} MB, which no browser reads")]
     #[diagnostic(help("show fewer frames: --frames N"))]
     TooLarge {
@@ -49,11 +49,11 @@ pub enum PageError {
         /// Its size.
         megabytes: usize,
     },
-    /// Culling settings that can't be carried out.
+    /// The culling settings can't be carried out.
     #[error(transparent)]
     #[diagnostic(help("{}", .0.help()))]
     Cull(#[from] CullError),
-    /// Prices that can't be calibrated.
+    /// Prices can't be calibrated.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
@@ -70,7 +70,7 @@ impl Page {
     /// calibrated in it, and T is shown.
     ///
     /// # Errors
-    /// A run that is too large for a browser.
+    /// The run is too large for a browser.
     pub fn new(show: &Show, culled: &[Culled], tier: Option<Tier>) -> Result<Self, PageError> {
         let mut page = Self {
             header: Header::of(show),
@@ -98,7 +98,7 @@ impl Page {
         Ok(page)
     }
 
-    /// A page that says why a record can't be shown.
+    /// A page with the reason why a record can't be shown.
     #[must_use]
     pub fn broken(path: &Path, error: &RecordError) -> Self {
         Self {
@@ -110,7 +110,7 @@ impl Page {
     /// Writes the page.
     ///
     /// # Errors
-    /// What the writer says.
+    /// The writer fails.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let [before, after] = Self::around()?;
         out.write_all(before.as_bytes())?;
@@ -118,19 +118,19 @@ impl Page {
         out.write_all(after.as_bytes())
     }
 
-    /// What every page has before its data and after them.
+    /// The parts of every page before and after its data.
     ///
     /// # Errors
-    /// A page without a mark: none that is compiled in.
+    /// The page has no mark, which never happens for the built-in one.
     pub fn around() -> io::Result<[&'static str; 2]> {
         let parts = PAGE.split_once(MARK).map(<[_; 2]>::from);
         parts.ok_or_else(|| io::Error::other("the page has no mark"))
     }
 
-    /// Writes the data alone: elements of HTML.
+    /// Writes only the data, as elements of HTML.
     ///
     /// # Errors
-    /// What the writer says.
+    /// The writer fails.
     pub fn write_data(&self, out: &mut impl Write) -> io::Result<()> {
         // Nothing in the header may end its element: "<" is written as the escape that JSON has for
         // it.
@@ -154,7 +154,8 @@ impl Page {
         Ok(())
     }
 
-    /// Poses: of all bodies in the first frame, and in every frame of those that ever move.
+    /// The poses of all bodies in the first frame, and in every frame those of bodies that ever
+    /// move.
     fn put_poses(&mut self, show: &Show) -> Result<(), PageError> {
         let frames = &show.frames;
         let first = &frames[0].poses;
@@ -321,9 +322,9 @@ impl Page {
     }
 }
 
-/// A number that blocks are made of.
+/// The type of a block's numbers.
 trait Number: Copy {
-    /// What the page calls it.
+    /// Its name on the page.
     const TYPE: &'static str;
     fn put(self, bytes: &mut Vec<u8>);
 }

@@ -1,4 +1,4 @@
-//! Every pair of interest of every frame, with what is known of it.
+//! Every pair of interest of every frame, with its flags.
 
 use super::{Culled, Show};
 use sdop::culler::CullError;
@@ -17,15 +17,15 @@ pub struct Pairs {
     pub starts: Vec<usize>,
     /// Sorted within a frame.
     pub pairs: Vec<[u32; 2]>,
-    /// Per pair.
+    /// The flags of each pair.
     pub flags: Vec<u8>,
 }
 
 impl Pairs {
-    /// Joins what spheres, truth and strategies list.
+    /// Joins the pairs of spheres, truth and strategies.
     ///
     /// # Errors
-    /// None for a record that was read: the sphere strategy needs no settings.
+    /// Never for a record that was read: the sphere strategy needs no settings.
     pub fn join(show: &Show, culled: &[Culled]) -> Result<Self, CullError> {
         let spheres = show.spheres()?;
         let mut joined = Self::default();

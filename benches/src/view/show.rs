@@ -1,5 +1,5 @@
-//! What is to be shown, whatever it comes from: shapes, bodies, frames, and who reported which
-//! pairs.
+//! The run to be shown, independent of its source: shapes, bodies, frames, and the pairs that each
+//! strategy reported.
 
 use std::ops::Range;
 use std::path::Path;
@@ -20,7 +20,7 @@ use serde::Serialize;
 /// A run in memory.
 #[derive(Clone, Debug)]
 pub struct Show {
-    /// Where it comes from, as the page names it.
+    /// Its source, as the page names it.
     pub source: String,
     /// The first line of its record.
     pub header: Header,
@@ -30,13 +30,13 @@ pub struct Show {
     pub bodies: Bodies,
     /// The frames.
     pub frames: Vec<FrameLine>,
-    /// What `meets` says of a frame's pairs.
+    /// The claim that holds for the pairs in a frame's `meets`.
     pub claim: Claim,
-    /// The boxes that a case gives with each frame, where its claim is about them.
+    /// The boxes that a case gives with each frame, if its claim is about them.
     pub boxes: Option<Vec<Vec<WorldBox>>>,
     /// The missed pair that the page opens at.
     pub focus: Option<Focus>,
-    /// What the page has to say of them.
+    /// Messages to show on the page.
     pub messages: Vec<String>,
 }
 
@@ -54,24 +54,24 @@ pub struct Focus {
 /// The pairs that one strategy reported, frame by frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Culled {
-    /// What the page calls it.
+    /// Its name on the page.
     pub name: String,
-    /// How it culled, in words.
+    /// A description of how it culled.
     pub detail: String,
-    /// How it culled, where it was a strategy of this program.
+    /// Its settings, if it was a strategy of this program.
     pub settings: Option<CullSettings>,
     /// Sorted.
     pub pairs: Vec<Vec<[u32; 2]>>,
-    /// What was counted, with the same volumes in every frame.
+    /// The counters, with the same volumes in every frame.
     pub counters: Option<Vec<Vec<VolumeLine>>>,
 }
 
 impl Show {
-    /// Reads a record, or as many of its frames. With a record that is broken somewhere, the frames
-    /// before that are shown, the page says so, and the error is returned too.
+    /// Reads a record, or its first `frames` frames. If a record is broken, the frames before that
+    /// are shown with a message, and the error is returned, too.
     ///
     /// # Errors
-    /// A first line that can't be read.
+    /// The first line can't be read.
     pub fn record(
         path: &Path,
         most: Option<u32>,
@@ -145,10 +145,10 @@ impl Show {
         })
     }
 
-    /// Culls these poses, frame after frame, as hard cases have them.
+    /// Culls these poses, frame after frame, for hard cases.
     ///
     /// # Errors
-    /// Settings that can't be carried out.
+    /// The settings can't be carried out.
     pub fn poses(
         name: &str,
         source: &Path,
@@ -185,12 +185,12 @@ impl Show {
         Ok(show)
     }
 
-    /// A case of the judge, and the pairs that a program reported of each frame, sorted; none where
-    /// it wasn't asked. A pair meets when the claim holds of it. Of a case whose set of bodies
-    /// changes, the frames with one set: that of the first miss.
+    /// A case of the judge, and the pairs that a program reported in each frame, sorted; `None` if
+    /// no program was run. A pair meets if the claim holds for it. If the set of bodies changes,
+    /// only the frames with the set of the first miss are shown.
     ///
     /// # Errors
-    /// In words: no frames, numbers that the exact reference refuses.
+    /// A text: there are no frames, or the exact reference rejects a number.
     pub fn case(
         case: &Case,
         reported: Option<Vec<Vec<[u32; 2]>>>,
@@ -229,7 +229,7 @@ impl Show {
         let mut header = Header::new(&case.name, 0, &case.shapes, &bodies);
         header.program = Some("the program".to_owned());
         if !asked {
-            // Nobody was asked, so nothing is missed.
+            // No program was run, so nothing is missed.
             header.cull = Some(CullSettings {
                 strategy: Strategy::None,
                 ..CullSettings::default()
@@ -267,7 +267,7 @@ impl Show {
         })
     }
 
-    /// The pairs as the record has them.
+    /// The pairs of the record.
     #[must_use]
     pub fn recorded(&self) -> Culled {
         let settings = self.header.cull.clone();
@@ -292,7 +292,7 @@ impl Show {
     /// Culls the frames with these settings.
     ///
     /// # Errors
-    /// Settings that can't be carried out.
+    /// The settings can't be carried out.
     pub fn cull(&self, settings: &CullSettings, tier: Tier) -> Result<Culled, CullError> {
         let mut bodies = self.bodies.clone();
         if let Some(first) = self.frames.first() {
@@ -319,11 +319,11 @@ impl Show {
         })
     }
 
-    /// The same frames as culled by another: its record must have the same bodies in the same
+    /// The pairs of another record of the same frames, which must have the same bodies in the same
     /// poses.
     ///
     /// # Errors
-    /// The first difference, in words.
+    /// A text with the first difference.
     pub fn culled_by(&self, other: &Self) -> Result<Culled, String> {
         if self.header.bodies != other.header.bodies {
             return Err("its bodies are others".to_owned());
@@ -367,7 +367,7 @@ impl Show {
     }
 }
 
-/// The frames about one of them that have the same set of bodies.
+/// The frames around `frame` that have the same set of bodies.
 fn with_one_set(case: &Case, frame: usize) -> Range<usize> {
     let changes = |n: &usize| case.frames[*n].was.is_some();
     let all = case.frames.len();
@@ -383,7 +383,7 @@ pub(super) fn in_words(error: &RecordError) -> String {
     format!("{error}.{help}")
 }
 
-/// The counters of all frames; none where a frame lacks them or counts other volumes.
+/// The counters of all frames. `None` if a frame lacks them or counts other volumes.
 fn counters(frames: &[FrameLine]) -> Option<Vec<Vec<VolumeLine>>> {
     let all: Vec<Vec<VolumeLine>> = frames
         .iter()
@@ -414,7 +414,7 @@ fn detail(settings: &CullSettings) -> String {
     format!("pairs from {pairs}, k = {k}, {axes} axes, {overlap}")
 }
 
-/// A path's last part: the page goes to other machines.
+/// The last part of a path, since the page may be opened on other machines.
 pub(super) fn file_name(path: &Path) -> String {
     let name = path.file_name().unwrap_or(path.as_os_str());
     name.to_string_lossy().into_owned()

@@ -28,11 +28,10 @@ pub struct TermCourse {
     pub frames: Vec<[f64; 3]>,
 }
 
-/// Calibrates the prices of what `culled` tested, on this machine, for frames whose data are in the
-/// caches.
+/// Calibrates the prices of the volumes that `culled` tested, on this machine, for warm frames.
 ///
 /// # Errors
-/// Settings that can't be carried out.
+/// The settings can't be carried out.
 pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>, SimulationError> {
     let culls = |cull: &CullSettings| cull.strategy != Strategy::None;
     let Some(cull) = culled.settings.clone().filter(culls) else {
@@ -68,7 +67,7 @@ pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>
 }
 
 impl TermCourse {
-    /// T by its terms; none where the counters are of volumes that have no price.
+    /// T by its terms. `None` if a counted volume has no price.
     pub fn predict(show: &Show, culled: &Culled, prices: &Prices) -> Option<Self> {
         let counters = culled.counters.as_ref()?;
         let bodies = show.bodies.len();
@@ -89,7 +88,7 @@ impl TermCourse {
     }
 }
 
-/// The counters of a frame; none where a volume is none of ours.
+/// The counters of a frame. `None` if it has a volume that this program lacks.
 fn counts(lines: &[VolumeLine]) -> Option<Counts> {
     let mut counts = Counts::default();
     for VolumeLine { volume, counters } in lines {

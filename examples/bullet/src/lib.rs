@@ -1,5 +1,5 @@
-//! S-DOP culling between Bullet's broad phase and its narrow phase, and the proof by running:
-//! contacts judged, steps timed.
+//! S-DOP culling between Bullet's broad phase and its narrow phase, and a program that checks
+//! contacts and times steps.
 #![cfg(feature = "debian")]
 
 #[path = "../../rapier/src/forms.rs"]

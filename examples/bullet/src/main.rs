@@ -1,5 +1,5 @@
-//! Runs the proof: `sdop-bullet --scene pile --kind hull --bodies 500`. A dropped pair is a failure
-//! (exit code 1).
+//! Checks and times the filter: `sdop-bullet --scene pile --kind hull --bodies 500`. A dropped pair
+//! is a failure (exit code 1).
 
 use std::path::PathBuf;
 use std::process::ExitCode;

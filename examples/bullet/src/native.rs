@@ -128,8 +128,8 @@ impl Scene {
             triangles.as_ptr(),
             triangles.len(),
         );
-        // SAFETY: as many as said; the vectors' buffers stay where they are until the scene has
-        // ended.
+        // SAFETY: the counts are those of the vectors; the vectors' buffers stay where they are
+        // until the scene has ended.
         let shape = unsafe { scene_shape(self.scene, kind as u32, v, n, t, m) };
         let model = match kind {
             // SAFETY: a shape of this scene; arrays as above, read during the call; the scene isn't

@@ -13,7 +13,8 @@ use crate::stage::Stage;
 pub struct Study {
     /// Steps judged: sums.
     pub judged: Counts,
-    /// What timing nothing takes, in nanoseconds: it is in each of the judged times once.
+    /// The time of an empty measurement in nanoseconds, which each of the judged times includes
+    /// once.
     pub clock_ns: f64,
     /// Steps timed in turns, if they were.
     pub timed: Option<Timed>,
@@ -22,7 +23,7 @@ pub struct Study {
 /// Steps with and without the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timed {
-    /// As Bullet comes: processor time of the stepping thread, milliseconds a step.
+    /// Bullet without a filter: processor time of the stepping thread in milliseconds per step.
     pub plain_ms: f64,
     /// The same with the filter.
     pub filtered_ms: f64,
@@ -32,8 +33,8 @@ pub struct Timed {
     pub predicted: f64,
 }
 
-/// Steps the scene without the filter and puts each pair to it, with all margins taken times
-/// `share`.
+/// Steps the scene without the filter and compares the filter's verdict on each pair, with all
+/// margins multiplied by `share`.
 #[must_use]
 pub fn judge(plan: Plan, forms: &[TriangleMesh], steps: usize, share: f32) -> Counts {
     let mut stage = Stage::new(plan, forms, Mode::Judged, share);
@@ -91,7 +92,7 @@ fn cpu_ms() -> f64 {
     now.tv_sec as f64 * 1e3 + now.tv_nsec as f64 * 1e-6
 }
 
-/// The median of what timing nothing takes.
+/// The median time of an empty measurement.
 fn clock_ns() -> f64 {
     let mut times: Vec<_> = (0..10_000)
         .map(|_| std::time::Instant::now().elapsed().as_nanos())

@@ -1,5 +1,5 @@
-//! Bullet finds no contact that the filter would reject, the filter rejects something, and a margin
-//! that is left out is seen.
+//! Bullet finds no contact that the filter would reject, the filter rejects something, and a
+//! missing margin is detected.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -41,8 +41,9 @@ fn no_scene_loses_a_contact() {
     }
 }
 
+/// Margins that are left out are seen.
 #[test]
-fn margins_that_are_left_out_are_seen() {
+fn missing_margins_are_detected() {
     let dropped = |kind| {
         let plans = plans().filter(move |plan| plan.kind == kind);
         plans

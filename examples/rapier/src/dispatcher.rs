@@ -1,9 +1,9 @@
-//! The filter in rapier's query dispatcher: rapier calls it where its narrow phase begins, with two
-//! shapes, their relative pose and the distance up to which it wants contacts, so nothing has to be
-//! mirrored and nothing can be stale.
+//! The filter in rapier's query dispatcher. rapier calls it at the start of its narrow phase, with
+//! two shapes, their relative pose and the distance up to which it needs contacts, so nothing has
+//! to be copied and nothing can be out of date.
 //!
-//! Unlike a hook it leaves rapier's contact recycling on, and it isn't asked by continuous
-//! collision detection at all.
+//! Unlike a hook, it does not disable rapier's reuse of contacts. Continuous collision detection
+//! does not call it.
 
 use std::sync::{Arc, RwLock};
 
@@ -22,7 +22,7 @@ use super::rapier::parry::query::{
 use super::rapier::parry::shape::Shape;
 use super::volumes::{rounding, volume};
 
-/// Answers for pairs of known shapes that can't touch, and leaves all others to the next
+/// Answers for pairs of known shapes that can't touch, and passes all others to the next
 /// dispatcher: `NarrowPhase::with_query_dispatcher(culling.clone().chain(DefaultQueryDispatcher))`.
 /// Clones know the same shapes.
 #[derive(Clone)]
@@ -30,7 +30,7 @@ pub struct CullingDispatcher(Arc<RwLock<Known>>);
 
 struct Known {
     test: PairTest,
-    /// By address; holding the shape keeps the address its own.
+    /// By address. Holding the shape prevents the address from being reused.
     shapes: FxHashMap<usize, Entry>,
 }
 
@@ -53,8 +53,8 @@ impl Default for CullingDispatcher {
 }
 
 impl CullingDispatcher {
-    /// Makes a collider's shape known. Says whether its pairs can be filtered (see [`volume`]); if
-    /// not, they pass.
+    /// Adds a collider's shape. Returns whether its pairs can be filtered (see [`volume`]); if not,
+    /// they pass.
     pub fn add(&self, shape: &SharedShape) -> bool {
         let Ok(mut known) = self.0.write() else {
             return false;
@@ -117,8 +117,8 @@ impl CullingDispatcher {
     }
 }
 
-/// A new margin is as much larger than the one that called for it, and serves those down to it
-/// divided by its square.
+/// A new margin is this much larger than the one that required it, and serves margins down to
+/// itself divided by the square of this factor.
 const WIDER: f32 = 1.125;
 
 impl Known {

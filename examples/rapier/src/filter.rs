@@ -1,10 +1,10 @@
-//! The filter in rapier's hook: pairs that can't touch in this step don't reach the narrow phase.
+//! The filter in rapier's contact hook: pairs that can't touch in this step don't reach the narrow
+//! phase.
 //!
-//! Every collider that has a [`volume`] is a body of an sdop [`World`]; the rest passes unfiltered.
-//! A pair is rejected when the world's cull doesn't report it, and when both colliders still have
-//! the pose, shape, groups and margin that were culled. Otherwise all colliders are mirrored and
-//! culled again, then and there: so no teleport, no substep and no call that somebody forgot
-//! between hook and step can make a verdict stale.
+//! Every collider that has a [`volume`] is a body of an sdop [`World`]; others pass unfiltered. A
+//! pair is rejected if the world's cull doesn't report it and both colliders still have the pose,
+//! shape, groups and margin that were culled. Otherwise all colliders are copied and culled again
+//! immediately, so that no teleport, substep or forgotten call can make a verdict out of date.
 
 use std::collections::hash_map::Entry;
 use std::sync::{Arc, RwLock};
@@ -18,12 +18,12 @@ use super::rapier::prelude::*;
 use super::volumes::{Step, volume};
 use sdop::volume::Shape as Volume;
 
-/// What a collider must ask rapier for, so that its pairs are filtered. One of a pair's two is
+/// The hooks that a collider must have so that its pairs are filtered. One collider of a pair is
 /// enough.
 pub const HOOKS: ActiveHooks =
     ActiveHooks::FILTER_CONTACT_PAIRS.union(ActiveHooks::FILTER_INTERSECTION_PAIR);
 
-/// The filter, to be handed to each step as its hooks. With hooks of your own, ask
+/// The filter, to be passed to each step as its hooks. If you have hooks of your own, call
 /// [`Filter::may_touch`] in them.
 #[derive(Default)]
 pub struct Filter {
@@ -79,12 +79,12 @@ impl PhysicsHooks for Filter {
     }
 }
 
-/// Seconds that the filter took next to its look-ups.
+/// The filter's time apart from its look-ups.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
-    /// How often all colliders were mirrored and culled.
+    /// How often all colliders were copied and culled.
     pub culls: u64,
-    /// Taking colliders over.
+    /// Seconds of copying colliders.
     pub mirror: f64,
     /// Culling.
     pub cull: f64,

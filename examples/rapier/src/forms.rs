@@ -1,4 +1,4 @@
-//! What the bodies of all scenes look like, within a ball of radius ½.
+//! The shapes of bodies in all scenes, within a ball of radius ½.
 
 use std::path::Path;
 

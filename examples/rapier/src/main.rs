@@ -1,4 +1,4 @@
-//! Runs the proof: `sdop-rapier check` and `measure`.
+//! Checks and times the filter: `sdop-rapier check` and `measure`.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -31,8 +31,9 @@ fn check(plan: Plan, mode: Mode, steps: usize) -> [Check; 2] {
     [run(single::proof::check), run(double::proof::check)]
 }
 
+/// No scene loses a contact and few checks are left.
 #[test]
-fn no_scene_loses_a_contact_and_few_checks_are_left() {
+fn no_scene_loses_a_contact() {
     for &kind in Kind::ALL {
         for mode in FILTERED {
             let (mut checked, mut unfiltered) = (0, 0);
@@ -61,8 +62,9 @@ fn no_scene_loses_a_contact_and_few_checks_are_left() {
     }
 }
 
+/// The check sees margins left out and saves the pair.
 #[test]
-fn the_check_sees_margins_left_out_and_saves_the_pair() {
+fn check_detects_missing_margins() {
     let forms = forms();
     let plan = Plan {
         scene: Scene::Pile,

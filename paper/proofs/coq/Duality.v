@@ -28,7 +28,7 @@ Definition inside (k : kind) (s : slabs) (z : point) : Prop :=
   forall member, In member (members k) ->
     dot (direction member) z <= fst (s member) /\ - dot (direction member) z <= snd (s member).
 
-(* src/overlap/ordop/slabs.rs: Slabs::own, Slabs::pair, Slabs::cube, as RunOrDop.v has them. *)
+(* src/overlap/ordop/slabs.rs: LaneSlabs::own, LaneSlabs::pair, LaneSlabs::cube, as RunOrDop.v has them. *)
 Definition end_of (s : slabs) (member : nat) (opposite : bool) : R :=
   if opposite then snd (s member) else fst (s member).
 Definition pair (s : slabs) (member : nat) (x y : bool) : R :=

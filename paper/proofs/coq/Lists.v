@@ -260,7 +260,7 @@ Proof.
   clearbody rs m factor floor. unfold u in *. lra.
 Qed.
 
-(* src/broad_phase/neighbours/list.rs: Make::run. A ball as a list takes it: grown by the skin, or
+(* src/broad_phase/neighbours/list.rs: BuildList::run. A ball as a list takes it: grown by the skin, or
    where it is static by that of no share. *)
 Definition still : skin := {| share := 0; least := skin_floor |}.
 Definition skin_for (s : skin) (moves : bool) : skin := if moves then s else still.

@@ -13,7 +13,7 @@ Definition dot32 (a b : three f32) : f32 :=
     (mult32 (third a) (third b)).
 Definition half32 : f32 := number 1 (-1).
 
-(* src/overlap/ordop/slabs.rs: Slabs::own. Of each of the 13 directions, the end that it faces and the one
+(* src/overlap/ordop/slabs.rs: LaneSlabs::own. Of each of the 13 directions, the end that it faces and the one
    that its opposite faces. *)
 Definition slabs : Type := list (f32 * f32).
 Definition end_of (s : slabs) (member : nat) (opposite : bool) : f32 :=
@@ -69,7 +69,7 @@ Definition support (k : Z) (s : slabs) (e : three f32) : f32 :=
   else if k =? 18 then support_18 s signs size
   else support_26 s signs size.
 
-(* src/overlap/ordop/axes.rs: Frames::new. A row is the three axes, the translation and the offset. *)
+(* src/overlap/ordop/axes.rs: PairFrames::new. A row is the three axes, the translation and the offset. *)
 Record row := { axis_of_row : three (three f32); translation : three f32; offset : three f32 }.
 Record frames := { turn : three (three f32); gap_a : three f32; gap_b : three f32 }.
 Definition frames_of (a b : row) : frames :=

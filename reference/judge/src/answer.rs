@@ -1,4 +1,4 @@
-//! What a culler answers to a frame, and the ways in which an answer can be none.
+//! A culler's answer to a frame, and the ways in which an answer can be invalid.
 
 use super::case::Frame;
 
@@ -7,11 +7,11 @@ use super::case::Frame;
 pub struct Answer {
     /// The pairs as reported.
     pub pairs: Vec<[u32; 2]>,
-    /// The time that the culler says it took, in nanoseconds.
+    /// The culler's own time, in nanoseconds.
     pub ns: Option<u64>,
 }
 
-/// Why a case ended without an answer to be judged. None of these is a pass.
+/// Why a case ended without an answer to judge. None of these is a pass.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Trouble {
@@ -29,7 +29,7 @@ pub enum Trouble {
         /// The time that the case had.
         seconds: Seconds,
     },
-    /// All is answered, but the process goes on after the end of its input.
+    /// All frames were answered, but the process continues after the end of its input.
     #[error("answered, but did not end within {seconds:.1} s after the end of its input")]
     Hanging {
         /// The time that the case had.
@@ -45,7 +45,7 @@ pub enum Trouble {
         /// The end of what it wrote to standard error.
         said: String,
     },
-    /// It ended well, but before all was answered.
+    /// It ended with success, but before all frames were answered.
     #[error("ended after {answered} of {frames} frames{said}")]
     Early {
         /// Frames answered.
@@ -55,7 +55,7 @@ pub enum Trouble {
         /// The end of what it wrote to standard error.
         said: String,
     },
-    /// A line that is no answer.
+    /// A line is not an answer.
     #[error("frame {frame}: {why}: `{line}`")]
     Malformed {
         /// The frame that was to be answered.
@@ -65,7 +65,7 @@ pub enum Trouble {
         /// The beginning of the line.
         line: String,
     },
-    /// An answer to another frame than the next: twice, late or too early.
+    /// An answer is to another frame than the next one: twice, late or too early.
     #[error("the answer to frame {expected} is about frame {found}")]
     OutOfTurn {
         /// The next frame.
@@ -81,7 +81,7 @@ pub enum Trouble {
         /// The beginning of the line.
         line: String,
     },
-    /// More output than any right answer has.
+    /// The output is longer than any correct answer.
     #[error("floods its output: more than {bytes} bytes")]
     Flood {
         /// The limit.
@@ -135,14 +135,14 @@ impl std::fmt::Display for Seconds {
     }
 }
 
-/// Why a culler gave no answers.
+/// The reason why a culler gave no answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// It says that it can't do this case, and why, after some answers.
+    /// It skips this case, with a reason, after some answers.
     Skipped {
         /// The reason that it gives.
         why: String,
-        /// What it has answered before.
+        /// Its answers before.
         answered: Vec<Answer>,
     },
     /// It failed.
@@ -155,7 +155,7 @@ impl From<Trouble> for Stop {
     }
 }
 
-/// Sorts a frame's pairs and checks that they are pairs at all.
+/// Sorts a frame's pairs and checks that they are valid.
 ///
 /// # Errors
 /// A body that doesn't exist or is paired with itself, the larger number first, a pair twice.

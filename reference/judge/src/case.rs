@@ -1,4 +1,4 @@
-//! A case: shapes, and a few frames of bodies with the boxes that belong to them.
+//! A case: shapes, and a few frames of bodies with their boxes.
 
 use super::claim::Claim;
 use crate::contestant::{Filter, WorldBox};
@@ -14,8 +14,8 @@ pub struct Frame {
     pub bodies: Bodies,
     /// A box for each of them.
     pub boxes: Vec<WorldBox>,
-    /// When the set of bodies is another than in the frame before: each one's former number, `None`
-    /// for a new body.
+    /// If the set of bodies differs from the frame before: each body's former number, `None` for a
+    /// new body.
     pub was: Option<Vec<Option<u32>>>,
     /// Which pairs are not asked for, for the claim `filter`.
     pub filter: Option<Filter>,
@@ -115,7 +115,7 @@ pub struct Case {
     pub claim: Claim,
     /// All claims that it is about.
     pub claims: Vec<Claim>,
-    /// What the bodies look like.
+    /// The shapes of the bodies.
     pub shapes: Vec<Shape>,
     /// The frames, one process or culler for all of them.
     pub frames: Vec<Frame>,
@@ -172,7 +172,7 @@ pub fn matches(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) =
         (pattern.chars().collect(), name.chars().collect());
     let (mut p, mut n) = (0, 0);
-    // Where the last star stands, and how much of the name it has taken.
+    // The position of the last star, and the part of the name that it matches.
     let mut star: Option<(usize, usize)> = None;
     while n < name.len() {
         if p < pattern.len() && pattern[p] == '*' {

@@ -1,4 +1,4 @@
-//! What a culler claims never to miss.
+//! Claims: the pairs that a culler never misses.
 
 use sdop::choice::choices;
 

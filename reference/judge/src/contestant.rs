@@ -24,14 +24,14 @@ impl Filter {
     }
 }
 
-/// What stands in a comparison. It is made for a scene (its shapes and first bodies), then sees
-/// frame after frame: bodies, or whatever else all that are compared take, such as boxes alone.
+/// A culler in a comparison. It is built for a scene (its shapes and first bodies) and then gets
+/// frame after frame: bodies, or another input that all compared cullers use, such as boxes.
 pub trait Contestant<Frame: ?Sized = Bodies> {
     /// Finds the pairs of the frame. This alone is timed: from poses to a complete answer in the
     /// contestant's own memory.
     fn frame(&mut self, bodies: &Frame);
 
-    /// Books what the frame changed, for cullers that say only that. Not timed.
+    /// Applies the frame's changes, for cullers that report only changes. Not timed.
     fn settle(&mut self) {}
 
     /// The pairs i < j of the last frame, not both static, each once, in any order. Not timed.

@@ -1,4 +1,4 @@
-//! A counter-example in words: what meets, where, and how deep, in the scene's own unit of length.
+//! A counter-example as text: what meets, where, and how deep, in the scene's unit of length.
 
 use std::fmt;
 
@@ -19,7 +19,7 @@ impl Smallest {
             .then(|| pair.map(|body| boxes[body as usize]))
     }
 
-    /// Why the missed pair meets, a line each.
+    /// The reasons why the missed pair meets, one per line.
     #[must_use]
     pub fn reasons(&self) -> Vec<String> {
         let pair = self.miss.pair;
@@ -84,7 +84,7 @@ fn corners(ends: &WorldBox) -> String {
     format!("({}) to ({})", corner(0), corner(3))
 }
 
-/// How far two boxes overlap along an axis, in real arithmetic rounded once, and which of them ends
+/// The overlap of two boxes along an axis, in real arithmetic rounded once, and which of them ends
 /// there.
 struct Along {
     axis: usize,

@@ -1,4 +1,4 @@
-//! Any culler, in any language, against the exact reference.
+//! Judges any culler, in any language, by the exact reference.
 //!
 //! A culler states a [`Claim`]: what it never misses. The [`catalogue`] has the cases for it; a
 //! [`subject`] answers them, be it a Rust type ([`judge`]) or a program ([`process`], over a

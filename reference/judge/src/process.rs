@@ -1,6 +1,6 @@
-//! A program under judgement: fed on standard input, read from standard output, never waited for
-//! longer than it may take and never read further than any right answer goes. It has one process
-//! per case, or, as a [`Service`], processes that answer one case after the other.
+//! A judged program: it reads standard input and writes standard output. The judge waits no longer
+//! than the time limit, and reads no more than the longest correct answer. It has one process per
+//! case, or, as a [`Service`], processes that answer one case after the other.
 
 use std::io::{Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -27,9 +27,9 @@ pub struct Program {
 
 /// How much is read at a time.
 const CHUNK: usize = 1 << 16;
-/// What is kept of standard error.
+/// Bytes of standard error that are kept.
 const SAID: usize = 400;
-/// Output that any program may make beyond its pairs.
+/// Bytes that a program may write in addition to its pairs.
 const CHATTER: usize = 1 << 16;
 
 impl Program {
@@ -117,7 +117,7 @@ impl Running {
         let (send, output) = sync_channel(4);
         let ((say, said), (feed, fed)) = (channel(), channel::<Vec<u8>>());
         if let Some(mut stdin) = child.stdin.take() {
-            // A program that doesn't read to the end has its reasons; what it answers is judged.
+            // A program need not read to the end; its answers are judged.
             thread::spawn(move || fed.iter().try_for_each(|case| stdin.write_all(&case)));
         }
         if let Some(mut stdout) = child.stdout.take() {
@@ -279,7 +279,7 @@ impl Drop for Running {
     }
 }
 
-/// Why there is no line.
+/// The reason why there is no line.
 enum Unread {
     Late,
     Flood,
@@ -300,7 +300,7 @@ fn shell(command: &str) -> Command {
     shell
 }
 
-/// More than any right answer to a case has: 24 bytes hold a pair.
+/// More bytes than any correct answer to a case: 24 bytes hold a pair.
 fn most_bytes(case: &Case) -> usize {
     let pairs = |n: usize| n * n.saturating_sub(1) / 2;
     let frames = case

@@ -1,4 +1,4 @@
-//! Runs a culler over the cases of its claim.
+//! Runs a culler on the cases of its claim.
 
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,7 +17,7 @@ use super::verdict::{CaseVerdict, Verdict};
 use crate::contestant::Contestant;
 use crate::ours::judged::InvalidInput;
 
-/// Why nothing could be judged.
+/// The error if nothing could be judged.
 #[derive(Debug, thiserror::Error)]
 pub enum JudgeError {
     /// A case that can't be drawn.
@@ -46,7 +46,7 @@ pub enum JudgeError {
     },
 }
 
-/// Cases after which a program that could not be started for any of them is given up.
+/// A program that could not be started for this number of cases is given up.
 const STARTS: usize = 3;
 
 /// What is run.
@@ -58,15 +58,15 @@ pub struct Options {
     pub pattern: String,
     /// Fresh cases of this seed on top of the published ones.
     pub seed: Option<u64>,
-    /// Start no case after so long.
+    /// No case starts after this time.
     pub time: Option<Duration>,
-    /// Start no case after a failure.
+    /// No case starts after a failure.
     pub fail_fast: bool,
     /// The most extra pairs for each required one.
     pub extra_limit: Option<f64>,
     /// Cases that are known to fail.
     pub known: BTreeSet<String>,
-    /// How long a failing case is made smaller.
+    /// The time for reducing a failing case.
     pub shrink_time: Duration,
 }
 
@@ -85,7 +85,7 @@ impl Default for Options {
     }
 }
 
-/// A culler's trial being prepared; [`judge`] begins one.
+/// A culler's trial in preparation; [`judge`] begins one.
 pub struct Judge<S> {
     subject: S,
     options: Options,
@@ -113,14 +113,14 @@ where
 }
 
 impl<S: Subject> Judge<S> {
-    /// What the culler claims never to miss; meshes, unless said otherwise.
+    /// The culler's claim. The default is meshes.
     #[must_use]
     pub fn claims(mut self, claim: Claim) -> Self {
         self.options.claim = claim;
         self
     }
 
-    /// The cases of these names: `*` stands for any text, `?` for one character.
+    /// Only cases with these names: `*` matches any text, `?` one character.
     #[must_use]
     pub fn cases(mut self, pattern: &str) -> Self {
         pattern.clone_into(&mut self.options.pattern);
@@ -149,12 +149,12 @@ impl<S: Subject> Judge<S> {
         examine(&self.subject, &self.options, |_, _| {})
     }
 
-    /// As [`Judge::assert`], but content when the claim has no such case, or when the culler skips
-    /// all of them because its set of bodies can't change; the verdict is then printed as
+    /// As [`Judge::assert`], but it doesn't panic if the claim has no such case, or if the culler
+    /// skips all of them because its set of bodies can't change; the verdict is then printed as
     /// incomplete.
     ///
     /// # Panics
-    /// When the verdict is no pass.
+    /// Panics if the verdict is no pass.
     pub fn assert_if_any(&self) {
         match self.run() {
             Err(JudgeError::NoCase { .. }) => {}
@@ -164,10 +164,10 @@ impl<S: Subject> Judge<S> {
         }
     }
 
-    /// Runs the cases and panics unless the verdict is a pass: what a test calls.
+    /// Runs the cases and panics unless the verdict is a pass, for use in a test.
     ///
     /// # Panics
-    /// When the verdict is no pass, or there is no such case.
+    /// Panics if the verdict is no pass, or if there is no such case.
     pub fn assert(&self) {
         match self.run() {
             Ok(verdict) => verdict.assert_passed(),
@@ -205,7 +205,7 @@ pub fn examine(
             return Ok(None);
         }
         let case = id.case()?;
-        // Every group's first case runs twice: the same input has the same answer.
+        // Every group's first case runs twice: equal input must have equal answers.
         let judged = judge_case(subject, &case, id.number == 0)?;
         let verdict = line(&case, &judged, &options.known);
         let failed = matches!(
@@ -222,7 +222,7 @@ pub fn examine(
     let (first, rest) = jobs.split_at(jobs.len().min(STARTS));
     let mut ran: Vec<Option<(Case, CaseVerdict)>> =
         first.par_iter().map(run).collect::<Result<_, _>>()?;
-    // A program that can't start here can't start anywhere.
+    // A program that can't start for these cases can't start for others.
     let starts = |one: &Option<(Case, CaseVerdict)>| {
         one.as_ref()
             .is_none_or(|(_, verdict)| !verdict.is_without_start())
@@ -257,7 +257,7 @@ fn conclude(
 ) -> Verdict {
     let not_run = ran.iter().filter(|one| one.is_none()).count();
     let ran: Vec<(Case, CaseVerdict)> = ran.into_iter().flatten().collect();
-    // The case with the fewest pairs has the shortest way to a small one.
+    // The case with the fewest pairs is the fastest to reduce.
     let missed = ran
         .iter()
         .filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);

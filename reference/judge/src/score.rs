@@ -1,4 +1,4 @@
-//! One case judged: what was missed, what was reported on top, and why.
+//! Judges one case: missed pairs, additional pairs, and their causes.
 
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ pub struct Count {
     pub judged: u64,
     /// Pairs of which the claim holds.
     pub required: u64,
-    /// Of those, not reported: the claim broken.
+    /// Of those, not reported: the claim is broken.
     pub missed: u64,
     /// Reported although the claim doesn't hold, in all.
     pub extra: u64,
@@ -43,7 +43,7 @@ impl Count {
         self.both_static += other.both_static;
     }
 
-    /// Extra pairs without a cause that anyone would state.
+    /// Extra pairs without a known cause.
     #[must_use]
     pub fn unexplained(&self) -> u64 {
         self.extra - self.by_rounding - self.by_looseness - self.both_static
@@ -61,12 +61,12 @@ pub enum Outcome {
         /// What is wrong, in a sentence.
         why: String,
     },
-    /// Not judged, and why.
+    /// Not judged, with the reason.
     Skipped {
         /// The reason that was given.
         why: String,
     },
-    /// No answer that could be judged.
+    /// There is no answer to judge.
     Error {
         /// What happened.
         trouble: Trouble,
@@ -199,7 +199,7 @@ fn not_restored(case: &Case, lists: &[Vec<[u32; 2]>]) -> Option<usize> {
     None
 }
 
-/// What a case without all answers is. A wrong answer counts, also if the rest of the case is
+/// The result of a case without all answers. A wrong answer counts, also if the rest of the case is
 /// skipped.
 fn stopped(case: &Case, stop: Stop) -> Result<Judged, InvalidInput> {
     let (why, answered) = match stop {
@@ -217,7 +217,7 @@ fn stopped(case: &Case, stop: Stop) -> Result<Judged, InvalidInput> {
     })
 }
 
-/// Judges answers that are there already.
+/// Judges given answers.
 ///
 /// # Errors
 /// A case that the reference refuses.

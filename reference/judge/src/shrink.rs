@@ -11,17 +11,17 @@ use super::witness::Witness;
 use sdop::mesh::TriangleMesh;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 
-/// What a counter-example's files, and the case in them, are called.
+/// The name of a counter-example's files, and of the case in them.
 pub const STEM: &str = "missed-pair";
 
 /// A small case that shows a missed pair.
 #[derive(Clone, Debug)]
 pub struct Smallest {
-    /// The name of the case that it was made from.
+    /// The name of the case from which it was reduced.
     pub from: String,
-    /// The case, under a name of its own.
+    /// The case, under a new name.
     pub case: Case,
-    /// What is reported of it, frame by frame, sorted.
+    /// The reported pairs, frame by frame, sorted.
     pub pairs: Vec<Vec<[u32; 2]>>,
     /// What is missed.
     pub miss: Miss,
@@ -103,7 +103,7 @@ impl Search<'_> {
         true
     }
 
-    /// The frame of the miss alone, or without as many of the others as can be.
+    /// Keeps only the frame of the miss, or removes as many others as possible.
     fn fewer_frames(&mut self) {
         let with = |case: &Case, kept: &[usize]| Case {
             frames: kept
@@ -135,7 +135,7 @@ impl Search<'_> {
         }
     }
 
-    /// The pair alone, or without as many of the others as can be, half of them at a time.
+    /// Keeps only the pair, or removes as many other bodies as possible, half of them at a time.
     fn fewer_bodies(&mut self) {
         if self.case.frames.iter().any(|frame| frame.was.is_some()) {
             return;
@@ -162,7 +162,7 @@ impl Search<'_> {
         }
     }
 
-    /// Without shapes that no body has.
+    /// Removes shapes that no body uses.
     fn fewer_shapes(&mut self) {
         let mut case = self.case.clone();
         let used = |shape: u32| {
@@ -256,7 +256,7 @@ impl Search<'_> {
     }
 }
 
-/// A number with so many binary digits; none is zero.
+/// A number with this number of binary digits; 0 digits give zero.
 fn rounded(x: f32, digits: u32) -> f32 {
     match digits {
         0 => 0.0,

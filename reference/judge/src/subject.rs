@@ -1,4 +1,4 @@
-//! Who is judged: a Rust culler, a test of single pairs, or (in [`super::process`]) a program.
+//! The judged culler: a Rust type, a test of single pairs, or (in [`super::process`]) a program.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -9,12 +9,12 @@ use crate::contestant::{Contestant, WorldBox};
 use sdop::bodies::Bodies;
 use sdop::volume::Shape;
 
-/// What a culler is made for: the first frame of a case.
+/// The input of a culler's constructor: the first frame of a case.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
-    /// What it is judged by.
+    /// The claim by which it is judged.
     pub claim: Claim,
-    /// What the bodies look like.
+    /// The shapes of the bodies.
     pub shapes: &'a [Shape],
     /// The bodies of the first frame.
     pub bodies: &'a Bodies,
@@ -24,10 +24,10 @@ pub struct Scene<'a> {
 
 /// Answers cases.
 pub trait Subject: Sync {
-    /// One answer a frame.
+    /// One answer per frame.
     ///
     /// # Errors
-    /// A case that it skips, or its failure.
+    /// It skips the case, or fails.
     fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop>;
 }
 

@@ -99,7 +99,7 @@ impl Mesh {
     }
 }
 
-/// Union–find: for each vertex the one that stands for its component.
+/// Union–find: for each vertex the representative of its component.
 fn roots(vertices: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
     fn find(parent: &mut [u32], mut v: u32) -> u32 {
         while parent[v as usize] != v {
@@ -156,8 +156,9 @@ mod tests {
             .collect()
     }
 
+    /// Closed is two faces an edge in every component.
     #[test]
-    fn closed_is_two_faces_an_edge_in_every_component() {
+    fn closed_needs_two_faces_per_edge() {
         assert_eq!(closed(&TETRAHEDRON), [true]);
         assert_eq!(closed(&TETRAHEDRON[..3]), [false]);
         let two = [&TETRAHEDRON[..], &[[5, 6, 7]]].concat();

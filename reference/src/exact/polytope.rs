@@ -294,8 +294,9 @@ mod tests {
         .unwrap()
     }
 
+    /// Corners and edge lines are those of the solids.
     #[test]
-    fn corners_and_edge_lines_are_those_of_the_solids() {
+    fn polytopes_are_known_solids() {
         // Cube, truncated octahedron, chamfered cube, truncated cuboctahedron.
         let counts = DirectionSet::ALL.map(|k| {
             let polytope = regular(k);

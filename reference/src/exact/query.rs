@@ -225,8 +225,9 @@ mod tests {
 
     const CORNERS: [Vector<f64>; 2] = [[-1.0; 3], [1.0; 3]];
 
+    /// Balls meet cubes from without and within.
     #[test]
-    fn balls_meet_cubes_from_without_and_within() {
+    fn balls_meet_cubes() {
         let (whole, face) = (cube(true), cube(false));
         let pose = Pose::IDENTITY;
         for (centre, radius, meets_whole, meets_face) in [
@@ -246,8 +247,9 @@ mod tests {
         }
     }
 
+    /// Lines meet cubes first where they enter.
     #[test]
-    fn lines_meet_cubes_first_where_they_enter() {
+    fn lines_enter_cubes() {
         let (whole, face) = (cube(true), cube(false));
         let pose = Pose::IDENTITY;
         let segment = ExactLine::segment;

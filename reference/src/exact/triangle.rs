@@ -149,8 +149,9 @@ pub fn crossing<S: Side>(
 mod tests {
     use super::*;
 
+    /// Segments that touch the border do not count.
     #[test]
-    fn segments_that_touch_the_border_do_not_count() {
+    fn border_touching_segments_are_undecided() {
         let point = |p: [i32; 3]| p.map(IBig::from);
         let t = [[0, 0, 0], [4, 0, 0], [0, 4, 0]].map(point);
         let crossing = |p, q| crossing(&Known::stage(), [&point(p), &point(q)], &t);

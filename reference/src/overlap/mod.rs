@@ -1,4 +1,5 @@
-//! Do the volumes of two posed bodies overlap? Plain f64, one file per volume; touching is overlap.
+//! Whether the volumes of two posed bodies overlap, in plain f64, one file per volume. Touching
+//! counts.
 //!
 //! Convex volumes are compared by the separating axis theorem: along an axis a, the sets A and B
 //! are apart iff max a·A < min a·B or the other way round.

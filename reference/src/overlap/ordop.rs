@@ -1,5 +1,5 @@
 //! or-DOP against or-DOP: slabs fixed in each body, compared along the normals of one or both and,
-//! in full, along every edge × edge axis (design, section 2).
+//! in full, along every edge × edge axis.
 //!
 //! The paper's "interval pairs in local space" is [`Overlap::OneSided`]: B's extent along A's
 //! normals. The extent is that of B's corners. B's own interval with the same index would be along
@@ -11,7 +11,7 @@ use crate::linear::{Vector, add, apply, cross};
 use crate::pose::{Pose, separation};
 use crate::shape::Body;
 
-/// Which axes the or-DOP test looks along.
+/// Which separating axes the or-DOP test tries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Overlap {
     /// A's normals, A being the body of lower index.
@@ -27,7 +27,7 @@ impl Overlap {
     pub const ALL: [Self; 3] = [Self::OneSided, Self::TwoSided, Self::Full];
 }
 
-/// A polytope under a rotation, its position aside.
+/// A polytope under a rotation, without its position.
 #[derive(Clone, Debug)]
 pub struct TurnedPolytope {
     /// Corners, world axes, seen from the body's origin.

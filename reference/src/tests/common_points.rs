@@ -51,8 +51,9 @@ fn body(shape: &Shape, pose: Pose) -> Body<'_> {
     }
 }
 
+/// There is a common point whenever bodies meet and it is in both.
 #[test]
-fn there_is_a_common_point_whenever_bodies_meet_and_it_is_in_both() {
+fn meeting_bodies_have_common_points() {
     let half = [0.5, 0.3, 0.9];
     let shapes = [
         shape(cuboid(half), DirectionSet::K18, exact_basis([1, 2, -3, 5])),
@@ -94,8 +95,9 @@ fn there_is_a_common_point_whenever_bodies_meet_and_it_is_in_both() {
     );
 }
 
+/// Bodies that touch in a corner an edge or a face share a point there.
 #[test]
-fn bodies_that_touch_in_a_corner_an_edge_or_a_face_share_a_point_there() {
+fn touching_bodies_share_the_contact_point() {
     let cube = shape(
         cuboid([1.0; 3]),
         DirectionSet::K6,

@@ -67,7 +67,7 @@ fn grid_triangles_agree_with_rational_axes() {
 
 /// The same grid contacts where f64 cannot represent a single mapped corner.
 #[test]
-fn grid_triangles_keep_their_contacts_when_turned() {
+fn turned_triangles_keep_contacts() {
     let mut draws = Draws(37);
     let (mut met, mut paths) = (0, Tally::default());
     for _ in 0..4000 {
@@ -206,8 +206,9 @@ fn inside_needs_a_closed_component() {
     );
 }
 
+/// Collapsed faces do not confuse the parity.
 #[test]
-fn collapsed_faces_do_not_confuse_the_parity() {
+fn collapsed_faces_keep_the_parity() {
     // A box whose faces carry zero-area slivers, and about it a closed pair of faces that are one
     // point; queried from many points inside and out.
     let (mut vertices, mut triangles) = cuboid([1.0; 3]);

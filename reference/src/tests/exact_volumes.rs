@@ -37,8 +37,9 @@ fn ball(draws: &mut Draws, case: &Case) -> Ball {
     }
 }
 
+/// Spheres agree with rationals and between stages.
 #[test]
-fn spheres_agree_with_rationals_and_between_stages() {
+fn spheres_agree_with_rationals() {
     let mut draws = Draws(7);
     let mut tally = Tally::default();
     let mut silent = 0;
@@ -197,8 +198,9 @@ fn stages_agree(a: Posed, b: Posed) {
     }
 }
 
+/// Polytopes agree with rational axes and prove it.
 #[test]
-fn polytopes_agree_with_rational_axes_and_prove_it() {
+fn polytopes_agree_with_rational_axes() {
     let mut draws = Draws(11);
     let (mut full, mut sided, mut met) = (Tally::default(), Tally::default(), 0);
     for n in 0..800 {
@@ -260,8 +262,9 @@ fn polytopes_agree_with_rational_axes_and_prove_it() {
     );
 }
 
+/// Certificates that do not hold are refused.
 #[test]
-fn certificates_that_do_not_hold_are_refused() {
+fn invalid_certificates_are_rejected() {
     let cube = |half: f32| {
         let (lo, hi) = (vec![-half; 3], vec![half; 3]);
         let basis = exact_basis([0, 0, 0, 1]);

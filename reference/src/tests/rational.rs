@@ -133,8 +133,8 @@ pub fn triangles_meet(a: &[Rational3; 3], b: &[Rational3; 3]) -> bool {
     if normals.iter().any(&apart) {
         return false;
     }
-    // Perpendicular to a line and as near as may be to a difference: what tells a segment from a
-    // point next to it.
+    // Perpendicular to a line and as near as possible to a difference: it separates a segment from
+    // a point next to it.
     let beside: Vec<Rational3> = lines
         .iter()
         .flat_map(|l| between.iter().map(|d| cross(&cross(l, d), l)))

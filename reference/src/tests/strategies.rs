@@ -110,7 +110,7 @@ fn unrotated_intervals_are_not_compared() {
 /// Two unit cubes at random orientations, centres uniform where the spheres overlap: analytic P =
 /// .505 for exact boxes.
 #[test]
-fn cubes_survive_the_sphere_test_as_often_as_the_integral_says() {
+fn cube_survival_matches_the_integral() {
     let cube = shape(
         cuboid([1.0; 3]),
         DirectionSet::K6,

@@ -1,4 +1,4 @@
-//! What the contract asks of shapes and poses.
+//! The contract's checks of shapes and poses.
 
 use std::ops::Range;
 
@@ -16,11 +16,11 @@ const ROTATION_HELP: &str = "a quaternion (x, y, z, w) has a finite norm above z
 /// How to mend a vector.
 const VECTOR_HELP: &str = "coordinates are finite and at most 2^60 in size";
 
-/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, a shape that exists and is no
-/// larger than 2⁶⁰, no more than [`MOST_BODIES`](super::MOST_BODIES).
+/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, and a shape that exists and is
+/// at most 2⁶⁰ in size; and that there are at most [`MOST_BODIES`](super::MOST_BODIES).
 ///
 /// # Errors
-/// A body that breaks it, the first in the first column at fault; columns of unequal length.
+/// The first body that breaks it, in the first invalid column; columns of unequal length.
 pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractError> {
     check_columns(bodies)?;
     let sound: Vec<bool> = shapes.iter().map(has_sound_size).collect();
@@ -32,7 +32,7 @@ pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractErr
     check_poses(bodies, 0..bodies.len())
 }
 
-/// Checks that the shape of every body is one of so many.
+/// Checks that every body's shape number is below `shapes`.
 pub(crate) fn check_numbers(numbers: &[u32], shapes: usize) -> Result<(), ContractError> {
     match numbers.iter().position(|&number| number as usize >= shapes) {
         None => Ok(()),
@@ -45,7 +45,7 @@ fn refuse_number(body: usize, number: u32, shapes: usize) -> Result<(), Contract
     refuse(body, "shape", value, "shapes are counted from 0")
 }
 
-/// Checks that a body's shape exists and is no larger than 2⁶⁰.
+/// Checks that a body's shape exists and is at most 2⁶⁰ in size.
 pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<(), ContractError> {
     let Some(shape) = shapes.get(number as usize) else {
         return refuse_number(body, number, shapes.len());
@@ -72,7 +72,7 @@ pub fn check_pose(body: usize, q: &[f32; 4], t: &[f64; 3]) -> Result<(), Contrac
     Ok(())
 }
 
-/// Checks the poses of the bodies `range`: what an effects step may have changed.
+/// Checks the poses of the bodies in `range`, after a step may have changed them.
 #[doc(hidden)]
 pub fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractError> {
     let first = range.start;
@@ -89,8 +89,8 @@ pub fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractE
 
 /// Whether all coordinates of a column are at most 2⁶⁰ in size.
 fn are_within_limit(column: &[[f32; 3]]) -> bool {
-    // Without an early exit, so that the compiler makes vectors of it: a column that fails is the
-    // last one.
+    // Without an early exit, so that the compiler vectorises it. Only one column ever fails,
+    // because culling ends there.
     column
         .as_flattened()
         .iter()
@@ -98,7 +98,8 @@ fn are_within_limit(column: &[[f32; 3]]) -> bool {
         <= size(LIMIT)
 }
 
-/// Checks that every column has one entry a body, and that so many bodies can be numbered.
+/// Checks that every column has one entry per body, and that there are at most
+/// [`MOST_BODIES`](super::MOST_BODIES).
 pub(crate) fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
     check_number(bodies.len())?;
     for (name, length) in [
@@ -111,7 +112,7 @@ pub(crate) fn check_columns(bodies: &Bodies) -> Result<(), ContractError> {
     Ok(())
 }
 
-/// Checks that the coordinates of a column are at most 2⁶⁰ in size; its first entry is that of the
+/// Checks that the coordinates of a column are at most 2⁶⁰ in size. Its first entry belongs to the
 /// body `first`.
 #[doc(hidden)]
 pub fn check_vectors(
@@ -126,17 +127,17 @@ pub fn check_vectors(
     refuse(first + at, name, format!("{:?}", column[at]), VECTOR_HELP)
 }
 
-// All limits are written as `x ≤ limit`, and what isn't so is refused: a NaN fails.
+// All limits are written as `x ≤ limit`, so that a NaN fails.
 
-/// A number's size: its bits without the sign. They are in the order of sizes, and those of NaN
-/// above all.
+/// A number's size as an integer: its bits without the sign. They order as sizes do, with NaN above
+/// all.
 #[inline(always)]
 fn size(number: f32) -> u32 {
     number.to_bits() & !(1 << 31)
 }
 
 pub(crate) fn has_sound_size(shape: &Shape) -> bool {
-    // The reach bounds the ball's centre and radius; a NaN in them it does not.
+    // The reach bounds the ball's centre and radius, but does not exclude a NaN in them.
     [
         shape.reach,
         shape.ball.radius,
@@ -151,8 +152,8 @@ pub(crate) fn is_within_limit(v: &[f32; 3]) -> bool {
     v.iter().all(|&x| size(x) <= size(LIMIT))
 }
 
-/// Whether the centres of all balls are within 2⁶⁰, and their radii finite. A function of its own,
-/// of which callgrind shows what the check costs (`.ci/instructions`).
+/// Whether the centres of all balls are within 2⁶⁰, and their radii finite. It is not inlined, so
+/// that callgrind shows its cost (`.ci/instructions`).
 #[inline(never)]
 pub(crate) fn balls_are_within_limit(tier: Tier, balls: &[[f32; 4]]) -> bool {
     dispatch(tier, BallsWithinLimit(balls))
@@ -160,15 +161,15 @@ pub(crate) fn balls_are_within_limit(tier: Tier, balls: &[[f32; 4]]) -> bool {
 
 struct BallsWithinLimit<'a>(&'a [[f32; 4]]);
 
-/// Numbers that are looked at together: some vectors of any tier, so that what a loop takes by
-/// itself is little compared with them.
+/// Numbers checked per step of the loop: several vectors in every tier, so that the loop itself
+/// costs little.
 const NUMBERS_PER_CHECK: usize = 64;
 
 impl Kernel for BallsWithinLimit<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) -> bool {
-        // The largest of each column, for two instructions a vector.
+        // The largest of each column, at two instructions per vector.
         let mut largest = [0; NUMBERS_PER_CHECK];
         let (many, rest) = self.0.as_flattened().as_chunks::<NUMBERS_PER_CHECK>();
         for numbers in many {
@@ -202,7 +203,7 @@ fn is_invertible(q: &[f32; 4]) -> bool {
 mod tests {
     use super::*;
 
-    /// No coordinates: an ulp beyond the limit, and more.
+    /// Invalid coordinates: one ulp beyond the limit, and further.
     const BEYOND_LIMIT: [f32; 5] = [
         LIMIT.next_up(),
         -LIMIT.next_up(),
@@ -211,8 +212,9 @@ mod tests {
         -f32::NAN,
     ];
 
+    /// Coordinates are refused for an ulp beyond the limit.
     #[test]
-    fn coordinates_are_refused_for_an_ulp_beyond_the_limit() {
+    fn coordinates_beyond_limit_are_rejected() {
         for count in [1, 2, 40] {
             let fine = vec![[LIMIT, -LIMIT, -0.0]; count];
             assert_eq!(check_vectors("translation", &fine, 7), Ok(()));
@@ -228,8 +230,9 @@ mod tests {
         }
     }
 
+    /// Balls are refused in every lane for an ulp beyond the limit.
     #[test]
-    fn balls_are_refused_in_every_lane_for_an_ulp_beyond_the_limit() {
+    fn balls_beyond_limit_are_rejected() {
         for tier in Tier::available() {
             for count in [0, 1, 16, 17, 50] {
                 let fine = vec![[LIMIT, -LIMIT, 0.0, f32::MAX]; count];

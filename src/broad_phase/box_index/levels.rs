@@ -1,5 +1,5 @@
-//! Sizes of boxes and of cells: boxes of about one size share a level, whose cells are twice as
-//! wide as the widest of them.
+//! Sizes of boxes and of cells: boxes of similar size share a level, whose cells are twice as wide
+//! as the widest of them.
 //!
 //! A box is in the cell of its lower corner. Let b be a level's bound, no less than any side of its
 //! boxes, and q a box. A box t of the level that meets q has q.min − b ≤ t.min ≤ q.max on each
@@ -9,35 +9,34 @@
 
 use crate::bodies::Aabb;
 
-/// Quantiles of a sample of boxes: so many of them are drawn, and so many are smaller than the one
-/// in question.
+/// The number of boxes that are drawn to estimate quantiles of sizes.
 const SAMPLE_SIZE: usize = 256;
 const USUAL_RANK: usize = 192;
 
-/// Boxes of one size differ by what rounding makes of their ends.
+/// Boxes of one size differ by the rounding of their ends.
 const UNIT_SLACK: f64 = 1.0 + 1.0 / (1 << 10) as f64;
 
-/// Bits of a number's fraction.
-const MANTISSA: u32 = f64::MANTISSA_DIGITS - 1;
+/// Number of bits of a fraction.
+const MANTISSA_BITS: u32 = f64::MANTISSA_DIGITS - 1;
 
-/// Boxes of about one size.
+/// Boxes of similar size.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Level {
-    /// Of its size: see [`size_number`].
+pub(super) struct BoxLevel {
+    /// The number of its size: see [`size_number`].
     number: i32,
-    /// No box has a longer side.
+    /// The largest side of its boxes is at most this.
     bound: f64,
     /// Cells per unit of length.
     cells_per_unit: f64,
-    /// How many boxes it has.
+    /// Number of its boxes.
     pub boxes: usize,
 }
 
-/// The cells from the first to the last of each axis.
+/// The first and the last cell along each axis.
 pub(super) type CellRange = [[i64; 2]; 3];
 
-impl Level {
-    /// Its boxes are no larger than its size, in such units.
+impl BoxLevel {
+    /// An empty level for boxes up to a size, in units of `unit`.
     fn new(number: i32, unit: f64) -> Self {
         let bound = (unit * size_of_number(number)).next_up();
         Self {
@@ -49,7 +48,7 @@ impl Level {
     }
 
     fn cell(&self, x: f64) -> i64 {
-        // The number rounded down. The cast toward zero saturates, and all of it stays monotone.
+        // The number rounded down. The cast toward zero saturates, so the result is monotone.
         let cells = x * self.cells_per_unit;
         let whole = cells as i64;
         whole.saturating_sub(i64::from(whole as f64 > cells))
@@ -60,7 +59,7 @@ impl Level {
         self.name(aabb.min.map(|x| self.cell(f64::from(x))))
     }
 
-    /// The cells that boxes of this level are in if they meet this one.
+    /// The cells that contain all boxes of this level that meet this one.
     pub fn cells_near(&self, aabb: &Aabb) -> CellRange {
         std::array::from_fn(|axis| {
             let from = (f64::from(aabb.min[axis]) - self.bound).next_down();
@@ -82,8 +81,8 @@ impl Level {
         }
     }
 
-    /// A number that hardly any other cell has; never 0. Cells that share it share their boxes,
-    /// which costs time and nothing else.
+    /// A number that hardly any other cell has; never 0. Cells with the same number share their
+    /// boxes, which only costs time.
     #[inline(always)]
     pub fn name(&self, cell: [i64; 3]) -> u64 {
         const FACTORS: [u64; 3] = [
@@ -100,7 +99,7 @@ impl Level {
     }
 }
 
-/// How many cells there are.
+/// The number of cells in a range.
 pub(super) fn cell_count(range: &CellRange) -> u64 {
     let [x, y, z] = range.map(|[first, last]| last.abs_diff(first).saturating_add(1));
     x.saturating_mul(y).saturating_mul(z)
@@ -109,16 +108,16 @@ pub(super) fn cell_count(range: &CellRange) -> u64 {
 /// The levels of a set of boxes.
 #[derive(Clone, Debug)]
 pub(super) struct Levels {
-    /// Sizes are counted in units somewhat above the usual size, so that cells suit it best.
+    /// The unit of sizes: slightly above the usual size, so that cells fit it best.
     unit: f64,
-    /// Smaller boxes are in the level of this number.
+    /// The number of the lowest level, which also has all smaller boxes.
     least: i32,
-    pub all: Vec<Level>,
+    pub all: Vec<BoxLevel>,
 }
 
 impl Levels {
-    /// Levels that suit these boxes: none has cells much smaller than the mean distance of boxes,
-    /// unless most boxes are smaller.
+    /// Chooses levels for these boxes: no level has cells much smaller than the mean distance of
+    /// boxes, unless most boxes are smaller.
     pub fn suited_to(boxes: impl Iterator<Item = Aabb>, count: usize) -> Self {
         let step = count.div_ceil(SAMPLE_SIZE).max(1);
         let (mut lower, mut upper) = ([f64::MAX; 3], [f64::MIN; 3]);
@@ -157,33 +156,33 @@ impl Levels {
         let number = size_number((longest_side(aabb) / self.unit).next_up()).max(self.least);
         let found = self.all.iter().position(|level| level.number == number);
         let index = found.unwrap_or_else(|| {
-            self.all.push(Level::new(number, self.unit));
+            self.all.push(BoxLevel::new(number, self.unit));
             self.all.len() - 1
         });
-        // Sizes of f32 have some 600 numbers.
+        // Sizes in f32 have about 600 numbers.
         index as u16
     }
 }
 
-/// A number no less than the longest side.
+/// An upper bound of the longest side.
 fn longest_side(aabb: &Aabb) -> f64 {
     let side = |axis: usize| f64::from(aabb.max[axis]) - f64::from(aabb.min[axis]);
     (0..3).map(side).fold(0.0, f64::max).next_up()
 }
 
-/// Sizes 1, 1.5, 2, 3, 4, 6 … have the numbers 0, 1, 2 …; of a number in between, that of the next
-/// larger one.
+/// Sizes 1, 1.5, 2, 3, 4, 6 … have the numbers 0, 1, 2 …; a size in between has the number of the
+/// next larger one.
 fn size_number(size: f64) -> i32 {
     let bits = size.to_bits();
-    let exponent = (bits >> MANTISSA) as i32 - (f64::MAX_EXP - 1);
-    let mantissa = bits & ((1 << MANTISSA) - 1);
-    let half = 1 << (MANTISSA - 1);
+    let exponent = (bits >> MANTISSA_BITS) as i32 - (f64::MAX_EXP - 1);
+    let mantissa = bits & ((1 << MANTISSA_BITS) - 1);
+    let half = 1 << (MANTISSA_BITS - 1);
     2 * exponent + i32::from(mantissa > 0) + i32::from(mantissa > half)
 }
 
 fn size_of_number(number: i32) -> f64 {
     let exponent = (number >> 1) + (f64::MAX_EXP - 1);
-    let power = f64::from_bits((exponent as u64) << MANTISSA);
+    let power = f64::from_bits((exponent as u64) << MANTISSA_BITS);
     if number & 1 == 1 { 1.5 * power } else { power }
 }
 
@@ -231,9 +230,9 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
-        /// The argument of the module's head: what meets is in a cell that is looked into.
+        /// The argument of the module's head: a box that meets is in one of the searched cells.
         #[test]
-        fn boxes_that_meet_are_in_cells_nearby(one in aabb(), other in aabb(), least in 1e-30_f32..9.0) {
+        fn meeting_boxes_are_in_near_cells(one in aabb(), other in aabb(), least in 1e-30_f32..9.0) {
             let sized = Aabb::new([0.0; 3], [least; 3]);
             let mut levels = Levels::suited_to([sized].into_iter(), 1);
             let index = levels.level_of(&other);
@@ -246,8 +245,9 @@ mod tests {
         }
     }
 
+    /// A box of the same size looks into eight cells.
     #[test]
-    fn a_box_of_the_same_size_looks_into_eight_cells() {
+    fn equal_sizes_search_eight_cells() {
         let cube = |x: f32, side: f32| Aabb::new([x; 3], [x + side; 3]);
         let boxes = [cube(0.0, 1.0), cube(5.0, 1.0), cube(9.0, 1.0)];
         let mut levels = Levels::suited_to(boxes.into_iter(), 3);

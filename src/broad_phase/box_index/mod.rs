@@ -1,8 +1,9 @@
-//! Where each box is, to be changed box by box: cells of several sizes ([`levels`]) in a hash table.
+//! An index of boxes by location that is changed box by box: a hash table of cells of several sizes
+//! ([`levels`]).
 //!
-//! A box that moves, comes or goes costs its old cell and its new one; a query costs the cells near
-//! the box, and what is in them. Nothing is sorted, and nothing rebuilt but the table of cells when
-//! it is full.
+//! A box that moves, comes or goes changes its old cell and its new one; a query reads the cells
+//! near a box and their boxes. Nothing is sorted, and nothing is rebuilt except a full table of
+//! cells.
 
 mod levels;
 
@@ -11,21 +12,21 @@ use crate::bodies::{Aabb, Groups, PairRules};
 use crate::pairs::{Run, Runs};
 use crate::simd::prefetch;
 
-/// The table of cells is made larger when more than this share of it is taken.
+/// The table of cells is enlarged when more than this share of it is used.
 const MAX_LOAD: [usize; 2] = [3, 4];
 
-/// So many cells cost as much as a box to look at.
+/// Searching this number of cells takes as long as testing one box.
 const CELLS_PER_BOX: u64 = 2;
 
-/// What a box is, beside its ends.
-const FIXED: u32 = 1;
-/// It doesn't collide with all groups.
-const GROUPED: u32 = 2;
+/// Tag of a fixed box.
+const FIXED_TAG: u32 = 1;
+/// Tag of a box that doesn't collide with all groups.
+const GROUPED_TAG: u32 = 2;
 
 /// A box in its cell.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
-struct Entry {
+struct CellEntry {
     min: [f32; 3],
     slot: u32,
     max: [f32; 3],
@@ -35,24 +36,24 @@ struct Entry {
 /// A cell of the table.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
-    /// See [`Level::name`]; 0 if there is no cell.
+    /// See [`BoxLevel::name`](levels::BoxLevel::name); 0 if there is no cell.
     name: u64,
     boxes: Run,
 }
 
-/// In which cell a box is.
+/// The cell of a box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Home {
+struct HomeCell {
     /// The cell's name, or 0.
     cell: u64,
     level: u16,
 }
 
-/// A body as the index has it, or one that is to be put in or taken out.
+/// A body in the index, or one to be inserted or removed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct IndexedBox {
     pub slot: u32,
-    /// One that is gone is in no index, and meets no box.
+    /// A removed body is in no index, and meets no box.
     pub is_present: bool,
     pub tags: u32,
     pub aabb: Aabb,
@@ -63,24 +64,24 @@ pub(crate) struct IndexedBox {
 pub(crate) struct BoxIndex {
     levels: Levels,
     /// Open addressing with linear probing. Cells stay when their last box leaves, until the table
-    /// is made anew.
+    /// is rebuilt.
     cells: Vec<Cell>,
     taken: usize,
-    boxes: Runs<Entry>,
+    boxes: Runs<CellEntry>,
     /// By slot.
-    homes: Vec<Home>,
+    homes: Vec<HomeCell>,
     len: usize,
 }
 
 impl BoxIndex {
-    /// An index of these boxes, so many.
+    /// An index of `count` boxes.
     pub fn of(boxes: impl Iterator<Item = IndexedBox> + Clone, count: usize) -> Self {
         let mut index = Self::suited_to(boxes.clone().map(|indexed| indexed.aabb), count);
         boxes.for_each(|indexed| _ = index.put(&indexed));
         index
     }
 
-    /// For these boxes, none of which is in it yet.
+    /// An empty index with levels chosen for these boxes.
     fn suited_to(boxes: impl Iterator<Item = Aabb>, count: usize) -> Self {
         Self {
             levels: Levels::suited_to(boxes, count),
@@ -97,8 +98,8 @@ impl BoxIndex {
         self.len
     }
 
-    /// Puts a box where it is now, or takes it out if it is gone. Returns the work that it took:
-    /// entries that were looked at.
+    /// Moves a box to its present cell, or removes it if it is gone. Returns the work: the number
+    /// of entries read.
     pub fn put(&mut self, indexed: &IndexedBox) -> usize {
         let &IndexedBox {
             slot,
@@ -110,12 +111,12 @@ impl BoxIndex {
             return self.remove(slot);
         }
         if self.homes.len() <= slot as usize {
-            self.homes.resize(slot as usize + 1, Home::default());
+            self.homes.resize(slot as usize + 1, HomeCell::default());
         }
         let level = self.levels.level_of(aabb);
         let cell = self.levels.all[usize::from(level)].home(aabb);
-        let home = Home { cell, level };
-        let entry = Entry {
+        let home = HomeCell { cell, level };
+        let entry = CellEntry {
             min: aabb.min,
             slot,
             max: aabb.max,
@@ -145,7 +146,7 @@ impl BoxIndex {
         work
     }
 
-    /// Takes a box out, if it is in. Returns the work that it took.
+    /// Removes a box, if it is there. Returns the work.
     fn remove(&mut self, slot: u32) -> usize {
         let home = match self.homes.get_mut(slot as usize) {
             Some(home) if home.cell != 0 => std::mem::take(home),
@@ -163,7 +164,7 @@ impl BoxIndex {
         place.unwrap_or(0)
     }
 
-    /// Where a cell is in the table, or would be.
+    /// The position of a cell in the table, or where it would be inserted.
     #[inline(always)]
     fn find(&self, name: u64) -> usize {
         let mask = self.cells.len() - 1;
@@ -177,7 +178,7 @@ impl BoxIndex {
         }
     }
 
-    /// Makes the table anew, without cells that are empty, and so large that half of it is free.
+    /// Rebuilds the table without empty cells, so large that half of it is free.
     fn make_room(&mut self) {
         let filled = self.cells.iter().filter(|cell| !cell.boxes.is_empty());
         let size = (2 * filled.clone().count() + 16).next_power_of_two();
@@ -190,7 +191,7 @@ impl BoxIndex {
         }
     }
 
-    /// Brings near what [`Self::put`] will read of a box: some boxes before it.
+    /// Prefetches what [`Self::put`] will read of a box, some boxes before it.
     #[inline]
     pub fn prefetch(&self, slot: u32) {
         if let Some(home) = self.homes.get(slot as usize) {
@@ -198,9 +199,9 @@ impl BoxIndex {
         }
     }
 
-    /// Appends for each of some boxes the slots of those that meet it, not both fixed, that the
-    /// rules let pass: sorted, each once. Where each one's end goes to `ends`. Returns how many
-    /// boxes and cells were looked at.
+    /// Appends, for each of some boxes, the slots of those that meet it, are not both fixed, and
+    /// are allowed by the rules: sorted, each once. The end of each box's part is appended to
+    /// `ends`. Returns the number of boxes and cells read.
     pub fn find_partners(
         &self,
         seekers: &[IndexedBox],
@@ -209,7 +210,7 @@ impl BoxIndex {
         found: &mut Vec<u32>,
         ends: &mut Vec<usize>,
     ) -> usize {
-        // Three rounds, so that a core waits for many cache misses at once.
+        // Three passes, so that many cache misses overlap.
         search.clear();
         for seeker in seekers {
             if seeker.is_present {
@@ -242,7 +243,7 @@ impl BoxIndex {
         work
     }
 
-    /// Lists the cells that a box looks into, or that it looks into all.
+    /// Lists the cells to be searched for a box, or notes that all are.
     fn list_cells(&self, aabb: &Aabb, search: &mut Search) {
         let start = search.names.len();
         let mut left = CELLS_PER_BOX * self.len as u64;
@@ -281,12 +282,12 @@ impl BoxIndex {
     }
 }
 
-/// What searches write down on their way, kept from frame to frame.
+/// Buffers of searches, kept from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Search {
     names: Vec<u64>,
     runs: Vec<Run>,
-    /// Where the cells of each seeker end, and whether it looks into all there are.
+    /// The end of each seeker's cells, and whether all cells are searched.
     ends: Vec<(usize, bool)>,
 }
 
@@ -298,7 +299,7 @@ impl Search {
     }
 }
 
-/// Sorts the numbers from `start` on, and drops those that are there before.
+/// Sorts the numbers from `start` on, and removes duplicates.
 fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
     numbers[start..].sort_unstable();
     let mut end = start;
@@ -313,16 +314,16 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
 
 impl IndexedBox {
     /// Whether a pair with this box is reported if the boxes meet.
-    fn may_meet(&self, other: &Entry, rules: PairRules<'_>) -> bool {
-        let are_fixed = self.tags & other.tags & FIXED != 0;
-        let collide = (self.tags | other.tags) & GROUPED == 0
+    fn may_meet(&self, other: &CellEntry, rules: PairRules<'_>) -> bool {
+        let are_fixed = self.tags & other.tags & FIXED_TAG != 0;
+        let collide = (self.tags | other.tags) & GROUPED_TAG == 0
             || rules.groups[self.slot as usize].collide(rules.groups[other.slot as usize]);
         let may_meet = other.slot != self.slot && !are_fixed && collide;
         may_meet && !rules.excluded.contains(self.slot, other.slot)
     }
 }
 
-/// What the index has of a body, beside its ends.
+/// The tags of a body.
 pub(crate) fn tags(is_dynamic: bool, groups: Groups) -> u32 {
-    (FIXED * u32::from(!is_dynamic)) | (GROUPED * u32::from(groups != Groups::ALL))
+    (FIXED_TAG * u32::from(!is_dynamic)) | (GROUPED_TAG * u32::from(groups != Groups::ALL))
 }

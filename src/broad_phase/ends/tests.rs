@@ -1,18 +1,20 @@
-use super::super::whole_vectors::{SLOTS, check};
+use super::super::whole_vectors::{SLOTS_PER_CHECK, check};
 use super::*;
 use crate::simd::Tier;
 
+/// Boxes that fill their vectors cost no vector more.
 #[test]
-fn boxes_that_fill_their_vectors_cost_no_vector_more() {
+fn full_vectors_cost_no_more() {
     check(&EndSlots {
-        lower: vec![[1.0, 1.0, 1.0, 0.0]; SLOTS],
-        upper: vec![[2.0, 2.0, 2.0, 0.0]; SLOTS],
-        columns: [1.0, 1.0, 1.0, 2.0, 2.0, 2.0].map(|end| vec![end; SLOTS]),
+        lower: vec![[1.0, 1.0, 1.0, 0.0]; SLOTS_PER_CHECK],
+        upper: vec![[2.0, 2.0, 2.0, 0.0]; SLOTS_PER_CHECK],
+        columns: [1.0, 1.0, 1.0, 2.0, 2.0, 2.0].map(|end| vec![end; SLOTS_PER_CHECK]),
     });
 }
 
+/// Grown boxes hold their own and are no longer than they may be.
 #[test]
-fn grown_boxes_hold_their_own_and_are_no_longer_than_they_may_be() {
+fn grown_boxes_are_tight() {
     let ends = [
         0.0_f32,
         1.0,
@@ -40,8 +42,9 @@ fn grown_boxes_hold_their_own_and_are_no_longer_than_they_may_be() {
     assert!(offs.all(|off| off.abs() < 1e-6), "{cube:?}");
 }
 
+/// Boxes are held until one of them leaves wherever it is in every tier.
 #[test]
-fn boxes_are_held_until_one_of_them_leaves_wherever_it_is_in_every_tier() {
+fn any_leaving_box_is_detected() {
     let pool = Threads::default();
     for count in [1, 15, 16, 17, 40, BOXES_PER_TASK + 3] {
         let mut boxes: Vec<Aabb> = (0..count)
@@ -73,8 +76,9 @@ fn boxes_are_held_until_one_of_them_leaves_wherever_it_is_in_every_tier() {
     }
 }
 
+/// Moving boxes grow and others do not.
 #[test]
-fn moving_boxes_grow_and_others_do_not() {
+fn only_moving_boxes_grow() {
     let boxes = [1.0, 2.0, 3.0].map(|x| Aabb::new([x; 3], [x + 10.0; 3]));
     let (pool, mut ends) = (Threads::default(), EndSlots::default());
     let (cubes, skin) = ([[0.0, 0.0, 0.0, 0.5]; 2], Skin::share(0.125));
@@ -97,8 +101,9 @@ fn moving_boxes_grow_and_others_do_not() {
     assert_eq!(ends.columns[0][..3], lowest);
 }
 
+/// Bytes are those of all columns used or not.
 #[test]
-fn bytes_are_those_of_all_columns_used_or_not() {
+fn bytes_count_all_columns() {
     let mut ends = EndSlots::default();
     assert_eq!(ends.bytes(), 0);
     (ends.lower, ends.upper) = (Vec::with_capacity(1), Vec::with_capacity(10));
@@ -106,8 +111,9 @@ fn bytes_are_those_of_all_columns_used_or_not() {
     assert_eq!(ends.bytes(), 16 + 160 + 400);
 }
 
+/// Ends have the order of slots, followed by a vector of finite ones.
 #[test]
-fn ends_have_the_order_of_slots_and_a_vector_of_finite_ones_behind_it() {
+fn ends_follow_slot_order() {
     let mut slots = EndSlots::default();
     for bodies in [1, 3, 2] {
         let boxes: Vec<_> = (0..bodies as u8)

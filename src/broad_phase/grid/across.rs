@@ -1,36 +1,36 @@
-//! Pairs of bodies in two levels: either side may look for the other, whichever is cheaper.
+//! Pairs between two levels of the grid: whichever side is cheaper searches for the other.
 
 use std::ops::Range;
 
 use super::Grid;
-use super::level::Level;
+use super::level::GridLevel;
 use super::near::hand_over;
-use crate::broad_phase::{BLOCK_BODIES, FirstTest, Page};
+use crate::broad_phase::{BLOCK_BODIES, BlockPage, FirstTest};
 use crate::rounding::skin::Reach;
 use crate::rounding::widen;
 use crate::simd::Lanes;
 
-/// How the bodies of one level find those of another.
+/// How bodies of one level find those of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LevelSearch {
-    /// Each looks into the cells around it.
+    /// Each searches the cells around it.
     Cells,
     /// Each is tested against all.
     All,
 }
 
-/// Bodies that a look at one row costs as much as testing in a long run (10 cycles, and 0.7 a
-/// body).
-const ROW_COST: f64 = 15.0;
+/// The cost of searching one row of cells, in bodies tested in a long run (10 cycles per row, 0.7
+/// per body).
+const BODIES_PER_ROW_SEARCH: f64 = 15.0;
 
-/// The cheapest way to the pairs of two levels: which one seeks (true: `a`), and how. By bodies and
-/// sizes alone.
-pub fn plan(a: &Level, b: &Level) -> (bool, LevelSearch) {
+/// The cheapest way to find the pairs of two levels, estimated from bodies and sizes: whether `a`
+/// searches for `b`, and how.
+pub fn plan(a: &GridLevel, b: &GridLevel) -> (bool, LevelSearch) {
     let all = a.range.len() as f64 * b.range.len() as f64;
     let mut best = (a.range.len() < b.range.len(), LevelSearch::All, all);
     for (seeker, target, is_a) in [(a, b, true), (b, a, false)] {
         let across = 2.0 * (seeker.widest + target.widest) / target.cells.size();
-        // Nearly always: roundings and the place of the seeker may make it one more.
+        // Nearly always. Rounding and the seeker's position may add one.
         let span = across + 1.0;
         if span >= f64::from(target.cells.most_span()) {
             continue;
@@ -40,7 +40,7 @@ pub fn plan(a: &Level, b: &Level) -> (bool, LevelSearch) {
             * (0..3)
                 .map(|i| cells(i) / f64::from(target.cells.count()[i]))
                 .product::<f64>();
-        let cost = seeker.range.len() as f64 * cells(1) * cells(2) * ROW_COST + found;
+        let cost = seeker.range.len() as f64 * cells(1) * cells(2) * BODIES_PER_ROW_SEARCH + found;
         if cost < best.2 {
             best = (is_a, LevelSearch::Cells, cost);
         }
@@ -49,15 +49,15 @@ pub fn plan(a: &Level, b: &Level) -> (bool, LevelSearch) {
 }
 
 impl Grid {
-    /// Pairs of a slot in `seekers`, whose balls grow by `grown`, and one in the level `target`, to
-    /// which they don't belong.
+    /// Finds the pairs of a slot in `seekers`, whose balls grow by `grown`, and a slot in the level
+    /// `target`, which is another level.
     #[inline(always)]
     pub(super) fn across<L: Lanes>(
         &self,
         l: L,
         (seekers, grown): (Range<usize>, Reach),
-        target: &Level,
-        page: &mut Page,
+        target: &GridLevel,
+        page: &mut BlockPage,
         test: &mut impl FirstTest,
     ) {
         let starts = target.starts.as_slice();
@@ -108,16 +108,16 @@ impl Grid {
 mod tests {
     use super::super::cells::{Cells, TableLayout};
     use super::*;
-    use crate::broad_phase::{Block, Bounds};
+    use crate::broad_phase::{BallBounds, Block};
     use crate::simd::{Kernel, Tier, dispatch};
 
     const TARGETS: usize = 24;
     const SEEKERS: usize = 30;
 
     /// How often each target is a candidate of each seeker.
-    struct Count([[u32; TARGETS]; SEEKERS]);
+    struct PairCount([[u32; TARGETS]; SEEKERS]);
 
-    impl FirstTest for Count {
+    impl FirstTest for PairCount {
         fn run<L: Lanes>(&mut self, _: L, i: usize, run: Range<usize>) {
             run.for_each(|j| self.0[i - TARGETS][j] += 1);
         }
@@ -129,14 +129,14 @@ mod tests {
         }
     }
 
-    struct Look<'a>(&'a Grid);
+    struct SearchAcross<'a>(&'a Grid);
 
-    impl Kernel for Look<'_> {
-        type Output = Count;
+    impl Kernel for SearchAcross<'_> {
+        type Output = PairCount;
         #[inline(always)]
-        fn run<L: Lanes>(self, l: L) -> Count {
-            let mut count = Count([[0; TARGETS]; SEEKERS]);
-            let (seekers, mut page) = (self.0.levels[1].range.clone(), Page::new());
+        fn run<L: Lanes>(self, l: L) -> PairCount {
+            let mut count = PairCount([[0; TARGETS]; SEEKERS]);
+            let (seekers, mut page) = (self.0.levels[1].range.clone(), BlockPage::new());
             let seekers = (seekers, Reach::NONE);
             self.0
                 .across(l, seekers, &self.0.levels[0], &mut page, &mut count);
@@ -146,7 +146,7 @@ mod tests {
 
     /// In a table this short the rows of a fourth cell overlap those of the first.
     #[test]
-    fn a_look_that_spans_many_cells_of_a_short_table_finds_each_body_once() {
+    fn wide_search_finds_each_once() {
         for radius in [0.9, 1.0, 1.5, 2.1, 3.0, 40.0] {
             let balls: Vec<[f32; 4]> = (0..TARGETS + SEEKERS)
                 .map(|i| {
@@ -157,7 +157,7 @@ mod tests {
                 .collect();
             let names: Vec<u32> = (0..balls.len() as u32).collect();
             let levels = [0..TARGETS, TARGETS..balls.len()]
-                .map(|range| Level::new(range, TableLayout::Wrapped));
+                .map(|range| GridLevel::new(range, TableLayout::Wrapped));
             let mut grid = Grid {
                 levels: levels.to_vec(),
                 moving_levels: 2,
@@ -170,7 +170,7 @@ mod tests {
                 pool: &pool,
             };
             grid.arrange(executor, &balls, &names);
-            let Count(found) = dispatch(Tier::SCALAR, Look(&grid));
+            let PairCount(found) = dispatch(Tier::SCALAR, SearchAcross(&grid));
             for (i, found) in (TARGETS..).zip(found) {
                 for (j, times) in found.into_iter().enumerate() {
                     let [a, b] = [i, j].map(|slot| grid.slots.balls[slot]);
@@ -183,10 +183,10 @@ mod tests {
 
     /// So many bodies, the widest of that radius, in cells of at least its size and so many of them
     /// each way.
-    fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: TableLayout) -> Level {
-        let mut level = Level::new(0..bodies, layout);
+    fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: TableLayout) -> GridLevel {
+        let mut level = GridLevel::new(0..bodies, layout);
         let hi = cells.map(|count| 2.0 * widest * (f32::from(count) - 1.0));
-        let bounds = Bounds {
+        let bounds = BallBounds {
             lo: [0.0; 3],
             hi,
             widest,
@@ -200,7 +200,7 @@ mod tests {
     /// A look at a row costs fifteen tests: of n bodies in a box of c cells, s of which a seeker
     /// may reach, cells are looked through when 15·s_y·s_z < n·(1 − s_x·s_y·s_z/c).
     #[test]
-    fn cells_are_looked_through_where_their_rows_cost_less_than_all_bodies() {
+    fn search_mode_follows_row_cost() {
         for (radius, cells, most) in [
             (0.5, [10, 4, 2], 116),
             (1.5, [20, 8, 6], 431),
@@ -226,16 +226,18 @@ mod tests {
         }
     }
 
+    /// The fewer bodies seek among all and the second of as many.
     #[test]
-    fn the_fewer_bodies_seek_among_all_and_the_second_of_as_many() {
+    fn fewer_bodies_seek() {
         let level = |bodies| level(bodies, 0.5, [1; 3], TableLayout::Box);
         for (a, b) in [(2, 3), (3, 3), (3, 2)] {
             assert_eq!(plan(&level(a), &level(b)), (a < b, LevelSearch::All));
         }
     }
 
+    /// Only seekers of similar size search a wrapped table.
     #[test]
-    fn a_wrapped_table_is_looked_through_by_seekers_of_its_own_size_alone() {
+    fn wrapped_table_needs_similar_seekers() {
         let target = level(10_000, 0.5, [200; 3], TableLayout::Wrapped);
         for (radius, search) in [(0.5, LevelSearch::Cells), (0.6, LevelSearch::All)] {
             let seeker = level(1, radius, [1; 3], TableLayout::Box);

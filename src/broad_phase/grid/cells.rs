@@ -1,53 +1,53 @@
-//! Which cell a ball's centre falls in, and where the cells around it stand in the table.
+//! Cells: which cell a ball's centre is in, and where the cells around it are in the table.
 //!
-//! A coordinate x falls in cell k = round((x − o)/c), in f64. Centres of balls that the first test
-//! can report differ by less than the cell size c, so by at most one cell a coordinate: with c ≥
-//! 2R(1 + 2⁻¹⁶), R the widest ball [widened](crate::rounding::widen), quotients differ by less than
-//! 1 − 2⁻¹⁷, and below 2³⁰ the three roundings of a quotient take 2⁻²² each.
+//! A coordinate x is in the cell k = round((x − o)/c), in f64. Centres of balls that the first test
+//! can report differ by less than the cell size c, and so by at most one cell per coordinate: with
+//! c ≥ 2R(1 + 2⁻¹⁶), where R is the largest radius, [widened](crate::rounding::widen), quotients
+//! differ by less than 1 − 2⁻¹⁷, and below 2³⁰ the three roundings of a quotient take 2⁻²² each.
 //!
-//! Cells stand in the table in rows along x, rows in layers: index = k_x + A·k_y + B·k_z. Where the
+//! The table has cells in rows along x, and rows in layers: index = k_x + A·k_y + B·k_z. If the
 //! bodies' box has few cells, A and B leave one empty cell after each row and one empty row after
-//! each layer, so that neighbours across the border exist and are empty. Where the box is mostly
-//! void (a diagonal line, clusters far apart), indices are taken modulo a power of two instead,
-//! with A and B spread evenly over it: other cells may share a place in the table, which costs
-//! false candidates and loses nothing.
+//! each layer, so that neighbours across the border exist and are empty. If the box is mostly empty
+//! (a diagonal line, clusters far apart), indices are taken modulo a power of two instead, with A
+//! and B spread evenly over it. Different cells may then share a table entry, which adds false
+//! candidates but loses none.
 
-use crate::broad_phase::{BLOCK_BODIES, Bounds};
+use crate::broad_phase::{BLOCK_BODIES, BallBounds};
 use crate::rounding::widen;
 use crate::simd::{Lanes, quads_in_columns};
 
-/// Adding it leaves an f64 below 2³¹ rounded to an integer in its low 32 bits.
+/// Adding this to an f64 below 2³¹ rounds it to an integer in the low 32 bits.
 const TO_INTEGER: f64 = 1.5 * (1u64 << 52) as f64;
 
 /// Cells along the longest side: quotients stay below, see above.
 const MOST_CELLS: f64 = (1u32 << 29) as f64;
 
-/// Cells a body that a table may have, and a few more for small scenes.
+/// The most cells per body in a table, apart from a constant for small scenes.
 const CELLS_PER_BODY: f64 = 6.0;
 const SPARE_CELLS: f64 = 512.0;
 
-/// Rows that a body looks at besides its own: (0, +1, 0) and (0, −1…+1, +1). The other half finds
-/// it in turn.
+/// The rows that a body searches in addition to its own: (0, +1, 0) and (0, −1…+1, +1). Bodies in
+/// the other neighbouring rows search this one's row instead.
 const FORWARD_ROWS: [[i32; 2]; 4] = [[1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// Cells each way that one look into a wrapped table may span: there all rows lie apart, in every
-/// length of table, and rows of a fourth cell would overlap in short ones and give some bodies
-/// twice.
+/// The most cells per axis that one search in a wrapped table may span. With three, all rows are
+/// disjoint in a table of any length; with four, rows would overlap in short tables and return some
+/// bodies twice.
 pub const WRAPPED_SPAN: u32 = 3;
 
-/// How cells find their place in the table.
+/// How cells are mapped to table entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableLayout {
-    /// Every cell of the bodies' box has its own.
+    /// Every cell of the bodies' box has its own entry.
     Box,
     /// Modulo the table's length.
     Wrapped,
 }
 
-/// Where the cells of one size lie. The one place that computes the cell of a coordinate: which a
-/// body falls in, how many there are and where a body of another level looks. Each step rounds, but
-/// none of them reverses an order: a coordinate between two others falls in a cell between theirs,
-/// whatever the roundings, and none falls beyond the cell of the farthest.
+/// Cells of one size. This is the only code that computes the cell of a coordinate, whether to
+/// place a body, to count cells or to search from another level. Each step rounds, but none
+/// reverses an order: a coordinate between two others is in a cell between theirs, and no
+/// coordinate is in a cell beyond that of the farthest one.
 #[derive(Clone, Copy, Debug)]
 struct CellRule {
     origin: [f64; 3],
@@ -55,14 +55,14 @@ struct CellRule {
 }
 
 impl CellRule {
-    /// The number of a coordinate's cell along an axis, plus [`TO_INTEGER`]: an exact f64 in order,
-    /// whose low 32 bits are the number.
+    /// The number of a coordinate's cell along an axis, plus [`TO_INTEGER`]: an exact f64, ordered
+    /// as the numbers are, whose low 32 bits are the number.
     #[inline(always)]
     fn cell(&self, axis: usize, x: f64) -> f64 {
         (x - self.origin[axis]) * self.inverse + TO_INTEGER
     }
 
-    /// How many cells there are up to that of `hi`, the farthest centre's coordinates.
+    /// How many cells there are up to that of `hi`, the largest centre coordinates.
     fn count(&self, hi: [f64; 3]) -> [u32; 3] {
         std::array::from_fn(|axis| number(self.cell(axis, hi[axis]).max(TO_INTEGER)) + 1)
     }
@@ -89,11 +89,11 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Cells for `bodies` balls within the bounds, of the size that the widest needs; in a box,
-    /// larger ones where the table would grow too long.
-    pub fn fit(bounds: &Bounds, bodies: usize, layout: TableLayout) -> Self {
-        // Bounds that aren't finite come of bodies outside the contract. They get some cells, so
-        // that nothing here runs on.
+    /// Cells for `bodies` balls within the bounds, as large as the largest radius requires; in the
+    /// layout of a box they are larger if the table would be too long.
+    pub fn fit(bounds: &BallBounds, bodies: usize, layout: TableLayout) -> Self {
+        // Bounds that aren't finite come from bodies that break the contract. They get some cells,
+        // so that this ends.
         let [lo, hi] = [bounds.lo, bounds.hi].map(|end| end.map(finite));
         let longest = (0..3).map(|i| hi[i] - lo[i]).fold(0.0, f64::max);
         let needed = 2.0 * f64::from(widen(bounds.widest)) * (1.0 + 1.0 / 65536.0);
@@ -145,7 +145,8 @@ impl Cells {
         self.table = (last + reach) as usize + 2;
     }
 
-    /// The golden ratio's kin in two dimensions spreads the multiples of A and B most evenly.
+    /// The two-dimensional analogue of the golden ratio spreads the multiples of A and B most
+    /// evenly.
     fn wrap(&mut self, bodies: usize) {
         let table = (4 * bodies).next_power_of_two().max(64);
         self.row = (table as f64 * 0.754_877_666_246_693) as u32 | 1;
@@ -186,7 +187,7 @@ impl Cells {
         self.mask
     }
 
-    /// Index offsets of the rows that a body looks at besides its own, ascending for a box.
+    /// Index offsets of the rows that a body searches in addition to its own, ascending for a box.
     #[inline(always)]
     pub fn forward(&self) -> &[u32] {
         &self.forward[..self.forward_len]
@@ -201,7 +202,7 @@ impl Cells {
         }
     }
 
-    /// How many cells each way a look may span.
+    /// How many cells per axis a search may span.
     #[inline(always)]
     pub fn most_span(&self) -> u32 {
         match self.layout() {
@@ -210,7 +211,7 @@ impl Cells {
         }
     }
 
-    /// The highest table index that a centre can fall in: beyond it a box has empty cells only.
+    /// The highest table index of a centre. In the layout of a box, all cells after it are empty.
     pub fn last(&self) -> u32 {
         match self.layout() {
             TableLayout::Box => self.index(self.count.map(|n| n - 1)),
@@ -225,7 +226,7 @@ impl Cells {
         x.wrapping_add(row).wrapping_add(layer) & self.mask
     }
 
-    /// Table index of the cell that each ball's centre falls in.
+    /// Computes the table index of each ball's cell.
     #[inline(always)]
     pub fn assign<L: Lanes>(&self, l: L, balls: &[[f32; 4]], cells: &mut [u32]) {
         let (chunks, rest) = balls.as_chunks::<BLOCK_BODIES>();
@@ -259,8 +260,8 @@ impl Cells {
         cells
     }
 
-    /// Lowest and highest cell of each axis that may hold a centre within `reach` of the ball's
-    /// along that axis; `None` if all centres are farther off.
+    /// The lowest and highest cell per axis that may contain a centre within `reach` of the ball's
+    /// along that axis; `None` if all centres are farther away.
     #[inline(always)]
     pub fn around(&self, ball: &[f32; 4], reach: f64) -> Option<[[u32; 3]; 2]> {
         let (mut lowest, mut highest) = ([0; 3], [0; 3]);
@@ -274,7 +275,8 @@ impl Cells {
             if lo > last || hi < TO_INTEGER {
                 return None;
             }
-            // In this order NaN, which a body outside the contract may bring, turns to a cell.
+            // In this order of operations a NaN, from a body that breaks the contract, becomes a
+            // valid cell.
             lowest[axis] = number(lo.max(TO_INTEGER).min(last));
             highest[axis] = number(hi.max(TO_INTEGER).min(last));
         }

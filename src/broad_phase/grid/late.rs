@@ -1,24 +1,25 @@
-//! Bodies that come and go between two plans: those that stay keep their levels, those that come
-//! share one more.
+//! Bodies that come and go between two plans of the levels: those that stay keep their levels, and
+//! new ones share one more level.
 //!
-//! Which body is in which level decides how long a search takes, never what it finds: a level's
-//! cells are fitted in every frame to the widest ball that it has then. So a plan holds as long as
-//! late bodies are few.
+//! The assignment of bodies to levels affects only the time of a search, because a level's cells
+//! are fitted to its largest ball in every frame. Therefore a plan can stay while there are few
+//! late bodies.
 
 use std::ops::Range;
 
-use super::{FRAMES_PER_REORDER, Grid, Level};
+use super::{FRAMES_PER_REORDER, Grid, GridLevel};
 
-/// Late bodies, whatever their sizes: so many, or this share of all, but never more than so many,
-/// since all of them may lie in one cell.
-const FEW_LATE: usize = 64;
-const LATE_SHARE: usize = 16;
-const MOST_LATE: usize = 4096;
+/// How many late bodies, of any sizes, are accepted: [`LEAST_LATE_LIMIT`], or one in
+/// [`BODIES_PER_LATE`] bodies, but at most [`MOST_LATE_LIMIT`], because all of them may be in one
+/// cell.
+const LEAST_LATE_LIMIT: usize = 64;
+const BODIES_PER_LATE: usize = 16;
+const MOST_LATE_LIMIT: usize = 4096;
 
 impl Grid {
-    /// Takes up another set of bodies in the order that
-    /// [`Places::replace`](crate::bodies::Places::replace) leaves: `stays` is of each former place.
-    /// False, and levels are to be planned anew, if too many bodies are late.
+    /// Changes the set of bodies, in the order after
+    /// [`Places::replace`](crate::bodies::Places::replace); `stays` says which former places keep
+    /// their body. Returns false if too many bodies are late, and levels have to be planned again.
     pub(in crate::broad_phase) fn replace(
         &mut self,
         stays: &[bool],
@@ -30,7 +31,7 @@ impl Grid {
         self.take_levels(moving_levels, stays, 0..moving);
         self.moving_levels = self.levels.len();
         self.take_levels(static_levels, stays, moving..bodies);
-        // Slots are the former set's: no order of places is taken from them before bodies are
+        // Slots belong to the former set. No order of places is taken from them until bodies are
         // sorted again.
         self.age = self
             .age
@@ -39,12 +40,12 @@ impl Grid {
         (self.fixed_sorted, self.candidates) = (false, 0);
         let late = self.levels.iter().filter(|level| level.is_late);
         let late: usize = late.map(|level| level.range.len()).sum();
-        late <= FEW_LATE.max(MOST_LATE.min(bodies / LATE_SHARE))
+        late <= LEAST_LATE_LIMIT.max(MOST_LATE_LIMIT.min(bodies / BODIES_PER_LATE))
     }
 
-    /// Shares `places` out among the levels whose bodies stay, in their order, and one for the late
-    /// ones.
-    fn take_levels(&mut self, former: &[Level], stays: &[bool], places: Range<usize>) {
+    /// Distributes `places` to the levels whose bodies stay, in their order, and to one level of
+    /// late bodies.
+    fn take_levels(&mut self, former: &[GridLevel], stays: &[bool], places: Range<usize>) {
         let mut start = places.start;
         for level in former.iter().filter(|level| !level.is_late) {
             let stay = stays[level.range.clone()].iter().filter(|stays| **stays);
@@ -55,7 +56,7 @@ impl Grid {
             start = end;
         }
         if start < places.end {
-            self.levels.push(Level::late(start..places.end));
+            self.levels.push(GridLevel::late(start..places.end));
         }
     }
 }
@@ -76,8 +77,9 @@ mod tests {
         grid
     }
 
+    /// Those that stay keep their levels and the late ones share one.
     #[test]
-    fn those_that_stay_keep_their_levels_and_the_late_ones_share_one() {
+    fn late_bodies_share_one_level() {
         let radius = |i: usize| if i.is_multiple_of(50) { 64.0 } else { 1.0 };
         let balls: Vec<_> = (0..2000)
             .map(|i| [2.0 * i as f32, 0.0, 0.0, radius(i)])
@@ -115,8 +117,9 @@ mod tests {
         assert_eq!((ranges(&grid).len(), grid.moving_levels), (0, 0));
     }
 
+    /// Many late bodies are worth a plan.
     #[test]
-    fn many_late_bodies_are_worth_a_plan() {
+    fn many_late_bodies_trigger_a_plan() {
         let balls: Vec<_> = (0..3200).map(|i| [2.0 * i as f32, 0.0, 0.0, 1.0]).collect();
         for (late, keeps) in [(64, true), (213, true), (214, false), (3200, false)] {
             let mut grid = planned(&balls);

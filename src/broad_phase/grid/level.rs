@@ -1,43 +1,43 @@
-//! One level of the grid: bodies of like size, counting-sorted by cell into their slots.
+//! One level of the grid: bodies of similar size, counting-sorted by cell into slots.
 //!
-//! Threads share a sort by cells and not by places: each reads every body's cell, which is four
-//! bytes in sequence, and counts and places those of its own range of cells. Tables and slots are
-//! then split between them without overlap, no thread needs another's counts but one sum, and the
-//! order within a cell is that of one thread.
+//! Threads divide a sort by ranges of cells, not of places. Each thread reads the cells of all
+//! bodies, four bytes each in sequence, and counts and places the bodies in its own range of cells.
+//! Tables and slots are then split without overlap, a thread needs only one sum from the others,
+//! and the order within a cell is that of one thread.
 
 use std::ops::Range;
 
 use super::cells::{Cells, TableLayout};
-use crate::broad_phase::{Bounds, Slots};
+use crate::broad_phase::{BallBounds, Slots};
 use crate::rounding::skin::Reach;
 use crate::rounding::widen;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 use crate::threads::{Executor, Threads};
 
-/// Bodies whose cells have one size. Their slots are a range, and so are their places: sorting
-/// stays within it.
+/// Bodies in cells of one size. Their slots are a range and their places the same range, within
+/// which they are sorted.
 #[derive(Clone, Debug)]
-pub struct Level {
-    /// Slots, and places.
+pub struct GridLevel {
+    /// The range of slots and of places.
     pub range: Range<usize>,
     /// The cells of this frame.
     pub cells: Cells,
-    /// First slot of each cell, and one more entry: the last cell's end.
+    /// The first slot of each cell, and the end of the last cell.
     pub starts: Vec<u32>,
-    /// Widest ball of this frame, grown and widened.
+    /// The largest radius of this frame, grown and widened.
     pub widest: f64,
-    /// How balls grow before they are looked for.
+    /// How balls are grown for the search.
     pub reach: Reach,
-    /// Whether its bodies came after the levels had been planned.
+    /// Whether its bodies came after the levels were planned.
     pub is_late: bool,
     layout: TableLayout,
 }
 
-impl Level {
+impl GridLevel {
     /// A level for the bodies in a range of places.
     pub fn new(range: Range<usize>, layout: TableLayout) -> Self {
         Self {
-            cells: Cells::fit(&Bounds::EMPTY, range.len(), layout),
+            cells: Cells::fit(&BallBounds::EMPTY, range.len(), layout),
             starts: Vec::new(),
             widest: 0.0,
             reach: Reach::NONE,
@@ -47,7 +47,7 @@ impl Level {
         }
     }
 
-    /// A level for bodies that came after the others had been planned.
+    /// A level for bodies that came after the levels were planned.
     pub fn late(range: Range<usize>) -> Self {
         Self {
             is_late: true,
@@ -55,7 +55,7 @@ impl Level {
         }
     }
 
-    /// The level with other places.
+    /// The level with another range of places.
     pub fn holding(self, range: Range<usize>) -> Self {
         Self { range, ..self }
     }
@@ -85,8 +85,8 @@ impl Level {
         });
         let entries = self.cells.table_len() + 1;
         if entries > self.starts.capacity() {
-            // An eighth to spare, so that a box that breathes allocates nothing and doubles
-            // nothing.
+            // With an eighth to spare, so that a box that varies in size does not allocate in every
+            // frame.
             let spare = entries + entries / 8 - self.starts.len();
             self.starts.reserve_exact(spare);
         }
@@ -94,7 +94,7 @@ impl Level {
         self.starts[0] = range.start as u32;
         let last = self.cells.last();
         loop {
-            let from = Columns {
+            let from = BodiesByPlace {
                 balls,
                 names,
                 cells: place_cells,
@@ -107,7 +107,7 @@ impl Level {
                 names: &mut slots.names[range.clone()],
                 cells: &mut slot_cells[range.clone()],
             };
-            // All bodies lie in cells up to the last one in which a centre can fall.
+            // All bodies are in cells up to the last one that a centre can be in.
             if to.sort(pool, &from) && self.starts[last as usize + 1] == range.end as u32 {
                 break;
             }
@@ -115,7 +115,7 @@ impl Level {
                 balls.as_flattened().iter().any(|x| x.is_nan()),
                 "a body's cell lies beyond the table"
             );
-            // A centre that is NaN, of a body outside the contract, has any number for a cell.
+            // A NaN centre, of a body that breaks the contract, may get any number as its cell.
             for cell in &mut *place_cells {
                 *cell = (*cell).min(last);
             }
@@ -123,13 +123,13 @@ impl Level {
         self.check(slots, balls, names);
     }
 
-    /// What debug builds, and so tests, check of every sort.
+    /// Checks every sort in debug builds, and therefore in tests.
     fn check(&self, slots: &Slots, balls: &[[f32; 4]], names: &[u32]) {
         if !cfg!(debug_assertions) {
             return;
         }
         let range = self.range.clone();
-        // Sums that any other set of names hardly has, since sorting would allocate.
+        // Checksums of the names, because sorting them would allocate.
         let sums = |names: &[u32]| {
             let sums = names
                 .iter()
@@ -152,31 +152,31 @@ impl Level {
 /// Bodies whose cells one thread finds at a time.
 const BODIES_PER_TASK: usize = 4096;
 
-/// Bodies that are worth sharing a sort for.
-const WORTH_SHARING: usize = 1 << 15;
+/// The fewest bodies whose sort is divided among threads.
+const FEWEST_SHARED_BODIES: usize = 1 << 15;
 
-/// The bounds of some balls, found by all threads: extremes don't depend on who finds them.
-fn bounds(tier: Tier, pool: &Threads, balls: &[[f32; 4]]) -> Bounds {
-    if pool.threads() == 1 || balls.len() < WORTH_SHARING {
-        return Bounds::of(tier, balls);
+/// The bounds of some balls, computed on all threads. Extremes don't depend on the split.
+fn bounds(tier: Tier, pool: &Threads, balls: &[[f32; 4]]) -> BallBounds {
+    if pool.threads() == 1 || balls.len() < FEWEST_SHARED_BODIES {
+        return BallBounds::of(tier, balls);
     }
     let piece = balls.len().div_ceil(pool.threads());
-    let mut found = vec![Bounds::EMPTY; pool.threads()];
+    let mut found = vec![BallBounds::EMPTY; pool.threads()];
     pool.each(&mut found, |k, found| {
         let end = balls.len().min((k + 1) * piece);
-        *found = Bounds::of(tier, &balls[end.min(k * piece)..end]);
+        *found = BallBounds::of(tier, &balls[end.min(k * piece)..end]);
     });
-    found.into_iter().fold(Bounds::EMPTY, Bounds::union)
+    found.into_iter().fold(BallBounds::EMPTY, BallBounds::union)
 }
 
-/// Bodies by place.
-struct Columns<'a> {
+/// The bodies to be sorted, by place.
+struct BodiesByPlace<'a> {
     balls: &'a [[f32; 4]],
     names: &'a [u32],
     cells: &'a [u32],
 }
 
-/// What one thread sorts: the bodies in a range of cells, whose slots are a range too.
+/// One thread's part of the sort: the bodies in a range of cells, whose slots are a range too.
 struct CellShare<'a> {
     first_cell: u32,
     /// The end of each cell.
@@ -188,12 +188,12 @@ struct CellShare<'a> {
 }
 
 impl<'a> CellShare<'a> {
-    /// Sorts all cells, split among the threads: each reads all bodies and takes those of its own
-    /// cells, so that the order is that of one thread. False, and nothing is sorted, if a body's
+    /// Sorts all cells, split among the threads: each reads all bodies and sorts those in its own
+    /// cells, so that the order is that of one thread. Returns false without sorting if a body's
     /// cell isn't in the table.
-    fn sort(mut self, pool: &Threads, from: &Columns<'_>) -> bool {
+    fn sort(mut self, pool: &Threads, from: &BodiesByPlace<'_>) -> bool {
         let threads = pool.threads();
-        if threads == 1 || from.cells.len() < WORTH_SHARING {
+        if threads == 1 || from.cells.len() < FEWEST_SHARED_BODIES {
             let counted = count(from.cells, self.first_cell, self.ends);
             let all = counted == from.cells.len();
             if all {
@@ -243,9 +243,9 @@ impl<'a> CellShare<'a> {
         true
     }
 
-    /// Puts the counted bodies into their slots. Each cell's entry is its count, then its start,
-    /// and moves to its end.
-    fn place(&mut self, from: &Columns<'_>) {
+    /// Puts the counted bodies into their slots. Each cell's entry changes from its count to its
+    /// start, and then to its end.
+    fn place(&mut self, from: &BodiesByPlace<'_>) {
         let mut slot = self.first_slot;
         for end in self.ends.iter_mut() {
             slot += std::mem::replace(end, slot);
@@ -278,7 +278,7 @@ fn count(cells: &[u32], first: u32, counts: &mut [u32]) -> usize {
     counted
 }
 
-/// Compiled once a tier, for wide conversions to f64 and back.
+/// Computes the cells of bodies. It is compiled per tier, for wide conversions to f64 and back.
 pub(super) struct AssignCells<'a> {
     pub cells: &'a Cells,
     pub balls: &'a [[f32; 4]],
@@ -299,8 +299,8 @@ mod tests {
 
     /// Checks a level of two bodies whose slots have these names.
     fn check(slotted: [u32; 2], names: [u32; 2]) {
-        let (mut level, balls) = (Level::new(0..2, TableLayout::Box), [[0.25; 4]; 2]);
-        level.cells = Cells::fit(&Bounds::of(Tier::SCALAR, &balls), 2, TableLayout::Box);
+        let (mut level, balls) = (GridLevel::new(0..2, TableLayout::Box), [[0.25; 4]; 2]);
+        level.cells = Cells::fit(&BallBounds::of(Tier::SCALAR, &balls), 2, TableLayout::Box);
         (level.starts, level.widest) = (vec![0, 2], widen(0.25).into());
         let slots = Slots {
             names: slotted.to_vec(),
@@ -314,21 +314,23 @@ mod tests {
         check([4, 1], [1, 4]);
     }
 
+    /// Other names with the same sum are detected.
     #[test]
     #[cfg_attr(debug_assertions, should_panic(expected = "each body has one slot"))]
-    fn others_of_the_same_sum_are_told() {
+    fn names_of_equal_sum_differ() {
         check([2, 3], [1, 4]);
     }
 
+    /// Other names with the same sum of squares are detected.
     #[test]
     #[cfg_attr(debug_assertions, should_panic(expected = "each body has one slot"))]
-    fn others_of_the_same_sum_of_squares_are_told() {
+    fn names_of_equal_squares_differ() {
         check([0, 5], [3, 4]);
     }
 
     /// Sorts balls with these names: their slots, and each slot's cell.
     fn sort(
-        level: &mut Level,
+        level: &mut GridLevel,
         threads: usize,
         balls: &[[f32; 4]],
         names: &[u32],
@@ -353,10 +355,10 @@ mod tests {
 
     /// A box that breathes allocates nothing.
     #[test]
-    fn a_table_that_grows_takes_an_eighth_to_spare() {
-        let mut level = Level::new(0..100, TableLayout::Box);
+    fn growing_table_has_spare_room() {
+        let mut level = GridLevel::new(0..100, TableLayout::Box);
         let names: Vec<u32> = (0..100).collect();
-        let sorted = |level: &mut Level, step: f32| {
+        let sorted = |level: &mut GridLevel, step: f32| {
             let ball = |&i: &u32| [step * i as f32, 0.0, 0.0, 1.0];
             sort(
                 level,
@@ -380,8 +382,8 @@ mod tests {
 
     /// Bodies are shared by cells, and those of a cell stay in the order of places.
     #[test]
-    fn many_bodies_are_sorted_alike_on_any_number_of_threads() {
-        let len = WORTH_SHARING + 1000;
+    fn threads_sort_many_bodies_alike() {
+        let len = FEWEST_SHARED_BODIES + 1000;
         let ball = |i: usize| {
             let [x, y, z] = [7919, 104_729, 1_299_709].map(|p| (i * p % 1009) as f32);
             [x, y, z, 3.0 + (i % 7) as f32]
@@ -389,7 +391,7 @@ mod tests {
         let balls: Vec<_> = (0..len).map(ball).collect();
         let names: Vec<u32> = (0..len as u32).rev().collect();
         let sorted = |threads| {
-            let mut level = Level::new(0..len, TableLayout::Box);
+            let mut level = GridLevel::new(0..len, TableLayout::Box);
             let (slots, slot_cells) = sort(&mut level, threads, &balls, &names);
             (
                 level.starts,

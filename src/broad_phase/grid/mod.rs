@@ -1,10 +1,10 @@
-//! The grid: cells of uniform size, counting-sorted slots, contiguous runs of candidates.
+//! The grid finder: cells of uniform size, slots sorted by counting, contiguous runs of candidates.
 //!
-//! Where radii differ much, bodies are split into levels of like size ([`plan`]), each with its own
-//! cells; static bodies have levels of their own, sorted once, so no two of them ever meet. Every
-//! frame sorts the moving levels anew: at ten cycles a body that is cheaper than keeping a tree in
-//! shape. Now and then the places themselves take the order of the slots, so that the sort reads
-//! and writes memory nearly in sequence.
+//! If radii differ a lot, bodies are split into levels of similar size ([`plan`]), each with its
+//! own cells. Static bodies have levels of their own, which are sorted once and never paired with
+//! each other. Every frame sorts the moving levels again: at ten cycles per body, that is cheaper
+//! than maintaining a tree. Every few frames the places take the order of the slots, so that the
+//! sort reads and writes memory nearly in sequence.
 
 mod across;
 mod cells;
@@ -18,29 +18,30 @@ use std::ops::Range;
 pub use self::cells::{Cells, TableLayout};
 
 use self::across::LevelSearch;
-use self::level::Level;
-use super::{FirstTest, Page, Reorder, Slots, bytes};
+use self::level::GridLevel;
+use super::{BlockPage, FirstTest, Reorder, Slots, bytes};
 use crate::rounding::skin::Reach;
 use crate::simd::Lanes;
 use crate::threads::Executor;
 
-/// Frames after which places take the order of slots. Bodies that move a tenth of their radius a
-/// frame are then in their cell still, or next to it; each frame would spare the sort no more than
-/// following the order costs.
+/// Frames between reorderings of the places. Bodies that move a tenth of their radius per frame are
+/// then still in their cell or next to it. Reordering in every frame would cost as much as the sort
+/// gains.
 const FRAMES_PER_REORDER: u32 = 4;
 
-/// Frames between two looks at whether the levels still fit, and the growth of the candidates that
-/// calls for new ones.
-const PLAN_PAUSE: u32 = 8;
+/// Frames between two checks whether the levels still fit. [`PLAN_GROWTH`] is the growth of the
+/// number of candidates that triggers a new plan.
+const FRAMES_PER_PLAN_CHECK: u32 = 8;
 const PLAN_GROWTH: u64 = 2;
 
-/// Slots in one part of the work.
+/// Slots per part of the work.
 const SLOTS_PER_PART: usize = 1024;
 
-/// Parts are ordered by shares of their levels, in steps of such a power of two.
-const SHARE_BITS: u32 = 24;
+/// Parts are ordered by their relative position in their level, in 2 to this power steps.
+const POSITION_BITS: u32 = 24;
 
-/// Bodies that seek those of another level in one part of the work, by cells or all against all.
+/// Seekers of another level per part of the work, when they search cells and when they are tested
+/// against all.
 const SEEKERS_BY_CELLS: usize = 256;
 const SEEKERS_OF_ALL: usize = 16;
 
@@ -48,40 +49,40 @@ const SEEKERS_OF_ALL: usize = 16;
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     /// Moving levels first.
-    levels: Vec<Level>,
+    levels: Vec<GridLevel>,
     moving_levels: usize,
     /// Whether the static levels are sorted.
     fixed_sorted: bool,
     slots: Slots,
     slot_cells: Vec<u32>,
     place_cells: Vec<u32>,
-    parts: Vec<Part>,
+    parts: Vec<GridPart>,
     /// Frames since the last plan.
     age: u32,
-    /// Candidates of the last frame, and of the first after the last plan.
+    /// Candidates in the last frame, and in the first frame after the last plan.
     candidates: u64,
     planned: Option<u64>,
 }
 
-/// A piece of the work: the pairs of some slots with slots of one level.
+/// A part of the work: the pairs of some slots with slots of one level.
 #[derive(Clone, Debug)]
-struct Part {
+struct GridPart {
     slots: Range<usize>,
-    /// Theirs.
+    /// The level of these slots.
     seeker: usize,
     level: usize,
-    kind: Kind,
+    kind: PartKind,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum PartKind {
     Near,
     Across(LevelSearch),
 }
 
 impl Grid {
-    /// Looks for a better order of places and writes it as the names that take the places. `balls`
-    /// and `names` are those of the last frame.
+    /// Finds a better order of places and writes it as the names for the places. `balls` and
+    /// `names` are those of the last frame.
     pub(super) fn reorder(
         &mut self,
         moving: usize,
@@ -100,8 +101,8 @@ impl Grid {
             return Reorder::All;
         }
         if self.age == 1 {
-            // The first sort after a plan: static bodies take the order of their slots once and for
-            // all.
+            // In the first sort after a plan, static bodies take the order of their slots
+            // permanently.
             order.extend_from_slice(&self.slots.names[..balls.len()]);
             self.fixed_sorted = false;
             return Reorder::All;
@@ -120,11 +121,11 @@ impl Grid {
         let grown = self
             .planned
             .is_some_and(|planned| self.candidates > most(planned));
-        (self.levels.is_empty() && bodies > 0) || (grown && self.age >= PLAN_PAUSE)
+        (self.levels.is_empty() && bodies > 0) || (grown && self.age >= FRAMES_PER_PLAN_CHECK)
     }
 
-    /// Writes an order of places that is the one of the slots, after a frame in which bodies were
-    /// arranged, for a time in which they aren't.
+    /// Writes the order of the slots as the order of places, after a frame in which bodies were
+    /// arranged and before frames in which they aren't.
     pub(super) fn follow_slots(
         &mut self,
         moving: usize,
@@ -141,12 +142,12 @@ impl Grid {
         Reorder::All
     }
 
-    /// One more frame in which bodies weren't arranged.
+    /// Counts a frame in which bodies weren't arranged.
     pub(super) fn rest(&mut self) {
         self.age += 1;
     }
 
-    /// From the next frame on, moving bodies grow so before they are looked for.
+    /// Sets how moving bodies are grown for the search, from the next frame on.
     pub(super) fn set_reach(&mut self, reach: Reach) {
         for level in &mut self.levels[..self.moving_levels] {
             level.reach = reach;
@@ -186,15 +187,15 @@ impl Grid {
         self.cut();
     }
 
-    /// Cuts the work into parts, in the order of space.
+    /// Splits the work into parts, in spatial order.
     fn cut(&mut self) {
         self.parts.clear();
         for (index, level) in self.levels[..self.moving_levels].iter().enumerate() {
-            let near = Part {
+            let near = GridPart {
                 slots: level.range.clone(),
                 seeker: index,
                 level: index,
-                kind: Kind::Near,
+                kind: PartKind::Near,
             };
             push_parts(&mut self.parts, near, SLOTS_PER_PART);
             for (other_index, other) in self.levels.iter().enumerate().skip(index + 1) {
@@ -208,21 +209,21 @@ impl Grid {
                     LevelSearch::Cells => SEEKERS_BY_CELLS,
                     LevelSearch::All => SEEKERS_OF_ALL,
                 };
-                let across = Part {
+                let across = GridPart {
                     slots: self.levels[seeker].range.clone(),
                     seeker,
                     level: target,
-                    kind: Kind::Across(search),
+                    kind: PartKind::Across(search),
                 };
                 push_parts(&mut self.parts, across, size);
             }
         }
-        // All levels have their slots in the same order of space: side by side, what one part reads
-        // serves the next.
+        // All levels have their slots in the same spatial order, so neighbouring parts read the
+        // same memory.
         let levels = &self.levels;
         self.parts.sort_by_key(|part| {
             let all = &levels[part.seeker].range;
-            (((part.slots.start - all.start) as u64) << SHARE_BITS) / all.len() as u64
+            (((part.slots.start - all.start) as u64) << POSITION_BITS) / all.len() as u64
         });
     }
 
@@ -236,7 +237,7 @@ impl Grid {
         &self.slots
     }
 
-    /// How many bodies are arranged.
+    /// The number of arranged bodies.
     pub(super) fn bodies(&self) -> usize {
         self.slot_cells.len()
     }
@@ -245,7 +246,7 @@ impl Grid {
         &mut self.slots
     }
 
-    /// Whether the seekers of a part move, and the bodies that they look for.
+    /// Whether a part's seekers move, and whether its targets move.
     pub(super) fn moves(&self, part: usize) -> [bool; 2] {
         let part = &self.parts[part];
         [part.seeker, part.level].map(|level| level < self.moving_levels)
@@ -255,7 +256,7 @@ impl Grid {
         self.parts.len()
     }
 
-    /// Hears how many candidates a frame had.
+    /// Records the number of candidates of a frame.
     pub(super) fn observe(&mut self, candidates: u64) {
         self.candidates = candidates;
         self.planned.get_or_insert(candidates);
@@ -263,16 +264,16 @@ impl Grid {
 
     #[inline(always)]
     pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
-        let mut page = Page::new();
+        let mut page = BlockPage::new();
         for part in &self.parts[parts] {
             let (slots, level) = (part.slots.clone(), &self.levels[part.level]);
             match part.kind {
-                Kind::Near => self.near(l, level, slots, &mut page, test),
-                Kind::Across(LevelSearch::Cells) => {
+                PartKind::Near => self.near(l, level, slots, &mut page, test),
+                PartKind::Across(LevelSearch::Cells) => {
                     let grown = self.levels[part.seeker].reach;
                     self.across(l, (slots, grown), level, &mut page, test);
                 }
-                Kind::Across(LevelSearch::All) => {
+                PartKind::Across(LevelSearch::All) => {
                     for i in slots {
                         test.run(l, i, level.range.clone());
                     }
@@ -282,11 +283,11 @@ impl Grid {
     }
 }
 
-/// Cuts a part into parts of `size` slots.
-fn push_parts(parts: &mut Vec<Part>, whole: Part, size: usize) {
+/// Splits a part into parts of `size` slots.
+fn push_parts(parts: &mut Vec<GridPart>, whole: GridPart, size: usize) {
     let slots = whole.slots.clone();
     for start in slots.clone().step_by(size) {
-        parts.push(Part {
+        parts.push(GridPart {
             slots: start..slots.end.min(start + size),
             ..whole.clone()
         });
@@ -305,20 +306,21 @@ mod tests {
         }
     }
 
-    /// Of one level of that many moving bodies, and one of as many static ones, planned some frames
-    /// ago.
+    /// A grid with one level of `each` moving bodies and one of `each` static ones, planned some
+    /// frames ago.
     fn planned(each: usize) -> Grid {
-        let level = |range| Level::new(range, TableLayout::Box);
+        let level = |range| GridLevel::new(range, TableLayout::Box);
         Grid {
             levels: vec![level(0..each), level(each..2 * each)],
             moving_levels: 1,
-            age: PLAN_PAUSE,
+            age: FRAMES_PER_PLAN_CHECK,
             ..Grid::default()
         }
     }
 
+    /// Levels are planned anew when candidates have more than doubled after a pause.
     #[test]
-    fn levels_are_planned_anew_when_candidates_have_more_than_doubled_after_a_pause() {
+    fn doubled_candidates_trigger_a_plan() {
         assert!(Grid::default().needs_plan(1) && !Grid::default().needs_plan(0));
         let mut grid = planned(5);
         assert!(!grid.needs_plan(10), "the first frame after a plan");
@@ -326,32 +328,40 @@ mod tests {
         assert!(!grid.needs_plan(10));
         for (candidates, grown) in [(0, false), (209, false), (210, false), (211, true)] {
             grid.observe(candidates);
-            grid.age = PLAN_PAUSE;
+            grid.age = FRAMES_PER_PLAN_CHECK;
             assert_eq!(grid.needs_plan(10), grown, "{candidates}");
-            grid.age = PLAN_PAUSE - 1;
+            grid.age = FRAMES_PER_PLAN_CHECK - 1;
             assert!(!grid.needs_plan(10), "{candidates}: too soon");
         }
-        grid.age = PLAN_PAUSE + 1;
+        grid.age = FRAMES_PER_PLAN_CHECK + 1;
         assert!(grid.needs_plan(10));
     }
 
+    /// Places that follow the slots move static bodies only where they have another order.
     #[test]
-    fn places_that_follow_the_slots_move_static_bodies_only_where_they_have_another_order() {
+    fn following_slots_keeps_sorted_statics() {
         let mut grid = planned(2);
         (grid.fixed_sorted, grid.slots.names) = (true, vec![1, 0, 3, 2, 0, 0]);
         let mut order = vec![9];
         let followed = grid.follow_slots(2, &[0, 1, 3, 2], &mut order);
         assert_eq!((followed, &order), (Reorder::Moving, &vec![1, 0, 3, 2]));
-        assert_eq!((grid.age, grid.fixed_sorted), (PLAN_PAUSE + 1, true));
+        assert_eq!(
+            (grid.age, grid.fixed_sorted),
+            (FRAMES_PER_PLAN_CHECK + 1, true)
+        );
         let followed = grid.follow_slots(2, &[0, 1, 2, 3], &mut order);
         assert_eq!((followed, &order), (Reorder::All, &vec![1, 0, 3, 2]));
-        assert_eq!((grid.age, grid.fixed_sorted), (PLAN_PAUSE + 2, false));
+        assert_eq!(
+            (grid.age, grid.fixed_sorted),
+            (FRAMES_PER_PLAN_CHECK + 2, false)
+        );
         grid.rest();
-        assert_eq!(grid.age, PLAN_PAUSE + 3);
+        assert_eq!(grid.age, FRAMES_PER_PLAN_CHECK + 3);
     }
 
+    /// Only moving levels grow, and parts know whether they move.
     #[test]
-    fn moving_levels_alone_grow_and_their_parts_are_told() {
+    fn only_moving_levels_grow() {
         let mut grid = planned(3);
         let half = Reach::with_skin(Skin::share(0.5));
         grid.set_reach(half);
@@ -360,24 +370,25 @@ mod tests {
         grid.slot_cells.resize(6, 0);
         assert_eq!(grid.bodies(), 6);
         grid.parts = [(0, 0), (0, 1), (1, 0)]
-            .map(|(seeker, level)| Part {
+            .map(|(seeker, level)| GridPart {
                 slots: 0..1,
                 seeker,
                 level,
-                kind: Kind::Near,
+                kind: PartKind::Near,
             })
             .to_vec();
         let moves = [0, 1, 2].map(|part| grid.moves(part));
         assert_eq!(moves, [[true, true], [true, false], [false, true]]);
     }
 
+    /// A part is cut without gaps or overlap.
     #[test]
-    fn a_part_is_cut_without_gaps_or_overlap() {
-        let whole = Part {
+    fn parts_cover_without_overlap() {
+        let whole = GridPart {
             slots: 3..40,
             seeker: 1,
             level: 2,
-            kind: Kind::Across(LevelSearch::All),
+            kind: PartKind::Across(LevelSearch::All),
         };
         let mut parts = Vec::new();
         push_parts(&mut parts, whole, 16);
@@ -386,8 +397,9 @@ mod tests {
         assert!(parts.iter().all(|part| part.seeker == 1 && part.level == 2));
     }
 
+    /// Bytes are those of all columns used or not.
     #[test]
-    fn bytes_are_those_of_all_columns_used_or_not() {
+    fn bytes_count_all_columns() {
         let mut grid = planned(2);
         assert_eq!(grid.bytes(), 0);
         grid.slots.balls = Vec::with_capacity(1);
@@ -400,6 +412,6 @@ mod tests {
         grid.levels[1].starts = Vec::with_capacity(1_000_000);
         assert_eq!(grid.bytes(), 4_444_456);
         grid.parts = Vec::with_capacity(3);
-        assert_eq!(grid.bytes(), 4_444_456 + 3 * size_of::<Part>());
+        assert_eq!(grid.bytes(), 4_444_456 + 3 * size_of::<GridPart>());
     }
 }

@@ -1,16 +1,16 @@
-//! Pairs within a level: a body against the rest of its own cell, the next cell, and four rows of
-//! three cells.
+//! Pairs within a level: each body against the rest of its own cell, the next cell, and four rows
+//! of three cells.
 //!
-//! These are half of the 27 cells around it; the other half finds the body in turn. Each row of
-//! three is one contiguous run of slots, read off the table by one load of four neighbouring
-//! entries.
+//! These are half of the 27 cells around it. Bodies in the other half find this body instead. Each
+//! row of three cells is one contiguous run of slots, which one load of four neighbouring table
+//! entries gives.
 
 use std::ops::Range;
 
 use super::Grid;
 use super::cells::TableLayout;
-use super::level::Level;
-use crate::broad_phase::{BLOCK_BODIES, FirstTest, Page, Pen};
+use super::level::GridLevel;
+use crate::broad_phase::{BLOCK_BODIES, BlockPage, FirstTest, RunWriter};
 use crate::simd::Lanes;
 
 impl Grid {
@@ -19,9 +19,9 @@ impl Grid {
     pub(super) fn near<L: Lanes>(
         &self,
         l: L,
-        level: &Level,
+        level: &GridLevel,
         range: Range<usize>,
-        page: &mut Page,
+        page: &mut BlockPage,
         test: &mut impl FirstTest,
     ) {
         let mut first = range.start;
@@ -38,11 +38,17 @@ impl Grid {
         }
     }
 
-    /// In a box of more than one cell each way. `rows` are the cells' own.
+    /// In a box of more than one cell per axis. `rows` are those of the cells.
     #[inline(always)]
-    fn in_space(&self, level: &Level, bodies: Range<usize>, rows: [u32; 4], mut pen: Pen<'_>) {
-        // The table as seen from each row, all of one length: one comparison of a cell with it
-        // serves for all runs.
+    fn in_space(
+        &self,
+        level: &GridLevel,
+        bodies: Range<usize>,
+        rows: [u32; 4],
+        mut pen: RunWriter<'_>,
+    ) {
+        // The table from each row on, all of one length, so that one bounds check of a cell covers
+        // all runs.
         let starts = level.starts.as_slice();
         let length = starts.len() - (rows[3] as usize - 1);
         let own = &starts[..length];
@@ -60,7 +66,7 @@ impl Grid {
 
     /// In a plane or on a line of cells.
     #[inline(always)]
-    fn in_box(&self, level: &Level, bodies: Range<usize>, mut pen: Pen<'_>) {
+    fn in_box(&self, level: &GridLevel, bodies: Range<usize>, mut pen: RunWriter<'_>) {
         let starts = level.starts.as_slice();
         for (lane, &cell) in self.slot_cells[bodies.clone()].iter().enumerate() {
             pen.push(
@@ -75,9 +81,9 @@ impl Grid {
         pen.done();
     }
 
-    /// As in a box, but a run may cross the table's end and go on at its beginning.
+    /// As in a box, but a run may continue at the table's beginning after its end.
     #[inline(always)]
-    fn wrapped(&self, level: &Level, bodies: Range<usize>, mut pen: Pen<'_>) {
+    fn wrapped(&self, level: &GridLevel, bodies: Range<usize>, mut pen: RunWriter<'_>) {
         let (starts, mask) = (level.starts.as_slice(), level.cells.mask());
         let table = mask as usize + 1;
         for (lane, &cell) in self.slot_cells[bodies.clone()].iter().enumerate() {
@@ -100,9 +106,9 @@ impl Grid {
     }
 }
 
-/// Hands a page's candidates to the test.
+/// Passes a page's candidates to the test.
 #[inline(always)]
-pub(super) fn hand_over<L: Lanes>(l: L, page: &Page, test: &mut impl FirstTest) {
+pub(super) fn hand_over<L: Lanes>(l: L, page: &BlockPage, test: &mut impl FirstTest) {
     test.block(l, &page.block());
     for (i, run) in page.long_runs() {
         test.run(l, i, run);

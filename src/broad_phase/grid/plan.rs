@@ -1,41 +1,42 @@
-//! Which bodies share a level: as few levels as keep cells from crowding.
+//! Planning the levels: as few levels as possible without crowded cells.
 //!
-//! Balls that overlap little can only crowd a cell by being much smaller than it. So the widest
-//! octave gets a level of its own as long as the cells that it asks for are crowded, and what is
-//! left is looked at again, with smaller cells. One size gives one level, a giant among many small
-//! ones two.
+//! Balls that overlap little can crowd a cell only if they are much smaller than it. Therefore,
+//! while cells are crowded, the bodies in the largest octave of radii get a level of their own, and
+//! the rest is examined again with smaller cells. Bodies of one size give one level, a giant among
+//! many small bodies gives two.
 
 use std::ops::Range;
 
 use super::cells::{Cells, TableLayout};
-use super::level::{AssignCells, Level};
-use crate::broad_phase::Bounds;
+use super::level::{AssignCells, GridLevel};
+use crate::broad_phase::BallBounds;
 use crate::simd::{self, dispatch};
 
-/// Bodies that a body may find in its own cell, itself included, in the mean, before wide ones are
-/// split off. Uniform scenes reach it at 13 sphere partners a body.
+/// The mean number of bodies in a body's cell, including itself, above which large bodies are split
+/// off. Uniform scenes reach it at 13 sphere partners per body.
 const MOST_PER_CELL: u64 = 4;
 
-/// Levels for moving or for static bodies each.
+/// The most levels of moving bodies, and of static bodies.
 const MOST_LEVELS: usize = 24;
 
-/// A wrapped table must promise to halve the candidates: its rows lie scattered.
-const WORTH_WRAPPING: u64 = 2;
+/// By which factor a wrapped table must reduce the candidates to be used, because its rows are
+/// scattered in memory.
+const LEAST_WRAP_GAIN: u64 = 2;
 
-/// Splits a range of places into levels, widest balls first. `order` lists the places in the range
-/// and is sorted by level; within a level it stays as it was.
-pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec<Level> {
+/// Splits a range of places into levels, largest balls first. `order` lists the places in the range
+/// and gets sorted by level; within a level the order stays.
+pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec<GridLevel> {
     let mut levels = Vec::new();
     let mut from = 0;
     while from < order.len() {
         let rest = &mut order[from..];
         let mut level = gather(balls, rest);
         let (mut layout, crowd) = fit(&level);
-        let half = 0.5 * Bounds::of(simd::Tier::SCALAR, &level).widest;
+        let half = 0.5 * BallBounds::of(simd::Tier::SCALAR, &level).widest;
         let wide = |place: &u32| balls[*place as usize][3] > half;
         let crowded = crowd > MOST_PER_CELL * rest.len() as u64 && levels.len() + 1 < MOST_LEVELS;
         let mut count = rest.len();
-        // None is wide where the widest radius is infinite.
+        // No ball is large if the largest radius is infinite.
         let wide_count = rest.iter().filter(|place| wide(place)).count();
         if crowded && (1..count).contains(&wide_count) {
             rest.sort_by_key(|place| !wide(place));
@@ -44,7 +45,7 @@ pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec
             layout = fit(&level).0;
         }
         let start = range.start + from;
-        levels.push(Level::new(start..start + count, layout));
+        levels.push(GridLevel::new(start..start + count, layout));
         from += count;
     }
     levels
@@ -54,16 +55,16 @@ fn gather(balls: &[[f32; 4]], places: &[u32]) -> Vec<[f32; 4]> {
     places.iter().map(|&p| balls[p as usize]).collect()
 }
 
-/// The better layout for some balls, and how crowded its cells are: the sum over balls of the balls
-/// in the same cell.
+/// The better table layout for some balls, and how crowded its cells are: the sum, over all balls,
+/// of the number of balls in the same cell.
 fn fit(balls: &[[f32; 4]]) -> (TableLayout, u64) {
-    let bounds = Bounds::of(simd::Tier::SCALAR, balls);
+    let bounds = BallBounds::of(simd::Tier::SCALAR, balls);
     let [in_box, wrapped] = [TableLayout::Box, TableLayout::Wrapped]
         .map(|layout| Cells::fit(&bounds, balls.len(), layout));
     let crowd_in_box = crowd(&in_box, balls);
     if in_box.size() > wrapped.size() {
         let crowd_wrapped = crowd(&wrapped, balls);
-        if WORTH_WRAPPING * crowd_wrapped < crowd_in_box {
+        if LEAST_WRAP_GAIN * crowd_wrapped < crowd_in_box {
             return (TableLayout::Wrapped, crowd_wrapped);
         }
     }
@@ -76,7 +77,7 @@ fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
     dispatch(simd::Tier::SCALAR, AssignCells { cells, balls, to });
     let mut counts = vec![0u64; cells.table_len()];
     for &cell in &cell_of {
-        // A centre that is NaN has no cell.
+        // A NaN centre has no cell.
         if let Some(count) = counts.get_mut(cell as usize) {
             *count += 1;
         }
@@ -88,7 +89,7 @@ fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
 mod tests {
     use super::*;
 
-    /// The places of each level that some balls get, and its layout.
+    /// The places and the layout of each level for some balls.
     fn planned(balls: &[[f32; 4]]) -> Vec<(Vec<u32>, TableLayout)> {
         let mut order: Vec<u32> = (0..balls.len() as u32).collect();
         let levels = levels(balls, 10..10 + balls.len(), &mut order);
@@ -106,8 +107,9 @@ mod tests {
         (0..small).map(near).chain((0..wide).map(far)).collect()
     }
 
+    /// Giants leave crowds of small bodies and no others.
     #[test]
-    fn giants_leave_crowds_of_small_bodies_and_no_others() {
+    fn giants_leave_small_crowds() {
         let alone = |range: Range<u32>| (range.collect::<Vec<_>>(), TableLayout::Box);
         // In the mean (n² + 1)/(n + 1) bodies are in a body's cell: 4 at most, and they stay.
         for small in 1..5 {
@@ -122,8 +124,9 @@ mod tests {
         assert_eq!(planned(&[]), []);
     }
 
+    /// A wide body is wider than half of the widest.
     #[test]
-    fn a_wide_body_is_wider_than_half_of_the_widest() {
+    fn wide_means_over_half_the_widest() {
         let mut balls = giants(50, 1);
         balls.extend([[5000.0, 0.0, 0.0, 50.0], [6000.0, 0.0, 0.0, 50.1]]);
         let levels = planned(&balls);
@@ -132,8 +135,9 @@ mod tests {
         assert_eq!(levels[2].0, (0..50).collect::<Vec<_>>());
     }
 
+    /// A table is wrapped where that halves the crowd.
     #[test]
-    fn a_table_is_wrapped_where_that_halves_the_crowd() {
+    fn wrapping_halves_a_crowd() {
         let diagonal = |n: usize, step: f32| {
             let at = |i: usize| i as f32 * step;
             let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
@@ -146,17 +150,23 @@ mod tests {
         assert_eq!(diagonal(8, 1.5), [TableLayout::Box]);
     }
 
+    /// A crowd is the sum over bodies of those in their cells.
     #[test]
-    fn a_crowd_is_the_sum_over_bodies_of_those_in_their_cells() {
+    fn crowd_sums_cell_occupancy() {
         let at = |x: f32| [x, 0.0, 0.0, 0.5];
         let balls = [0.0, 50.0, 0.1, 50.1, 50.2, 100.0].map(at);
-        let cells = Cells::fit(&Bounds::of(simd::Tier::SCALAR, &balls), 6, TableLayout::Box);
+        let cells = Cells::fit(
+            &BallBounds::of(simd::Tier::SCALAR, &balls),
+            6,
+            TableLayout::Box,
+        );
         assert_eq!(crowd(&cells, &balls), 4 + 9 + 1);
         assert_eq!(fit(&balls).1, 14);
     }
 
+    /// Four bodies in a cell stay together and five part.
     #[test]
-    fn four_bodies_in_a_cell_stay_together_and_five_part() {
+    fn five_in_a_cell_split() {
         for small in 1..8 {
             // With the wide one, n in one cell: n² in the sum over them.
             let mut balls = vec![[0.0, 0.0, 0.0, 0.01]; small];
@@ -166,8 +176,9 @@ mod tests {
         }
     }
 
+    /// Bodies of all sizes have 24 levels and no more.
     #[test]
-    fn bodies_of_all_sizes_have_24_levels_and_no_more() {
+    fn levels_are_at_most_24() {
         let octave = |i: i32| [0.0, 0.0, 0.0, 0.5_f32.powi(i)];
         // The last four share a level.
         for (octaves, expected) in [(20, 17), (26, 23), (27, 24), (28, 24), (60, 24)] {
@@ -176,13 +187,14 @@ mod tests {
         }
     }
 
+    /// A table is wrapped if and only if that halves the crowd.
     #[test]
-    fn a_table_is_wrapped_if_and_only_if_that_halves_the_crowd() {
+    fn wrapping_requires_halving() {
         let mut wrapped = [0; 2];
         for (n, step) in (2..120).flat_map(|n| [0.7_f32, 1.0, 1.5, 4.0].map(|step| (n, step))) {
             let at = |i: usize| i as f32 * step;
             let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
-            let bounds = Bounds::of(simd::Tier::SCALAR, &balls);
+            let bounds = BallBounds::of(simd::Tier::SCALAR, &balls);
             let [in_box, others] = [TableLayout::Box, TableLayout::Wrapped]
                 .map(|layout| Cells::fit(&bounds, n, layout));
             let crowds = [&in_box, &others].map(|cells| crowd(cells, &balls));

@@ -1,9 +1,9 @@
-//! From the grid's candidates to neighbours: the pairs whose grown volumes touch.
+//! Building a list of neighbours from the grid's candidates: the pairs whose grown volumes touch.
 
 use std::ops::Range;
 
 use super::Volume;
-use super::effort::{CANDIDATES_PER_REPORT, Effort};
+use super::effort::{CANDIDATES_PER_REPORT, SearchEffort};
 use super::list::Chunk;
 use crate::broad_phase::{
     BLOCK_BODIES, BallTest, Block, FirstTest, MOST_CANDIDATES, SlotBodies, SlotTest,
@@ -12,14 +12,14 @@ use crate::rounding::skin::Reach;
 use crate::rounding::{cube, sphere};
 use crate::simd::{Lanes, MAX_WIDTH};
 
-/// Balls, or the cubes that they stand for, grown by a skin.
+/// Balls, or the cubes that they stand for, each grown by a skin.
 #[derive(Clone, Copy)]
 pub struct GrownBalls<'a> {
-    /// The balls as they are.
+    /// The balls, not grown.
     pub slots: SlotBodies<'a>,
-    /// How the balls of seekers grow, and those of the bodies that they look for.
+    /// How the seekers' balls and the targets' balls are grown.
     pub by: [Reach; 2],
-    /// What balls stand for.
+    /// The volume that balls stand for.
     pub volume: Volume,
 }
 
@@ -39,13 +39,13 @@ impl BallTest for GrownBalls<'_> {
     }
 }
 
-/// Tests the grid's candidates and keeps the neighbours, until there are more of either than a list
-/// may take.
+/// Tests the grid's candidates and keeps the neighbours, until there are more of either than the
+/// list's limits allow.
 pub struct Collector<'a, T> {
     test: &'a T,
     chunk: &'a mut Chunk,
-    effort: &'a Effort,
-    /// Pairs and candidates that the effort doesn't have yet.
+    effort: &'a SearchEffort,
+    /// Pairs and candidates that are not yet added to the shared effort.
     pairs: u64,
     candidates: u64,
     hits: [u32; MOST_CANDIDATES + MAX_WIDTH],
@@ -53,7 +53,7 @@ pub struct Collector<'a, T> {
 
 impl<'a, T: SlotTest> Collector<'a, T> {
     #[inline(always)]
-    pub fn new(test: &'a T, chunk: &'a mut Chunk, effort: &'a Effort) -> Self {
+    pub fn new(test: &'a T, chunk: &'a mut Chunk, effort: &'a SearchEffort) -> Self {
         Self {
             test,
             chunk,
@@ -64,13 +64,13 @@ impl<'a, T: SlotTest> Collector<'a, T> {
         }
     }
 
-    /// Whether the rest of the search is of no use.
+    /// Whether the search has exceeded its limits.
     #[inline(always)]
     fn is_over(&self) -> bool {
         self.effort.is_over_with(self.pairs, self.candidates)
     }
 
-    /// Keeps the neighbours that a test of so many candidates has found.
+    /// Keeps the neighbours found by a test of `candidates` candidates.
     #[inline(always)]
     fn keep(&mut self, found: usize, candidates: usize) {
         self.chunk.append(&self.hits[..found]);
@@ -81,7 +81,7 @@ impl<'a, T: SlotTest> Collector<'a, T> {
         }
     }
 
-    /// Adds what has been counted to the effort of all threads.
+    /// Adds the counts to the effort of all threads.
     #[inline(always)]
     pub fn finish(&mut self) {
         self.effort.add(self.pairs, self.candidates);
@@ -128,15 +128,15 @@ impl<T: SlotTest> FirstTest for Collector<'_, T> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::list::List;
+    use super::super::list::NeighbourList;
     use super::*;
     use crate::broad_phase::Slots;
     use crate::simd::{Kernel, Tier, dispatch};
 
-    /// Hands runs of slots to a list.
-    struct HandRuns<'a, 's>(Collector<'a, GrownBalls<'s>>, &'a [(usize, Range<usize>)]);
+    /// Passes runs of slots to a list.
+    struct PassRuns<'a, 's>(Collector<'a, GrownBalls<'s>>, &'a [(usize, Range<usize>)]);
 
-    impl Kernel for HandRuns<'_, '_> {
+    impl Kernel for PassRuns<'_, '_> {
         type Output = ();
         fn run<L: Lanes>(mut self, l: L) {
             for (i, run) in self.1 {
@@ -146,7 +146,7 @@ mod tests {
         }
     }
 
-    /// The pairs that a list is read as.
+    /// Collects the pairs of a list.
     struct ListedPairs(Vec<(usize, usize)>);
 
     impl FirstTest for ListedPairs {
@@ -159,7 +159,7 @@ mod tests {
         }
     }
 
-    struct FindPairs<'a>(&'a List, &'a mut ListedPairs);
+    struct FindPairs<'a>(&'a NeighbourList, &'a mut ListedPairs);
 
     impl Kernel for FindPairs<'_> {
         type Output = ();
@@ -168,8 +168,9 @@ mod tests {
         }
     }
 
+    /// Runs of any length from any slots are kept in their order.
     #[test]
-    fn runs_of_any_length_from_any_slots_are_kept_in_their_order() {
+    fn runs_keep_their_order() {
         let len = 3 * MOST_CANDIDATES;
         // One in sixteen is far away, so that hits don't come in whole vectors.
         let is_far = |slot: usize| slot % 16 == 7;
@@ -201,14 +202,14 @@ mod tests {
         };
         for tier in Tier::available() {
             let mut chunk = Chunk::default();
-            let effort = Effort::unlimited();
+            let effort = SearchEffort::unlimited();
             dispatch(
                 tier,
-                HandRuns(Collector::new(&test, &mut chunk, &effort), &runs),
+                PassRuns(Collector::new(&test, &mut chunk, &effort), &runs),
             );
             assert_eq!((chunk.len(), effort.tested()), (expected.len(), seen));
             let mut read = ListedPairs(Vec::new());
-            dispatch(tier, FindPairs(&List::of(chunk), &mut read));
+            dispatch(tier, FindPairs(&NeighbourList::of(chunk), &mut read));
             assert!(read.0 == expected, "{tier}");
         }
     }

@@ -1,29 +1,29 @@
-//! Whether every ball has stayed within its skin.
+//! Checking that every ball has stayed within its skin.
 
 use crate::broad_phase::BLOCK_BODIES;
 use crate::rounding::skin::{Skin, stays};
 use crate::simd::{Kernel, Lanes, dispatch};
 use crate::threads::Executor;
 
-/// Balls that one thread looks at at a time.
+/// Balls that one thread checks at a time.
 pub const BALLS_PER_TASK: usize = 4096;
 
-/// Whether none has drifted by its skin since `then`.
+/// Whether no ball has drifted by its skin since `then`.
 pub fn all_stay(executor: Executor<'_>, skin: Skin, now: &[[f32; 4]], then: &[[f32; 4]]) -> bool {
     let Executor { tier, pool } = executor;
     pool.all(now.len(), BALLS_PER_TASK, |range| {
         let (now, then) = (&now[range.clone()], &then[range]);
-        dispatch(tier, Measure { skin, now, then })
+        dispatch(tier, MeasureDrift { skin, now, then })
     })
 }
 
-struct Measure<'a> {
+struct MeasureDrift<'a> {
     skin: Skin,
     now: &'a [[f32; 4]],
     then: &'a [[f32; 4]],
 }
 
-impl Kernel for Measure<'_> {
+impl Kernel for MeasureDrift<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> bool {
@@ -38,7 +38,7 @@ impl Kernel for Measure<'_> {
     }
 }
 
-/// Fewer balls than a block has, and balls without a size at the origin.
+/// A block of balls: `rest`, then balls of radius 0 at the origin.
 pub fn padded(rest: &[[f32; 4]]) -> [[f32; 4]; BLOCK_BODIES] {
     let mut balls = [[0.0; 4]; BLOCK_BODIES];
     balls[..rest.len()].copy_from_slice(rest);
@@ -52,7 +52,7 @@ fn block_stays<L: Lanes>(
     now: &[[f32; 4]; BLOCK_BODIES],
     then: &[[f32; 4]; BLOCK_BODIES],
 ) -> bool {
-    // A loop and no closure, which would be compiled apart and without the tier's features.
+    // A loop, because a closure would be compiled without the tier's features.
     let mut staying = l.first(L::WIDTH);
     let mut start = 0;
     while start < BLOCK_BODIES {

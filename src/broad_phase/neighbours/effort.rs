@@ -1,26 +1,26 @@
-//! What the search for a list has found and tested so far, on all threads together, and when it
-//! ends.
+//! [`SearchEffort`]: what the search for a list has found and tested so far, on all threads
+//! together, and when it ends.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use super::list::Limits;
+use super::list::SearchLimits;
 
 /// Candidates after which a thread adds its counts to those of all.
 pub const CANDIDATES_PER_REPORT: u64 = 1024;
 
-/// Counts of all threads. They only grow, so whether the search ends beyond its limits depends on
-/// no thread; how far beyond does, by a [`CANDIDATES_PER_REPORT`] and one piece of the work for
-/// each of them.
+/// Counts of all threads. They only grow, so whether the search exceeds its limits does not depend
+/// on threads. By how much it does: up to [`CANDIDATES_PER_REPORT`] and one part of the work per
+/// thread.
 #[derive(Debug)]
-pub struct Effort {
-    limits: Limits,
+pub struct SearchEffort {
+    limits: SearchLimits,
     pairs: AtomicU64,
     candidates: AtomicU64,
 }
 
-impl Effort {
-    /// None so far.
-    pub fn new(limits: Limits) -> Self {
+impl SearchEffort {
+    /// Counts of zero, with these limits.
+    pub fn new(limits: SearchLimits) -> Self {
         Self {
             limits,
             pairs: AtomicU64::new(0),
@@ -34,14 +34,14 @@ impl Effort {
         self.candidates.fetch_add(candidates, Relaxed);
     }
 
-    /// Whether the counts of all and these, of which nothing has been added, exceed the limits.
+    /// Whether the shared counts plus these, which are not yet added, exceed the limits.
     #[inline(always)]
     pub fn is_over_with(&self, pairs: u64, candidates: u64) -> bool {
         self.pairs.load(Relaxed) + pairs > self.limits.pairs
             || self.candidates.load(Relaxed) + candidates > self.limits.candidates
     }
 
-    /// Whether the search is to end.
+    /// Whether the search has to end.
     pub fn is_over(&self) -> bool {
         self.is_over_with(0, 0)
     }
@@ -71,24 +71,25 @@ impl Effort {
 mod tests {
     use super::*;
 
-    impl Effort {
+    impl SearchEffort {
         /// Of a search that never ends early.
         pub fn unlimited() -> Self {
-            Self::new(Limits {
+            Self::new(SearchLimits {
                 pairs: u64::MAX,
                 candidates: u64::MAX,
             })
         }
     }
 
+    /// An effort is over beyond either limit.
     #[test]
-    fn an_effort_is_over_beyond_either_limit() {
-        let limits = Limits {
+    fn search_ends_beyond_either_limit() {
+        let limits = SearchLimits {
             pairs: 10,
             candidates: 100,
         };
         for (pairs, candidates, over) in [(10, 100, false), (11, 50, true), (5, 101, true)] {
-            let effort = Effort::new(limits);
+            let effort = SearchEffort::new(limits);
             assert_eq!(effort.is_over_with(pairs, candidates), over);
             effort.add(pairs - 1, candidates - 1);
             assert!(!effort.is_over() && effort.tested() == candidates - 1);
@@ -105,11 +106,11 @@ mod tests {
     #[test]
     #[cfg_attr(debug_assertions, should_panic(expected = "ends at its limits"))]
     fn a_search_without_end_is_noticed() {
-        let limits = Limits {
+        let limits = SearchLimits {
             pairs: 10,
             candidates: 100,
         };
-        let effort = Effort::new(limits);
+        let effort = SearchEffort::new(limits);
         effort.add(0, 100_000);
         effort.check(4);
     }

@@ -1,63 +1,64 @@
-//! The list itself: a chunk for each part of the grid's work, codes as in a [`Block`], sixteen
-//! slots an entry.
+//! [`NeighbourList`]: one chunk per part of the grid's work, with codes as in a [`Block`] and one
+//! entry per sixteen slots.
 
 use std::ops::Range;
 
 use super::Volume;
 use super::collect::{Collector, GrownBalls};
-use super::effort::Effort;
+use super::effort::SearchEffort;
 use crate::broad_phase::{Block, EndSlots, FirstTest, Grid, MOST_CANDIDATES, SlotTest, bytes};
 use crate::rounding::skin::{Reach, Skin};
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, dispatch};
 use crate::threads::Executor;
 
-/// Pairs a body that a list with the widest skin may hold, and a few more for small scenes: crowds
-/// are bound by what is reported, and there a list would take more memory than all the rest.
+/// The most pairs per body of a list with the widest skin, apart from a constant for small scenes.
+/// In denser crowds the reported pairs dominate the time, and a list would take more memory than
+/// everything else.
 const PAIRS_PER_BODY: usize = 8;
-const FEW_PAIRS: u64 = 256;
+const SPARE_PAIRS: u64 = 256;
 
-/// Candidates that the search for a list may test: this many times those of the grid without a
-/// skin, and some per body. What a skin adds is less ([`policy`](super::policy)), unless its floor
-/// is wider than the bodies.
+/// The limit of candidates that the search for a list may test: this many times those of the grid
+/// without a skin, plus some per body. Skins stay below it ([`policy`](super::policy)), unless the
+/// skin's floor exceeds the bodies' size.
 const GROWTH_OF_CANDIDATES: u64 = 3;
 const CANDIDATES_PER_BODY: u64 = 48;
 
-/// Room that a list is given, in lengths of its own.
+/// Capacity of a list relative to its length.
 const CAPACITY_FACTOR: f64 = 1.5;
 
-/// What must touch, grown by the skin, for a pair to be listed.
+/// The volumes that must touch, grown by the skin, for a pair to be listed.
 #[derive(Clone, Copy)]
 pub enum ListedVolume<'a> {
     /// Balls, or what they stand for.
     Balls(Volume),
-    /// Boxes, which have been grown.
+    /// Boxes, already grown.
     Ends(&'a EndSlots),
 }
 
-/// What a list may hold, and what its search may test.
+/// The limits of a list and of the search for it.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub struct SearchLimits {
     /// Pairs.
     pub pairs: u64,
     /// Candidates.
     pub candidates: u64,
 }
 
-impl Limits {
-    /// For a list of so many bodies, where the widest skin brings `spare` times the pairs and the
-    /// grid without a skin has so many candidates.
+impl SearchLimits {
+    /// The limits for a list of `bodies` bodies, for which the widest skin gives `spare` times as
+    /// many pairs and the grid without a skin has `candidates` candidates.
     fn of(bodies: usize, candidates: u64, spare: f64) -> Self {
         let pairs = (PAIRS_PER_BODY * bodies) as f64 / spare;
         Self {
-            pairs: pairs as u64 + FEW_PAIRS,
+            pairs: pairs as u64 + SPARE_PAIRS,
             candidates: GROWTH_OF_CANDIDATES * candidates + CANDIDATES_PER_BODY * bodies as u64,
         }
     }
 }
 
-/// What became of the search for a list.
+/// The result of the search for a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum SearchOutcome {
     /// The list is complete.
     Complete,
     /// There is no list: it would hold too many pairs, or its search would test too many
@@ -67,7 +68,7 @@ pub enum Outcome {
 
 /// The list of all parts.
 #[derive(Clone, Debug, Default)]
-pub struct List {
+pub struct NeighbourList {
     chunks: Vec<Chunk>,
     parts: usize,
     len: usize,
@@ -75,35 +76,35 @@ pub struct List {
     tested: u64,
 }
 
-/// The neighbours that one part of the grid's work has found.
+/// The neighbours found by one part of the grid's work.
 #[derive(Clone, Debug, Default)]
 pub struct Chunk {
-    /// Codes of all entries, and a vector of whatever codes after them.
+    /// The codes of all entries, followed by a vector of arbitrary codes.
     codes: Vec<u32>,
     len: usize,
-    /// The slot of lane 0, and where the entry's codes end.
+    /// For each entry, the slot of lane 0 and the end of its codes.
     entries: Vec<(u32, u32)>,
-    /// By how much more room is made than is needed.
+    /// The capacity to allocate, relative to the need.
     spare: f64,
 }
 
-impl List {
-    /// Makes the list of a grid that has just been arranged, whose bodies have so many candidates
-    /// without a skin. There is room for as many pairs as the widest skin will bring, `spare` times
-    /// those of this one, so that another skin allocates nothing. The search ends as soon as it
-    /// exceeds its limits; whether it does depends on no thread.
+impl NeighbourList {
+    /// Builds the list of a grid that has just been arranged and has `candidates` candidates
+    /// without a skin. There is room for `spare` times the pairs of this skin, as many as the
+    /// widest skin will give, so that another skin allocates nothing. The search ends as soon as it
+    /// exceeds its limits; whether it does is independent of threads.
     pub fn make(
         &mut self,
         executor: Executor<'_>,
         (grid, candidates): (&Grid, u64),
         (skin, spare): (Skin, f64),
         near: ListedVolume<'_>,
-    ) -> Outcome {
+    ) -> SearchOutcome {
         self.parts = grid.parts();
         if self.chunks.len() < self.parts {
             self.chunks.resize(self.parts, Chunk::default());
         }
-        let effort = Effort::new(Limits::of(grid.bodies(), candidates, spare));
+        let effort = SearchEffort::new(SearchLimits::of(grid.bodies(), candidates, spare));
         let chunks = &mut self.chunks[..self.parts];
         executor.pool.each(chunks, |part, chunk| {
             chunk.clear();
@@ -111,7 +112,7 @@ impl List {
             if effort.is_over() {
                 return;
             }
-            let make = Make {
+            let make = BuildList {
                 grid,
                 part,
                 near,
@@ -124,13 +125,13 @@ impl List {
         effort.check(executor.pool.threads());
         self.tested = effort.tested();
         if effort.is_over() {
-            return Outcome::Abandoned;
+            return SearchOutcome::Abandoned;
         }
         self.len = self.chunks[..self.parts].iter().map(Chunk::len).sum();
-        Outcome::Complete
+        SearchOutcome::Complete
     }
 
-    /// Pairs in it.
+    /// The number of pairs.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -171,13 +172,13 @@ impl Chunk {
         self.len = 0;
     }
 
-    /// The slot of lane 0 of the entry that is being written, if there is one.
+    /// The slot of lane 0 of the open entry, if there is one.
     #[inline(always)]
     pub fn first(&self) -> Option<usize> {
         self.entries.last().map(|&(first, _)| first as usize)
     }
 
-    /// Opens an entry, in place of the last one if that is empty.
+    /// Opens an entry, replacing the last one if that is empty.
     #[inline(always)]
     pub fn open(&mut self, first: usize) {
         if self
@@ -206,7 +207,7 @@ impl Chunk {
         }
     }
 
-    /// Closes the list, with room for those that follow it.
+    /// Completes the list, and reserves room for the following ones.
     fn close(&mut self) {
         reserve(&mut self.codes, MAX_WIDTH, self.spare);
         self.codes.resize(self.len + MAX_WIDTH, 0);
@@ -221,7 +222,7 @@ impl Chunk {
     }
 }
 
-/// Room for more: `spare` times what is needed by now, and half as much beyond that.
+/// Reserves room: `spare` times what is needed so far, and half as much again.
 #[inline(always)]
 fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
     let needed = column.len() + more;
@@ -231,8 +232,7 @@ fn reserve<T>(column: &mut Vec<T>, more: usize, spare: f64) {
     }
 }
 
-/// Lists breathe from one to the next: a column that was filled to the brim would be allocated anew
-/// by the next one.
+/// Reserves room in a full column, because the next list may be slightly longer and would allocate.
 fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
     let [least, room] =
         [1.0, CAPACITY_FACTOR].map(|times| (times * spare * column.len() as f64) as usize);
@@ -241,16 +241,16 @@ fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
     }
 }
 
-struct Make<'a> {
+struct BuildList<'a> {
     grid: &'a Grid,
     part: usize,
     near: ListedVolume<'a>,
     skin: Skin,
     chunk: &'a mut Chunk,
-    effort: &'a Effort,
+    effort: &'a SearchEffort,
 }
 
-impl Kernel for Make<'_> {
+impl Kernel for BuildList<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
@@ -267,7 +267,7 @@ impl Kernel for Make<'_> {
     }
 }
 
-impl Make<'_> {
+impl BuildList<'_> {
     #[inline(always)]
     fn collect<L: Lanes>(self, l: L, test: &impl SlotTest) {
         let mut collect = Collector::new(test, self.chunk, self.effort);
@@ -281,7 +281,7 @@ impl Make<'_> {
 mod tests {
     use super::*;
 
-    impl List {
+    impl NeighbourList {
         /// Of one part.
         pub(in crate::broad_phase) fn of(mut chunk: Chunk) -> Self {
             chunk.close();
@@ -301,8 +301,9 @@ mod tests {
         column
     }
 
+    /// A column that is full gets room of one and a half times what is needed.
     #[test]
-    fn a_column_that_is_full_gets_room_of_one_and_a_half_times_what_is_needed() {
+    fn full_column_grows_by_half() {
         for (spare, more, room) in [(1.0, 1, 151), (2.0, 1, 303), (1.0, 20, 180), (0.5, 1, 101)] {
             let mut column = hundred(100);
             reserve(&mut column, more, spare);
@@ -313,8 +314,9 @@ mod tests {
         assert_eq!(column.capacity(), 120, "what fits moves nothing");
     }
 
+    /// A list leaves room for the next one where it has none to spare.
     #[test]
-    fn a_list_leaves_room_for_the_next_one_where_it_has_none_to_spare() {
+    fn full_list_leaves_room() {
         for (capacity, spare, room) in [
             (100, 1.0, 100),
             (199, 2.0, 300),
@@ -352,9 +354,10 @@ mod tests {
         assert_eq!(chunk.codes.len(), 3 + MAX_WIDTH);
     }
 
+    /// Bytes are those of all chunks used or not.
     #[test]
-    fn bytes_are_those_of_all_chunks_used_or_not() {
-        let mut list = List::default();
+    fn bytes_count_all_chunks() {
+        let mut list = NeighbourList::default();
         assert_eq!(list.bytes(), 0);
         list.chunks = Vec::with_capacity(5);
         list.chunks.resize(2, Chunk::default());

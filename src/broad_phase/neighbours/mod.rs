@@ -1,23 +1,23 @@
-//! Neighbour lists: candidates within reach and a skin, found by the grid once, tested frame after
-//! frame.
+//! Neighbour lists: pairs within a skin of each other, found by the grid once and tested frame
+//! after frame.
 //!
-//! Most pairs that are near each other in one frame are so in the next. A list of the pairs whose
-//! balls, grown by a skin each, touch serves until some ball has drifted by its skin ([`drift`]),
-//! which is measured in every frame and never extrapolated; then the grid makes a new one.
-//! Meanwhile slots, and places with them, stay as they are: nothing is sorted, and updates write in
-//! the order in which the list reads. A body that jumps has drifted, so that a new list is made;
-//! static bodies have no skin.
+//! Bodies that are near each other in one frame are mostly so in the next. A list has the pairs
+//! whose balls touch when each is grown by a skin. It is valid until some ball has drifted by its
+//! skin ([`drift`]), which is measured in every frame and never extrapolated. Then the grid builds
+//! a new list. Meanwhile slots and places stay: nothing is sorted, and updates write in the order
+//! in which the list reads. A body that jumps has drifted, so that a new list is built. Static
+//! bodies have no skin.
 //!
-//! A skin is a share of each ball's radius, or the same length for all: where small bodies move as
-//! fast as wide ones, a share of theirs is used up by the first step, while pairs are made by the
-//! wide.
+//! A skin is a fraction of each ball's radius, or one length for all. If small bodies move as fast
+//! as large ones, one length is better: a fraction of a small radius would be used up in the first
+//! step, although large bodies make most pairs.
 //!
-//! The cubes about long boxes have many neighbours that the boxes don't have. Their lists are made
-//! by the boxes themselves, grown by a length, and serve until an end of a box leaves its grown one
-//! ([`EndSlots`]).
+//! The cubes around long boxes have many neighbours that the boxes don't have. Lists of long boxes
+//! are therefore built from the boxes themselves, grown by a length, and are valid until an end of
+//! a box leaves its grown box ([`EndSlots`]).
 //!
-//! Lists don't pay where bodies move by a good share of their radius a frame, or where each has
-//! many neighbours. By counts alone ([`policy`]) such frames are the grid's.
+//! Lists don't pay if bodies move by a large part of their radius per frame or have many
+//! neighbours. Such frames are left to the grid, decided by counts alone ([`policy`]).
 
 mod collect;
 mod drift;
@@ -26,64 +26,64 @@ mod list;
 mod motion;
 mod policy;
 
-pub(super) use self::list::List;
-use self::list::{ListedVolume, Outcome};
+pub(super) use self::list::NeighbourList;
+use self::list::{ListedVolume, SearchOutcome};
 use self::motion::{LargestDrift, SizeSummary, are_specks, typical_radius};
 use self::policy::{EndedList, Policy};
-use super::{Boxes, EndSlots, Grid, Reorder, Slots};
+use super::{EndSlots, GivenBoxes, Grid, Reorder, Slots};
 use crate::rounding::cube;
 use crate::rounding::skin::{Reach, Skin};
 use crate::threads::Executor;
 
-/// What a pair finder's balls stand for.
+/// The volume that a pair finder's balls stand for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Volume {
-    /// Themselves: what is reported has balls that meet.
+    /// The balls themselves: for every reported pair the balls meet.
     #[default]
     Ball,
-    /// The cubes about them: what is reported has cubes that meet.
+    /// The cubes around the balls: for every reported pair the cubes meet.
     Cube,
 }
 
-/// A grid, whose slots stay as they were when the list was made, and that list.
+/// The finder: a grid, whose slots stay as they were when the list was built, and that list.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours {
     grid: Grid,
     volume: Volume,
-    list: List,
-    /// The grown boxes that the list was made of, if it was made by boxes.
+    list: NeighbourList,
+    /// The grown boxes from which the list was built, if it was built from boxes.
     grown: EndSlots,
-    state: State,
+    state: ListState,
     policy: Policy,
-    /// Candidates of the grid without a skin.
+    /// The grid's candidates without a skin.
     candidates: CandidateEstimate,
-    /// Candidates tested in this frame in the search for a list.
+    /// Candidates tested in this frame to build a list.
     list_tests: u64,
 }
 
-/// A number of candidates, and how well it is known.
+/// A number of candidates, counted or estimated.
 #[derive(Clone, Copy, Debug, Default)]
 struct CandidateEstimate {
     number: u64,
-    /// Whether the grid has counted them in the frame before.
+    /// Whether the grid counted them in the previous frame.
     is_counted: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
-    /// No list: the grid finds pairs.
+enum ListState {
+    /// There is no list: the grid finds pairs.
     #[default]
     Searching,
-    /// The list was made in this frame; places aren't slots.
+    /// The list was built in this frame; places don't have the order of slots yet.
     Made,
-    /// Places have taken the order of slots, and slots are yet to take their names.
+    /// Places have the order of slots, but slots don't have the new names yet.
     Ordered,
     /// The list is followed.
     Followed,
 }
 
 impl Neighbours {
-    /// A finder of such volumes.
+    /// A finder for balls that stand for `volume`.
     pub fn new(volume: Volume) -> Self {
         Self {
             volume,
@@ -91,20 +91,20 @@ impl Neighbours {
         }
     }
 
-    /// What balls stand for.
+    /// The volume that balls stand for.
     #[cfg(debug_assertions)]
     pub(super) fn volume(&self) -> Volume {
         self.volume
     }
 
-    /// Whether there is a list, and it was made by boxes.
+    /// Whether there is a list that was built from boxes.
     #[cfg(debug_assertions)]
     pub(super) fn is_by_boxes(&self) -> bool {
         self.policy.is_by_boxes() && self.list().is_some()
     }
 
-    /// Looks for a better order of places: that of the slots after a list has been made, or what
-    /// the grid says.
+    /// Finds a better order of places: that of the slots after a list was built, otherwise the
+    /// grid's.
     pub(super) fn reorder(
         &mut self,
         moving: usize,
@@ -114,13 +114,13 @@ impl Neighbours {
     ) -> Reorder {
         let replan = self.grid.needs_plan(balls.len());
         match self.state {
-            _ if replan => self.state = State::Searching,
-            State::Searching => {}
-            State::Made => {
-                self.state = State::Ordered;
+            _ if replan => self.state = ListState::Searching,
+            ListState::Searching => {}
+            ListState::Made => {
+                self.state = ListState::Ordered;
                 return self.grid.follow_slots(moving, names, order);
             }
-            State::Ordered | State::Followed => {
+            ListState::Ordered | ListState::Followed => {
                 self.grid.rest();
                 return Reorder::None;
             }
@@ -128,37 +128,37 @@ impl Neighbours {
         self.grid.reorder(moving, balls, names, order)
     }
 
-    /// Takes up another set of bodies as the grid does; the list is of the former ones.
+    /// Changes the set of bodies as the grid does, and drops the list.
     pub(super) fn replace(&mut self, stays: &[bool], moving: usize, bodies: usize) -> bool {
-        if self.state != State::Searching {
+        if self.state != ListState::Searching {
             self.policy.interrupted();
-            self.state = State::Searching;
+            self.state = ListState::Searching;
         }
         self.grid.replace(stays, moving, bodies)
     }
 
-    /// Follows the list if it may be, or lets the grid arrange the bodies and makes a new one if it
-    /// pays.
+    /// Follows the list if it is valid. Otherwise lets the grid arrange the bodies, and builds a
+    /// new list if that pays.
     pub(super) fn arrange(
         &mut self,
         executor: Executor<'_>,
         moving: usize,
         balls: &[[f32; 4]],
         names: &[u32],
-        boxes: Option<Boxes<'_>>,
+        boxes: Option<GivenBoxes<'_>>,
     ) {
         self.list_tests = 0;
         let long = boxes.filter(|boxes| boxes.are_long);
-        if matches!(self.state, State::Ordered | State::Followed) {
+        if matches!(self.state, ListState::Ordered | ListState::Followed) {
             let (now, then) = (&balls[..moving], &self.grid.slots().balls[..moving]);
             let stay = match boxes.filter(|_| self.policy.is_by_boxes()) {
                 Some(boxes) => self.grown.hold(executor, &names[..moving], boxes.all),
                 None => drift::all_stay(executor, self.policy.skin(), now, then),
             };
             if stay {
-                if self.state == State::Ordered {
+                if self.state == ListState::Ordered {
                     self.grid.slots_mut().names[..names.len()].copy_from_slice(names);
-                    self.state = State::Followed;
+                    self.state = ListState::Followed;
                 }
                 self.policy.followed();
                 return;
@@ -172,7 +172,7 @@ impl Neighbours {
                 sizes,
             });
         }
-        self.state = State::Searching;
+        self.state = ListState::Searching;
         self.policy
             .turn_to(long.is_some(), || sizes(balls, names, long));
         let Some(skin) = self.policy.next() else {
@@ -186,16 +186,16 @@ impl Neighbours {
         self.grid.arrange(executor, balls, names);
         let outcome = self.make(executor, (skin, moving), long);
         self.list_tests = self.list.tested();
-        if outcome == Outcome::Abandoned {
-            // A limit by candidates that were a guess is tried again by those of this frame.
+        if outcome == SearchOutcome::Abandoned {
+            // If the limit came from an estimate, try again with the count of this frame.
             if self.candidates.is_counted {
                 self.policy.overflowed();
             }
-            // What the skin has brought to the cells would be tested in vain.
+            // The candidates that the skin has added would be tested in vain.
             return self.search(executor, balls, names);
         }
-        self.state = State::Made;
-        // The grid plans by the candidates that it would have handed out without a skin.
+        self.state = ListState::Made;
+        // The grid plans by the candidates that it would have without a skin.
         let number = (self.list_tests as f64 / self.policy.more_candidates()) as u64;
         self.grid.observe(number);
         self.candidates = CandidateEstimate {
@@ -210,16 +210,16 @@ impl Neighbours {
         self.grid.arrange(executor, balls, names);
     }
 
-    /// Makes the list of the grid that has just been arranged.
+    /// Builds the list from the grid that has just been arranged.
     fn make(
         &mut self,
         executor: Executor<'_>,
         (skin, moving): (Skin, usize),
-        long: Option<Boxes<'_>>,
-    ) -> Outcome {
+        long: Option<GivenBoxes<'_>>,
+    ) -> SearchOutcome {
         let near = match long {
             None => ListedVolume::Balls(self.volume),
-            Some(Boxes { all, .. }) => {
+            Some(GivenBoxes { all, .. }) => {
                 let Slots { names, balls, .. } = self.grid.slots();
                 let (names, cubes) = (&names[..self.grid.bodies()], &balls[..moving]);
                 (self.grown).fill_grown(executor, names, all, (cubes, skin));
@@ -231,8 +231,7 @@ impl Neighbours {
         self.list.make(executor, grid, skin, near)
     }
 
-    /// Candidates tested in this frame in the search for a list, beyond those that the frame hands
-    /// out.
+    /// Candidates tested in this frame to build a list, in addition to the frame's own candidates.
     pub(super) fn list_tests(&self) -> u64 {
         self.list_tests
     }
@@ -241,32 +240,32 @@ impl Neighbours {
         self.grid.bytes() + self.list.bytes() + self.grown.bytes()
     }
 
-    /// Those of the frame in which they were arranged last.
+    /// The slots of the frame in which they were arranged last.
     pub(super) fn slots(&self) -> &Slots {
         self.grid.slots()
     }
 
-    /// Whether the frame follows a list in whose order places are; the slots' balls are then those
-    /// that the list was made of.
+    /// Whether the frame follows a list and places have its order. The slots' balls are then those
+    /// from which the list was built.
     pub(super) fn slots_are_places(&self) -> bool {
-        self.state == State::Followed
+        self.state == ListState::Followed
     }
 
-    /// The list, in frames that follow one.
+    /// The list, if this frame follows one.
     #[inline(always)]
-    pub(super) fn list(&self) -> Option<&List> {
-        (self.state != State::Searching).then_some(&self.list)
+    pub(super) fn list(&self) -> Option<&NeighbourList> {
+        (self.state != ListState::Searching).then_some(&self.list)
     }
 
-    /// The grid, whose frame it is otherwise.
+    /// The grid, which finds the pairs otherwise.
     #[inline(always)]
     pub(super) fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// Notes how many candidates a frame had.
+    /// Records the frame's number of candidates.
     pub(super) fn observe(&mut self, candidates: u64) {
-        if self.state == State::Searching {
+        if self.state == ListState::Searching {
             self.grid.observe(candidates);
             self.candidates = CandidateEstimate {
                 number: candidates,
@@ -276,10 +275,10 @@ impl Neighbours {
     }
 }
 
-/// The sizes of balls, or of long boxes in them.
-fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<Boxes<'_>>) -> SizeSummary {
+/// The sizes of balls, or of the long boxes in them.
+fn sizes(balls: &[[f32; 4]], names: &[u32], long: Option<GivenBoxes<'_>>) -> SizeSummary {
     let of_balls = typical_radius(balls.len(), |place| [balls[place][3]; 3]);
-    let of_boxes = long.map(|Boxes { all, .. }| {
+    let of_boxes = long.map(|GivenBoxes { all, .. }| {
         typical_radius(balls.len(), |place| {
             let half_sides = all[names[place] as usize].half_sides();
             half_sides.map(|half| half / cube::SCALE)

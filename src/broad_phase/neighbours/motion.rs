@@ -1,5 +1,5 @@
-//! How far balls have drifted by the end of a list, and how wide they are: what the next skin is
-//! chosen by. It decides how long lists last, never what they hold.
+//! How far balls have drifted by the end of a list, and how large they are. The next skin is chosen
+//! from these. They affect how long lists last, never which pairs are reported.
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -9,29 +9,29 @@ use crate::rounding::skin::{REACH_FLOOR, SKIN_FLOOR};
 use crate::simd::{Kernel, Lanes, dispatch, quads_in_columns};
 use crate::threads::Executor;
 
-/// Balls whose radii are asked, at most.
+/// The most balls whose radii are sampled.
 const SAMPLE_SIZE: usize = 256;
 
-/// How many times the smallest radius the typical one may be.
+/// The largest ratio of the typical radius to the smallest half side.
 const MOST_SIZE_RATIO: f64 = 16.0;
 
-/// 2⁻⁶⁰: smaller radii count as this one, whose square is no subnormal.
+/// 2⁻⁶⁰: smaller radii count as this one, whose square is not subnormal.
 const LEAST_RADIUS: f32 = SKIN_FLOOR as f32;
 
-/// The farthest that any ball has drifted: sums of squares of what the centre has moved and the
-/// radius has grown.
+/// The largest drift of any ball: the root of the squares of the centre's movement and the radius'
+/// growth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LargestDrift {
-    /// In radii of the ball's own.
+    /// In the ball's own radii.
     pub own: f64,
     /// In typical radii.
     pub typical: f64,
 }
 
 impl LargestDrift {
-    /// Of balls since `then`.
+    /// The largest drift of balls since `then`.
     pub fn of(executor: Executor<'_>, now: &[[f32; 4]], then: &[[f32; 4]], typical: f64) -> Self {
-        // Bits of numbers that aren't negative are in their order.
+        // The bits of non-negative numbers are ordered as the numbers are.
         let farthest = [const { AtomicU32::new(0) }; 2];
         executor.pool.ranges(now.len(), BALLS_PER_TASK, |range| {
             let (now, then) = (&now[range.clone()], &then[range]);
@@ -49,15 +49,15 @@ impl LargestDrift {
     }
 }
 
-/// The radius r of bodies of one size that would be as hard to find: a skin of σr adds about as
-/// many pairs to a list of bodies of these half sides, all alike, as one of σ radii each. Pairs go
-/// by the product, over the axes, of the sums of two half sides hᵢₖ + hⱼₖ, so that their growth by
-/// a length goes by products of two such sums: r = 3ΣΠₖ(hᵢₖ + hⱼₖ) / 2ΣΣₖΠₗ(hᵢₗ + hⱼₗ), l ≠ k,
-/// which is Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)² of balls.
+/// The typical radius r: a skin of σr for all bodies adds about as large a fraction of pairs to
+/// their list as a skin of σ radii adds to a list of equal balls. The number of pairs is
+/// proportional to Πₖ(hᵢₖ + hⱼₖ), the product of the sums of half sides over the axes k, and its
+/// growth by a length to products of two such sums: r = 3ΣΠₖ(hᵢₖ + hⱼₖ) / 2ΣΣₖΠₗ(hᵢₗ + hⱼₗ), l ≠ k,
+/// which for balls is Σ(rᵢ + rⱼ)³ / 2Σ(rᵢ + rⱼ)².
 ///
-/// Zero, so that any drift is infinitely many of it and no skin goes by it, where it is more than
-/// [`MOST_SIZE_RATIO`] times the longest half side of the smallest body: a skin of a giant's size
-/// would make all the small ones neighbours.
+/// It is zero, so that no skin is measured in it, if it is more than [`MOST_SIZE_RATIO`] times the
+/// longest half side of the smallest body: a skin of a giant's size would make all small bodies
+/// neighbours.
 pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> f64 {
     let (mut sums, mut asked, mut smallest) = ([0.0; 7], 0.0, f64::INFINITY);
     for body in (0..bodies).step_by(bodies.div_ceil(SAMPLE_SIZE).max(1)) {
@@ -71,7 +71,7 @@ pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> 
         (asked, smallest) = (asked + 1.0, smallest.min(x.max(y).max(z)));
     }
     let [x, y, z, yz, zx, xy, xyz] = sums.map(|sum| sum / f64::max(asked, 1.0));
-    // Means over all pairs, each as the products of what belongs to the one and to the other.
+    // Means over all pairs, as products of means over bodies.
     let product = 2.0 * (xyz + x * yz + y * zx + z * xy);
     let of_two = 2.0 * ((yz + y * z) + (zx + z * x) + (xy + x * y));
     let typical = 3.0 * product / (2.0 * of_two);
@@ -82,9 +82,8 @@ pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> 
     }
 }
 
-/// Whether most balls are so small that the floor of the skin, and of what rounding needs beyond
-/// it, is wider than they are. A list would then hold pairs that have nothing to do with the
-/// bodies' sizes.
+/// Whether most balls are smaller than the floor of the skin and of its rounding margin. A list's
+/// pairs would then be unrelated to the bodies' sizes.
 pub fn are_specks(radii: impl ExactSizeIterator<Item = f32>) -> bool {
     let step = radii.len().div_ceil(SAMPLE_SIZE).max(1);
     let (mut specks, mut asked) = (0, 0);
@@ -95,18 +94,18 @@ pub fn are_specks(radii: impl ExactSizeIterator<Item = f32>) -> bool {
     2 * specks > asked
 }
 
-/// What is known of the sizes of bodies of which lists are made.
+/// The sizes of the bodies from which lists are built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeSummary {
-    /// The typical radius, of boxes where these are listed.
+    /// The typical radius; that of boxes if boxes are listed.
     pub typical: f64,
-    /// The same in typical radii of the balls that the grid searches by: 1 but for boxes that are
-    /// longer than wide.
+    /// The typical radius in units of that of the grid's balls: 1 except for boxes that are longer
+    /// than wide.
     pub of_balls: f64,
 }
 
 impl SizeSummary {
-    /// Of boxes, or of balls that are listed themselves.
+    /// The sizes of boxes, or of balls if those are listed.
     pub fn new(typical: f64, of_balls: f64) -> Self {
         let of_balls = if typical > 0.0 && of_balls > typical {
             typical / of_balls
@@ -123,7 +122,7 @@ struct FindFarthest<'a> {
 }
 
 impl Kernel for FindFarthest<'_> {
-    /// Squares, in radii of their own and as lengths.
+    /// Squared drifts, in own radii and as lengths.
     type Output = [f32; 2];
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> [f32; 2] {
@@ -156,14 +155,14 @@ fn raise<L: Lanes>(
         let growth = larger(now[3][i] - then[3][i], 0.0);
         let square = dx * dx + dy * dy + dz * dz + growth * growth;
         let radius = larger(then[3][i], LEAST_RADIUS);
-        // NaN, of a body outside the contract, is no farther than anything.
+        // A NaN, of a body that breaks the contract, is not larger than anything.
         own[i] = larger(square / (radius * radius), own[i]);
         length[i] = larger(square, length[i]);
     }
 }
 
-/// The larger number, and the second one of any with NaN: one instruction, where `f32::max` takes
-/// four.
+/// The larger number, or the second one if either is NaN: one instruction, compared with four for
+/// `f32::max`.
 #[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -175,8 +174,9 @@ mod tests {
     use crate::simd::Tier;
     use crate::threads::Threads;
 
+    /// The farthest counts wherever it is in every tier.
     #[test]
-    fn the_farthest_counts_wherever_it_is_in_every_tier() {
+    fn farthest_drift_is_found() {
         let pool = Threads::default();
         for n in [1, 15, 16, 33, BALLS_PER_TASK + 1] {
             let then: Vec<_> = (0..n).map(|i| [i as f32, 2.0, -3.0, 4.0]).collect();
@@ -205,8 +205,9 @@ mod tests {
         }
     }
 
+    /// Balls that shrink or stay or have no radius are no trouble.
     #[test]
-    fn balls_that_shrink_or_stay_or_have_no_radius_are_no_trouble() {
+    fn shrinking_or_empty_balls_are_fine() {
         let pool = Threads::default();
         let executor = pool.executor(Tier::SCALAR);
         let motion = |now| LargestDrift::of(executor, now, &[[0.0, 0.0, 0.0, 1.0]; 2], 1.0);
@@ -217,8 +218,9 @@ mod tests {
         assert_eq!(motion, LargestDrift::default());
     }
 
+    /// The typical radius is that of equal ones and leans to the wide.
     #[test]
-    fn the_typical_radius_is_that_of_equal_ones_and_leans_to_the_wide() {
+    fn typical_radius_leans_to_wide() {
         let typical = |radii: &[f32]| typical_radius(radii.len(), |body| [radii[body]; 3]);
         for n in [1, 2, 300, 10_000] {
             let found = typical(&vec![3.0; n]);
@@ -238,7 +240,7 @@ mod tests {
     /// What a skin adds to the pairs of boxes, next to what it adds to those of balls of the
     /// typical radius.
     #[test]
-    fn the_typical_radius_of_long_boxes_brings_as_many_pairs() {
+    fn typical_radius_of_long_boxes() {
         let sides = [
             [0.125, 1.0, 8.0],
             [8.0, 1.0, 0.125],
@@ -262,8 +264,9 @@ mod tests {
         assert!((3.0 / typical / growth - 1.0).abs() < 1e-6, "{typical}");
     }
 
+    /// Sixteen times the smallest radius is typical and more is not.
     #[test]
-    fn sixteen_times_the_smallest_radius_is_typical_and_more_is_not() {
+    fn typical_radius_has_a_ratio_limit() {
         let typical =
             |wide: f32| typical_radius(256, |body| [if body == 0 { wide } else { 1.0 }; 3]);
         // One of x among 255 of 1: sixteen at x = 39.82.

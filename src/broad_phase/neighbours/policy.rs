@@ -1,54 +1,53 @@
-//! When a list pays, and with which skin: by counts of frames and pairs and by how far bodies got,
-//! so that no choice depends on the machine.
+//! [`Policy`]: when a list pays, and with which skin. It is decided by counts of frames and pairs
+//! and by the bodies' drift, so that no choice depends on the machine.
 //!
-//! A skin is so many radii σ: of each body's own, or the same length for all, in [typical
-//! radii](super::motion). Where the small move as fast as the wide, their own radii are soon used
-//! up, and a length lasts. The body that got farthest by the end of a list shows how long another
-//! list would have lasted: σ/v frames and one more. A wider skin makes fewer lists, each of (1 +
-//! σ)³ as many pairs, from as many more candidates.
+//! A skin is σ radii: each body's own, or one length for all in [typical radii](super::motion). If
+//! small bodies move as fast as large ones, a skin in own radii is soon used up, and one length
+//! lasts longer. The largest drift at the end of a list shows how long another skin would have
+//! lasted: σ/v frames and one more. A wider skin needs fewer lists, each with (1 + σ)³ times the
+//! pairs and as many more candidates.
 
 use super::motion::{LargestDrift, SizeSummary};
 use crate::rounding::skin::Skin;
 
-/// Skins to choose from, in radii.
+/// The skins to choose from, in radii.
 const SKINS: [f64; 8] = [0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.5, 0.75];
 
-/// How many times the candidates a skin may bring at most, what 0.375 radii bring: beyond, the
-/// frame that makes a list takes more than 1.3 of the grid's. The balls about long boxes grow
-/// little by what is wide for the boxes.
-const GREATEST_GROWTH: f64 = 2.6;
+/// The largest factor by which a skin may multiply the candidates, that of 0.375 radii: with more,
+/// the frame that builds a list takes more than 1.3 times the grid's frame. For long boxes, a skin
+/// that is wide for the boxes enlarges their balls little.
+const MOST_CANDIDATE_GROWTH: f64 = 2.6;
 
-/// The first one, before anything is known of the motion.
-const FIRST_SKIN: usize = 3;
+/// The index of the first skin, before anything is known of the motion.
+const INITIAL_SKIN_INDEX: usize = 3;
 
-/// Costs in instructions of AVX2, what it takes to name pairs included: lines through the counts of
-/// frames of 4,000 uniform spheres with 2 to 18 candidates each, update excepted.
+/// Costs in AVX2 instructions, including naming the pairs but not the update. They are linear fits
+/// to counts of frames of 4,000 uniform spheres with 2 to 18 candidates each.
 ///
-/// The grid's frame, a body and a candidate.
+/// The cost of the grid's frame per body and per candidate.
 const GRID_BODY_COST: f64 = 240.0;
 const GRID_CANDIDATE_COST: f64 = 9.5;
-/// What a frame that makes a list takes beyond one that follows it.
+/// The additional cost, per body, of a frame that builds a list compared with one that follows it.
 const LIST_BODY_COST: f64 = 260.0;
 const LIST_CANDIDATE_COST: f64 = 11.0;
-/// A frame of a list, a body and a pair.
+/// The cost of a frame that follows a list, per body and per pair.
 const FRAME_BODY_COST: f64 = 35.0;
 const FRAME_PAIR_COST: f64 = 14.0;
 
-/// A list must promise to take at most this share of the grid's time: where it hardly pays, it may
-/// as well cost.
+/// A list is built only if it is expected to take at most this fraction of the grid's time.
 const MOST_GRID_SHARE: f64 = 0.8;
 
-/// By how much skins by other radii must be cheaper than those at hand: where all bodies have one
-/// size both are the same.
-const WORTH_CHANGING: f64 = 0.9;
+/// The fraction of the present cost below which skins switch between own and typical radii. If all
+/// bodies have one size, both are the same.
+const MOST_SWITCH_COST_RATIO: f64 = 0.9;
 
-/// Frames of the grid between two attempts: at first, and at most.
-const FIRST_PAUSE: u32 = 16;
-const LONGEST_PAUSE: u32 = 256;
+/// Grid frames between two attempts to build a list: at first, and at most ([`MOST_PAUSE_FRAMES`]).
+const INITIAL_PAUSE_FRAMES: u32 = 16;
+const MOST_PAUSE_FRAMES: u32 = 256;
 
-/// Whose radii a skin is measured in.
+/// The radii in which a skin is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Radii {
+enum RadiusKind {
     Own,
     Typical,
 }
@@ -56,78 +55,78 @@ enum Radii {
 /// What is known of the motion.
 #[derive(Clone, Debug)]
 pub struct Policy {
-    radii: Radii,
+    radii: RadiusKind,
     skin: usize,
-    /// Of the bodies of the list at hand.
+    /// The sizes of the present list's bodies.
     sizes: SizeSummary,
     /// Whether lists are made of long boxes.
     is_by_boxes: bool,
-    /// Frames that the present list has served.
+    /// Frames that have used the present list.
     served: u32,
-    /// Frames of the grid to come.
+    /// Grid frames until the next attempt.
     wait: u32,
-    /// How many there will be after the next failure.
+    /// How many grid frames follow the next failure.
     pause: u32,
 }
 
 impl Default for Policy {
     fn default() -> Self {
         Self {
-            radii: Radii::Own,
-            skin: FIRST_SKIN,
+            radii: RadiusKind::Own,
+            skin: INITIAL_SKIN_INDEX,
             sizes: SizeSummary::new(0.0, 0.0),
             is_by_boxes: false,
             served: 0,
-            // The first frame places bodies and isn't searched.
+            // In the first frame bodies are placed, and no list is built.
             wait: 1,
-            pause: FIRST_PAUSE,
+            pause: INITIAL_PAUSE_FRAMES,
         }
     }
 }
 
-/// What is known of a list that can't be followed any longer.
+/// Facts about a list that has become invalid.
 #[derive(Clone, Copy, Debug)]
 pub struct EndedList {
-    /// Its pairs.
+    /// Its number of pairs.
     pub pairs: usize,
-    /// The candidates that it was made of.
+    /// The number of candidates from which it was built.
     pub candidates: u64,
     /// Bodies.
     pub bodies: usize,
-    /// How far they got.
+    /// How far the bodies had drifted.
     pub motion: LargestDrift,
     /// Their sizes.
     pub sizes: SizeSummary,
 }
 
 impl Policy {
-    /// The skin of the list at hand.
+    /// The skin of the present list.
     pub fn skin(&self) -> Skin {
         let share = SKINS[self.skin];
         match self.radii {
-            Radii::Own => Skin::share(share as f32),
-            Radii::Typical => Skin::length((share * self.sizes.typical) as f32),
+            RadiusKind::Own => Skin::share(share as f32),
+            RadiusKind::Typical => Skin::length((share * self.sizes.typical) as f32),
         }
     }
 
-    /// How many times the pairs of a list without a skin the one at hand has.
+    /// The factor by which the present skin multiplies the pairs.
     pub fn wider(&self) -> f64 {
         wider(SKINS[self.skin])
     }
 
-    /// How many times its candidates.
+    /// The factor by which the present skin multiplies the candidates.
     pub fn more_candidates(&self) -> f64 {
         self.candidates(SKINS[self.skin])
     }
 
-    /// How many times the candidates a skin brings.
+    /// The factor by which a skin multiplies the candidates.
     fn candidates(&self, skin: f64) -> f64 {
         wider(skin * self.sizes.of_balls)
     }
 
     /// The skins to choose from.
     fn skins(&self) -> &'static [f64] {
-        let few = |&skin: &f64| self.candidates(skin) <= GREATEST_GROWTH;
+        let few = |&skin: &f64| self.candidates(skin) <= MOST_CANDIDATE_GROWTH;
         &SKINS[..SKINS.partition_point(few)]
     }
 
@@ -140,30 +139,30 @@ impl Policy {
         self.is_by_boxes
     }
 
-    /// From now on, lists are made of balls, or of long boxes.
+    /// Sets whether lists are built from long boxes or from balls.
     pub fn turn_to(&mut self, by_boxes: bool, sizes: impl Fn() -> SizeSummary) {
         if by_boxes == self.is_by_boxes {
             return;
         }
         (self.is_by_boxes, self.sizes) = (by_boxes, sizes());
         if self.knows_a_length() {
-            (self.radii, self.skin) = (Radii::Typical, FIRST_SKIN);
+            (self.radii, self.skin) = (RadiusKind::Typical, INITIAL_SKIN_INDEX);
         }
         self.skin = self.skin.min(self.widest_skin());
     }
 
-    /// Whether the skin of long boxes is one length for all, which the longest side of each is no
-    /// measure of.
+    /// Whether long boxes have one length as their skin, because it is not proportional to their
+    /// longest sides.
     fn knows_a_length(&self) -> bool {
         self.is_by_boxes && self.sizes.typical > 0.0
     }
 
-    /// How many times the pairs of the list at hand one with the widest skin has.
+    /// The factor by which a list with the widest skin has more pairs than the present one.
     pub fn widest(&self) -> f64 {
         wider(SKINS[self.widest_skin()]) / self.wider()
     }
 
-    /// The skin of a list to be made in this frame, if it is to be made.
+    /// The skin of the list to build in this frame, if one is to be built.
     pub fn next(&mut self) -> Option<Skin> {
         if self.wait > 0 {
             self.wait -= 1;
@@ -173,22 +172,22 @@ impl Policy {
         Some(self.skin())
     }
 
-    /// The list has served another frame.
+    /// Counts a frame that has followed the list.
     pub fn followed(&mut self) {
         self.served += 1;
     }
 
-    /// The list can't be followed any longer.
+    /// The list has become invalid.
     pub fn ended(&mut self, list: &EndedList) {
         let [own, typical] = self.speeds(list.motion);
-        // A body's, if there were no skin.
+        // Per body, without a skin.
         let each = |number: f64, wider| number / list.bodies.max(1) as f64 / wider;
         let pairs = each(list.pairs as f64, self.wider());
         let candidates = each(list.candidates as f64, self.more_candidates());
         self.sizes = list.sizes;
         let mut best = (f64::INFINITY, self.radii, 0);
-        for (radii, speed) in [(Radii::Own, own), (Radii::Typical, typical)] {
-            if radii == Radii::Own && self.knows_a_length() {
+        for (radii, speed) in [(RadiusKind::Own, own), (RadiusKind::Typical, typical)] {
+            if radii == RadiusKind::Own && self.knows_a_length() {
                 continue;
             }
             for (index, &skin) in self.skins().iter().enumerate() {
@@ -199,7 +198,7 @@ impl Policy {
                 let penalty = if radii == self.radii {
                     1.0
                 } else {
-                    1.0 / WORTH_CHANGING
+                    1.0 / MOST_SWITCH_COST_RATIO
                 };
                 if cost * penalty < best.0 {
                     best = (cost * penalty, radii, index);
@@ -208,47 +207,47 @@ impl Policy {
         }
         (self.radii, self.skin) = (best.1, best.2);
         if best.0 < MOST_GRID_SHARE * (GRID_BODY_COST + GRID_CANDIDATE_COST * candidates) {
-            self.pause = FIRST_PAUSE;
+            self.pause = INITIAL_PAUSE_FRAMES;
         } else {
-            // Of a list that served one frame alone the widest skin says most.
+            // If a list served only one frame, the widest skin gives the most information.
             self.skin = self.widest_skin();
             self.give_up();
         }
     }
 
-    /// How many radii the fastest body moves in a frame, own ones and typical ones.
+    /// The fastest body's drift per frame, in own and in typical radii.
     fn speeds(&self, LargestDrift { own, typical }: LargestDrift) -> [f64; 2] {
         let served = f64::from(self.served);
         let (skin, drift) = match self.radii {
-            Radii::Own => (SKINS[self.skin], own),
-            Radii::Typical => (SKINS[self.skin], typical),
+            RadiusKind::Own => (SKINS[self.skin], own),
+            RadiusKind::Typical => (SKINS[self.skin], typical),
         };
-        // A body that has just used up its skin is within two of them, if it goes straight on.
-        // Beyond, it has jumped, and says nothing about the others.
+        // A body that moves steadily has drifted by at most two skins when it leaves its skin.
+        // Beyond that it has jumped, and its drift says nothing about other bodies.
         if self.served > 1 && drift > 2.0 * skin {
             let speed = skin / (served - 0.5);
             return match self.radii {
-                Radii::Own => [speed, f64::INFINITY],
-                Radii::Typical => [f64::INFINITY, speed],
+                RadiusKind::Own => [speed, f64::INFINITY],
+                RadiusKind::Typical => [f64::INFINITY, speed],
             };
         }
         [own / served, typical / served]
     }
 
-    /// The list was of other bodies.
+    /// The list was dropped because the set of bodies changed.
     pub fn interrupted(&mut self) {
-        // Where bodies come and go in every frame, no list is worth its making.
+        // If bodies come and go in every frame, no list pays.
         if self.served < 2 {
             self.give_up();
         }
     }
 
-    /// The list would have had too many pairs.
+    /// The search for the list exceeded its limits.
     pub fn overflowed(&mut self) {
         let radii = if self.knows_a_length() {
-            Radii::Typical
+            RadiusKind::Typical
         } else {
-            Radii::Own
+            RadiusKind::Own
         };
         (self.radii, self.skin) = (radii, 0);
         self.give_up();
@@ -256,11 +255,11 @@ impl Policy {
 
     fn give_up(&mut self) {
         self.wait = self.pause;
-        self.pause = LONGEST_PAUSE.min(2 * self.pause);
+        self.pause = MOST_PAUSE_FRAMES.min(2 * self.pause);
     }
 }
 
-/// How many times the pairs so many radii bring.
+/// The factor by which a skin of `radii` radii multiplies the pairs.
 fn wider(radii: f64) -> f64 {
     (1.0 + radii).powi(3)
 }

@@ -10,7 +10,7 @@ use crate::threads::Threads;
 mod long;
 
 /// A finder with its bodies, the first of which move.
-struct Followed {
+struct TrackedBodies {
     finder: Neighbours,
     moving: usize,
     names: Vec<u32>,
@@ -55,7 +55,7 @@ impl<'a> Kernel for FindPairs<'a> {
     }
 }
 
-impl Followed {
+impl TrackedBodies {
     fn new(moving: usize, balls: Vec<[f32; 4]>) -> Self {
         Self {
             finder: Neighbours::default(),
@@ -71,7 +71,7 @@ impl Followed {
     }
 
     /// One more frame, of balls about these boxes.
-    fn step_with(&mut self, boxes: Option<Boxes<'_>>) {
+    fn step_with(&mut self, boxes: Option<GivenBoxes<'_>>) {
         let pool = Threads::default();
         let executor = pool.executor(Tier::SCALAR);
         let in_places = |names: &[u32]| -> Vec<_> {
@@ -118,7 +118,7 @@ impl Followed {
 
 /// Unequal balls, in a cube or, so that the table is wrapped, along a diagonal; the last ones stand
 /// still.
-fn scattered(thin: bool) -> Followed {
+fn scattered(thin: bool) -> TrackedBodies {
     let place = |i: u32| {
         let [x, y, z] = [7919, 104_729, 1_299_709].map(|p| (i * p % 1000) as f32 * 0.011);
         let far = 300.0 * (i % 41) as f32;
@@ -130,11 +130,12 @@ fn scattered(thin: bool) -> Followed {
         };
         [if thin { far + x } else { x }, y, z, radius]
     };
-    Followed::new(500, (0..620).map(place).collect())
+    TrackedBodies::new(500, (0..620).map(place).collect())
 }
 
+/// A list holds the pairs whose grown balls touch and each once.
 #[test]
-fn a_list_holds_the_pairs_whose_grown_balls_touch_and_each_once() {
+fn list_has_each_touching_pair_once() {
     // A skin of 0.25 radii, their own or typical ones of this size.
     let skins = [
         (Policy::default(), [0.25, 0.0]),
@@ -153,7 +154,7 @@ fn a_list_holds_the_pairs_whose_grown_balls_touch_and_each_once() {
 }
 
 /// Checks a list that has just been made.
-fn holds_what_touches(bodies: &Followed, skin: [f64; 2]) {
+fn holds_what_touches(bodies: &TrackedBodies, skin: [f64; 2]) {
     let list = bodies.finder.list();
     let list = list.expect("bodies of which little is known are worth a list");
     let (listed, seen) = (bodies.candidates(true), bodies.candidates(false));
@@ -177,10 +178,10 @@ fn holds_what_touches(bodies: &Followed, skin: [f64; 2]) {
     assert!(between[0] > 100_000 && between[1] > 500, "{between:?}");
 }
 
-/// A small ball moves by a skin of its own in every frame, which is far less than one of a typical
-/// radius.
+/// A small ball moves by a skin of its radius in every frame, which is far less than one of a
+/// typical radius.
 #[test]
-fn where_small_bodies_are_as_fast_as_wide_ones_the_second_list_lasts() {
+fn second_list_lasts_for_mixed_sizes() {
     let mut bodies = scattered(false);
     bodies.balls[9][3] = 0.1;
     let mut states = Vec::new();
@@ -189,7 +190,7 @@ fn where_small_bodies_are_as_fast_as_wide_ones_the_second_list_lasts() {
         states.push(bodies.finder.state);
         bodies.balls[9][1] += 0.03;
     }
-    use State::{Followed, Made, Searching};
+    use ListState::{Followed, Made, Searching};
     let wanted = [
         Searching, Made, Made, Followed, Followed, Followed, Followed, Followed,
     ];
@@ -199,13 +200,14 @@ fn where_small_bodies_are_as_fast_as_wide_ones_the_second_list_lasts() {
     assert!(!(0..=16).any(is_share), "{skin:?}");
 }
 
+/// A list is followed until a body has drifted by its skin.
 #[test]
-fn a_list_is_followed_until_a_body_has_drifted_by_its_skin() {
+fn list_lasts_until_skin_drift() {
     let mut bodies = scattered(false);
     for frame in 0..6 {
         bodies.step();
         let state = bodies.finder.state;
-        let expected = [State::Searching, State::Made, State::Followed];
+        let expected = [ListState::Searching, ListState::Made, ListState::Followed];
         assert_eq!(state, expected[frame.min(2)], "frame {frame}");
         bodies.balls[3][0] += 0.02;
     }
@@ -226,7 +228,10 @@ fn a_list_is_followed_until_a_body_has_drifted_by_its_skin() {
     );
     bodies.balls[9][1] += 0.25 * 0.6;
     bodies.step();
-    assert!(bodies.finder.state != State::Followed, "a jump by a skin");
+    assert!(
+        bodies.finder.state != ListState::Followed,
+        "a jump by a skin"
+    );
     // Bodies that jump in every frame are the grid's.
     for _ in 0..3 {
         bodies
@@ -236,14 +241,14 @@ fn a_list_is_followed_until_a_body_has_drifted_by_its_skin() {
             .for_each(|ball| ball[2] = -ball[2]);
         bodies.step();
     }
-    assert_eq!(bodies.finder.state, State::Searching);
+    assert_eq!(bodies.finder.state, ListState::Searching);
     bodies.finder.observe(12);
     assert_eq!(bodies.finder.grid.age_and_candidates().1, 12);
 }
 
 /// Clusters of bodies in one place each, (n² − n)/2 pairs of n, in the first places and in the last
 /// ones; the others are alone.
-fn clusters(bodies: usize, first: &[usize], last: &[usize]) -> Followed {
+fn clusters(bodies: usize, first: &[usize], last: &[usize]) -> TrackedBodies {
     let many = |places: usize, sizes: &[usize]| -> Vec<usize> {
         (places..)
             .zip(sizes)
@@ -261,11 +266,12 @@ fn clusters(bodies: usize, first: &[usize], last: &[usize]) -> Followed {
             1.0,
         ]
     };
-    Followed::new(bodies, places.into_iter().map(ball).collect())
+    TrackedBodies::new(bodies, places.into_iter().map(ball).collect())
 }
 
+/// A list may have eight pairs per body with the widest skin, and no more.
 #[test]
-fn a_list_of_eight_pairs_a_body_with_the_widest_skin_is_made_and_no_longer_one() {
+fn list_length_has_a_limit() {
     // 8·1000/(1.375/1.25)³ + 256 = 6266.5, and twice as many bodies are in two parts of the grid's
     // work.
     for (bodies, first, last, pairs, is_made) in [
@@ -279,13 +285,14 @@ fn a_list_of_eight_pairs_a_body_with_the_widest_skin_is_made_and_no_longer_one()
             bodies.step();
         }
         // One pair more ends the search, whose list is not counted.
-        let list = bodies.finder.list().map(List::len);
+        let list = bodies.finder.list().map(NeighbourList::len);
         assert_eq!(list, is_made.then_some(pairs));
     }
 }
 
+/// Bytes are those of the grid and the list.
 #[test]
-fn bytes_are_those_of_the_grid_and_the_list() {
+fn bytes_count_grid_and_list() {
     let mut bodies = scattered(false);
     for _ in 0..2 {
         bodies.step();
@@ -294,13 +301,14 @@ fn bytes_are_those_of_the_grid_and_the_list() {
     let list = finder.list.bytes();
     finder.grid = Grid::default();
     assert!(list > 0 && finder.bytes() == list);
-    finder.list = List::default();
+    finder.list = NeighbourList::default();
     finder.grid.slots_mut().names = Vec::with_capacity(1000);
     assert_eq!(finder.bytes(), 4000);
 }
 
+/// Bodies that come end a list and where it served one frame the next ones are the grids.
 #[test]
-fn bodies_that_come_end_a_list_and_where_it_served_one_frame_the_next_ones_are_the_grids() {
+fn new_bodies_end_a_list() {
     for (frames, makes) in [(2, false), (3, true), (6, true)] {
         let mut bodies = scattered(false);
         for _ in 0..frames {

@@ -1,18 +1,19 @@
 //! Wavefront OBJ: the lines `v` and `f`, all into one mesh.
 //!
-//! Groups, objects and materials would split it, texture seams would double its vertices; none of
-//! them is read. A line that ends with a backslash goes on in the next, `#` starts a comment
-//! anywhere, and a face may name vertices further down. Polygons become fans; faces of one or two
-//! vertices become degenerate triangles, so nothing is lost.
+//! Groups, objects, materials and texture coordinates are not read: the first three would split the
+//! mesh, the last would double vertices along seams. A line that ends with a backslash continues on
+//! the next one, `#` starts a comment anywhere, and a face may refer to later vertices. Polygons
+//! become triangle fans. Faces of one or two vertices become degenerate triangles, so that nothing
+//! is lost.
 
-use super::parts::Parts;
-use super::text::{self, Fault, Token};
+use super::parts::RawMesh;
+use super::text::{self, LineProblem, Token};
 use crate::mesh::{Problem, check_triangle, check_vertex};
 
 /// Reads an OBJ file.
-pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     let text = text::decode(bytes);
-    let mut file = File::default();
+    let mut file = ObjReader::default();
     let mut words: Vec<Token> = Vec::new();
     for (number, line) in text::lines(&text) {
         let statement = line.split('#').next().unwrap_or_default();
@@ -33,16 +34,16 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
 }
 
 #[derive(Default)]
-struct File {
+struct ObjReader {
     points: Vec<[f64; 3]>,
-    /// Indices from 1 up; those that name no vertex as the file has them.
+    /// 1-based indices; those out of range as the file has them.
     triangles: Vec<[i64; 3]>,
     /// The line of each triangle.
     lines: Vec<usize>,
 }
 
-impl File {
-    fn add(&mut self, words: &[Token]) -> Result<(), Fault> {
+impl ObjReader {
+    fn add(&mut self, words: &[Token]) -> Result<(), LineProblem> {
         match words {
             [keyword, numbers @ ..] if keyword.is("v") => self.add_vertex(keyword.line, numbers),
             [keyword, corners @ ..] if keyword.is("f") || keyword.is("fo") => {
@@ -52,8 +53,8 @@ impl File {
         }
     }
 
-    /// `v x y z`, with a weight as a fourth number, which divides, or with a colour.
-    fn add_vertex(&mut self, line: usize, numbers: &[Token]) -> Result<(), Fault> {
+    /// `v x y z`, perhaps with a weight, by which the coordinates are divided, or with a colour.
+    fn add_vertex(&mut self, line: usize, numbers: &[Token]) -> Result<(), LineProblem> {
         if numbers.len() < 3 {
             return Err((Some(line), malformed("a vertex should be `v x y z`")));
         }
@@ -72,8 +73,8 @@ impl File {
     }
 
     /// `f a b c …` with corners a, a/b, a//c or a/b/c, of which only a is used. −1 is the last
-    /// vertex so far.
-    fn add_face(&mut self, line: usize, words: &[Token]) -> Result<(), Fault> {
+    /// vertex read so far.
+    fn add_face(&mut self, line: usize, words: &[Token]) -> Result<(), LineProblem> {
         if words.is_empty() {
             return Err((Some(line), malformed("the face names no vertices")));
         }
@@ -97,7 +98,7 @@ impl File {
         Ok(())
     }
 
-    fn into_parts(self) -> Result<Parts, Fault> {
+    fn into_parts(self) -> Result<RawMesh, LineProblem> {
         if self.points.is_empty() {
             return Err((None, Problem::NoVertices));
         }
@@ -107,7 +108,7 @@ impl File {
         }
         let from_zero = |triangle: &[i64; 3]| triangle.map(|index| (index - 1) as u32);
         let triangles = self.triangles.iter().map(from_zero).collect();
-        Ok(Parts::indexed(self.points, triangles))
+        Ok(RawMesh::indexed(self.points, triangles))
     }
 }
 

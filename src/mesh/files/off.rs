@@ -1,18 +1,18 @@
-//! OFF, Geomview's format and CGAL's: a header, the counts, a line for each vertex and for each
+//! OFF, the format of Geomview and CGAL: a header, the counts, one line per vertex and one per
 //! face.
 //!
-//! The header's letters say what a vertex has besides its position: `ST` texture coordinates, `C` a
-//! colour, `N` a normal, `4` a weight, which divides. A face is its number of corners, their
-//! indices from 0, and perhaps a colour. `#` starts a comment. Files without a header are read as
-//! well. A record is a line; only a file that does not fit so is read without regard to lines,
-//! which Geomview allows.
+//! The header's letters say what a vertex has in addition to its position: `ST` texture
+//! coordinates, `C` a colour, `N` a normal, `4` a weight, by which the position is divided. A face
+//! has its number of corners, their 0-based indices, and perhaps a colour. `#` starts a comment.
+//! Files without a header are read too. A record is one line; a file that does not fit this is read
+//! without regard to line ends, as Geomview does.
 
-use super::parts::Parts;
-use super::text::{self, Fault, Token};
+use super::parts::RawMesh;
+use super::text::{self, LineProblem, Token};
 use crate::mesh::{Problem, check_triangle, check_vertex};
 
 /// Reads an OFF file.
-pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     let text = text::decode(bytes);
     let without_comment =
         |(number, line): (usize, _)| (number, str::split(line, '#').next().unwrap_or_default());
@@ -21,14 +21,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
         .flat_map(text::words)
         .collect();
     let (layout, rest) = header(&tokens)?;
-    let by_line = Body {
+    let by_line = OffBody {
         rest,
         line: 0,
         by_line: true,
     }
     .read(&layout);
     by_line.or_else(|fault| {
-        let free = Body {
+        let free = OffBody {
             rest,
             line: 0,
             by_line: false,
@@ -38,15 +38,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     })
 }
 
-/// What a vertex has.
-struct Layout {
+/// The numbers that a vertex has.
+struct OffLayout {
     weight: bool,
-    /// Numbers after the position (and the weight), where these are known.
+    /// How many numbers follow the position (and the weight), if known.
     extra: Option<usize>,
 }
 
 /// Reads the header: letters, and `OFF`.
-fn header<'t, 'a>(tokens: &'t [Token<'a>]) -> Result<(Layout, &'t [Token<'a>]), Fault> {
+fn header<'t, 'a>(tokens: &'t [Token<'a>]) -> Result<(OffLayout, &'t [Token<'a>]), LineProblem> {
     let Some((first, rest)) = tokens.split_first() else {
         return Err((None, Problem::NoVertices));
     };
@@ -56,7 +56,7 @@ fn header<'t, 'a>(tokens: &'t [Token<'a>]) -> Result<(Layout, &'t [Token<'a>]), 
         return refused("this is a binary OFF file".to_owned(), "convert it to text");
     }
     if text::number(first.text).is_some() {
-        let layout = Layout {
+        let layout = OffLayout {
             weight: false,
             extra: Some(0),
         };
@@ -85,7 +85,7 @@ fn header<'t, 'a>(tokens: &'t [Token<'a>]) -> Result<(Layout, &'t [Token<'a>]), 
     let normal = if after_colour == after_normal { 0 } else { 3 };
     let texture = if after_texture.is_some() { 2 } else { 0 };
     let colour = letters.contains('C');
-    let layout = Layout {
+    let layout = OffLayout {
         weight: after_normal == "4",
         extra: (!colour).then_some(normal + texture), // colours have three numbers or four
     };
@@ -93,18 +93,18 @@ fn header<'t, 'a>(tokens: &'t [Token<'a>]) -> Result<(Layout, &'t [Token<'a>]), 
 }
 
 /// What is left of the file.
-struct Body<'t, 'a> {
+struct OffBody<'t, 'a> {
     rest: &'t [Token<'a>],
-    /// The line of the last word that was taken.
+    /// The line of the last word that was read.
     line: usize,
     by_line: bool,
 }
 
-impl<'t, 'a> Body<'t, 'a> {
-    fn read(mut self, layout: &Layout) -> Result<Parts, Fault> {
+impl<'t, 'a> OffBody<'t, 'a> {
+    fn read(mut self, layout: &OffLayout) -> Result<RawMesh, LineProblem> {
         let counts = self.take(2, || "the numbers of vertices and faces".to_owned())?;
         let [vertices, faces] = [count(&counts[0])?, count(&counts[1])?];
-        // The number of edges follows, which some leave out and nobody uses.
+        // The number of edges follows. Some programs omit it, and none uses it.
         let same_line = self
             .rest
             .first()
@@ -128,10 +128,15 @@ impl<'t, 'a> Body<'t, 'a> {
             let help = "remove what follows, or correct the counts in the header";
             return Err((Some(token.line), Problem::malformed(message, help)));
         }
-        Ok(Parts::indexed(points, triangles))
+        Ok(RawMesh::indexed(points, triangles))
     }
 
-    fn vertex(&mut self, index: usize, count: usize, layout: &Layout) -> Result<[f64; 3], Fault> {
+    fn vertex(
+        &mut self,
+        index: usize,
+        count: usize,
+        layout: &OffLayout,
+    ) -> Result<[f64; 3], LineProblem> {
         let numbers = 3 + usize::from(layout.weight);
         let record = self.take(numbers, || format!("vertex {index} of {count}"))?;
         let mut position = text::position(index, record)?;
@@ -162,7 +167,7 @@ impl<'t, 'a> Body<'t, 'a> {
         faces: usize,
         vertices: usize,
         triangles: &mut Vec<[u32; 3]>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), LineProblem> {
         let what = || format!("face {index} of {faces}");
         let size = &self.take(1, what)?[0];
         let corners = self.take(count(size)?, what)?;
@@ -185,7 +190,11 @@ impl<'t, 'a> Body<'t, 'a> {
         Ok(())
     }
 
-    fn take(&mut self, words: usize, what: impl Fn() -> String) -> Result<&'t [Token<'a>], Fault> {
+    fn take(
+        &mut self,
+        words: usize,
+        what: impl Fn() -> String,
+    ) -> Result<&'t [Token<'a>], LineProblem> {
         let Some((taken, rest)) = self.rest.split_at_checked(words) else {
             let last = self.rest.last().map_or(self.line, |token| token.line);
             let message = format!("the file ends where {} should be", what());
@@ -203,7 +212,7 @@ impl<'t, 'a> Body<'t, 'a> {
     }
 }
 
-fn count(token: &Token) -> Result<usize, Fault> {
+fn count(token: &Token) -> Result<usize, LineProblem> {
     let count = token.integer("a count")?;
     usize::try_from(count).map_err(|_| {
         let message = format!("a count should not be negative, found {count}");

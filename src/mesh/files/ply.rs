@@ -1,20 +1,20 @@
 //! PLY, text and binary: vertices, and faces as polygons or as strips.
 //!
-//! The header names elements and their properties; all are passed over but the vertices' x, y, z
-//! and the lists of indices. Values that are passed over are not read as numbers: a NaN, or a word,
-//! in a property that nobody uses is no error. Polygons become fans; faces of one or two vertices
-//! become degenerate triangles; strips are unrolled. In text, an element is a line; what follows
-//! its properties there is left out, but only in a file that does not fit without.
+//! The header lists elements and their properties. Everything is skipped except the vertices' x, y,
+//! z and the lists of indices. Skipped values are not parsed, so a NaN or a word in an unused
+//! property is not an error. Polygons become triangle fans, faces of one or two vertices become
+//! degenerate triangles, and strips are unrolled. In text, an element is one line; extra words
+//! after its properties are skipped only if the file can't be read otherwise.
 
 use std::iter::Peekable;
 
-use super::parts::Parts;
-use super::ply_header::{Element, Encoding, Header, Scalar, Use, malformed};
-use super::text::{self, Fault, Token};
+use super::parts::RawMesh;
+use super::ply_header::{Element, Encoding, Header, PropertyUse, Scalar, malformed};
+use super::text::{self, LineProblem, Token};
 use crate::mesh::{Problem, check_triangle, check_vertex};
 
 /// Reads a PLY file.
-pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     if bytes.is_empty() {
         return Err((None, Problem::NoVertices));
     }
@@ -22,7 +22,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     let data = &bytes[header.size..];
     let Encoding::Binary { big_endian } = header.encoding else {
         let text = text::decode(data);
-        let body = |by_line| Body::Text {
+        let body = |by_line| PlyBody::Text {
             tokens: tokens(&text, header.lines).peekable(),
             by_line,
         };
@@ -31,15 +31,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     };
     read_body(
         &header,
-        Body::Binary {
+        PlyBody::Binary {
             rest: data,
             big_endian,
         },
     )
 }
 
-fn read_body(header: &Header, mut body: Body) -> Result<Parts, Fault> {
-    let mut mesh = Mesh::default();
+fn read_body(header: &Header, mut body: PlyBody) -> Result<RawMesh, LineProblem> {
+    let mut mesh = PlyMesh::default();
     for element in &header.elements {
         mesh.add(element, &mut body)?;
     }
@@ -47,17 +47,17 @@ fn read_body(header: &Header, mut body: Body) -> Result<Parts, Fault> {
     mesh.into_parts()
 }
 
-/// The words of a text, whose first line follows so many others.
+/// The words of a text that starts after `lines_before` lines.
 fn tokens(text: &str, lines_before: usize) -> Box<dyn Iterator<Item = Token<'_>> + '_> {
     let later = move |(line, text): (usize, _)| (line + lines_before, text);
     Box::new(text::lines(text).map(later).flat_map(text::words))
 }
 
-/// What is left of the data.
-enum Body<'a> {
+/// The data that is not yet read.
+enum PlyBody<'a> {
     Text {
         tokens: Peekable<Box<dyn Iterator<Item = Token<'a>> + 'a>>,
-        /// Whether what an element has on its last line beyond its properties is left out.
+        /// Whether extra words on an element's last line are skipped.
         by_line: bool,
     },
     Binary {
@@ -66,28 +66,28 @@ enum Body<'a> {
     },
 }
 
-/// A value of the data and its line, if it has one.
-struct Value {
+/// A value and its line, if the file is text.
+struct PlyValue {
     number: f64,
     line: Option<usize>,
 }
 
-impl Body<'_> {
-    /// The next value, which is not looked at unless it is used; `None` at the end of the file.
-    fn next(&mut self, scalar: Scalar, used: bool) -> Option<Result<Value, Fault>> {
+impl PlyBody<'_> {
+    /// The next value, parsed only if it is used; `None` at the end of the file.
+    fn next(&mut self, scalar: Scalar, used: bool) -> Option<Result<PlyValue, LineProblem>> {
         match self {
             Self::Text { tokens, .. } => {
                 let token = tokens.next()?;
                 let line = Some(token.line);
                 if !used {
-                    return Some(Ok(Value { number: 0.0, line }));
+                    return Some(Ok(PlyValue { number: 0.0, line }));
                 }
                 let number = match scalar {
                     Scalar::F32 | Scalar::F64 => token.number("a value"),
-                    // Every type of whole numbers is exact in f64, and what is larger is no index.
+                    // Every integer type is exact in f64, and larger numbers are no valid indices.
                     _ => token.integer("a value").map(|whole| whole as f64),
                 };
-                Some(number.map(|number| Value { number, line }))
+                Some(number.map(|number| PlyValue { number, line }))
             }
             Self::Binary { rest, big_endian } => {
                 let (bytes, after) = rest.split_at_checked(scalar.size())?;
@@ -98,19 +98,19 @@ impl Body<'_> {
                     word[..bytes.len()].reverse();
                 }
                 let number = scalar.number(word);
-                Some(Ok(Value { number, line: None }))
+                Some(Ok(PlyValue { number, line: None }))
             }
         }
     }
 
-    /// The next value; `line` becomes its line.
+    /// Reads the next value and stores its line in `line`.
     fn take(
         &mut self,
         scalar: Scalar,
         used: bool,
         line: &mut Option<usize>,
         what: impl Fn() -> String,
-    ) -> Result<f64, Fault> {
+    ) -> Result<f64, LineProblem> {
         let value = self.next(scalar, used).ok_or_else(|| {
             let message = format!("the file ends in {}", what());
             (*line, malformed(message))
@@ -119,7 +119,7 @@ impl Body<'_> {
         Ok(value.number)
     }
 
-    /// Ends an element, whose last value is on this line.
+    /// Ends an element whose last value is on this line.
     fn end_element(&mut self, line: Option<usize>) {
         if let Self::Text {
             tokens,
@@ -130,7 +130,7 @@ impl Body<'_> {
         }
     }
 
-    fn check_end(&mut self) -> Result<(), Fault> {
+    fn check_end(&mut self) -> Result<(), LineProblem> {
         let (line, count, what) = match self {
             Self::Text { tokens, .. } => {
                 let first = tokens.next();
@@ -147,18 +147,18 @@ impl Body<'_> {
     }
 }
 
-/// What was read of the mesh.
+/// The parts of the mesh that were read so far.
 #[derive(Default)]
-struct Mesh {
+struct PlyMesh {
     points: Vec<[f64; 3]>,
     triangles: Vec<[i64; 3]>,
     /// The line of each triangle, in a text file.
     lines: Vec<Option<usize>>,
 }
 
-impl Mesh {
-    /// Reads all elements of a kind.
-    fn add(&mut self, element: &Element, body: &mut Body) -> Result<(), Fault> {
+impl PlyMesh {
+    /// Reads all elements of one kind.
+    fn add(&mut self, element: &Element, body: &mut PlyBody) -> Result<(), LineProblem> {
         if element.properties.is_empty() {
             return Ok(()); // takes no bytes, however many the header declares
         }
@@ -167,10 +167,10 @@ impl Mesh {
             let mut position = [0.0; 3];
             let mut line = None;
             for property in &element.properties {
-                let used = property.used_as != Use::Nothing;
+                let used = property.used_as != PropertyUse::Nothing;
                 let Some(length) = property.length else {
                     let number = body.take(property.scalar, used, &mut line, what)?;
-                    if let Use::Coordinate(axis) = property.used_as {
+                    if let PropertyUse::Coordinate(axis) = property.used_as {
                         position[axis] = number;
                     }
                     continue;
@@ -199,18 +199,18 @@ impl Mesh {
 
     fn add_corners(
         &mut self,
-        used_as: Use,
+        used_as: PropertyUse,
         corners: &[i64],
         line: Option<usize>,
         what: impl Fn() -> String,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), LineProblem> {
         match used_as {
-            Use::Polygon if corners.is_empty() => {
+            PropertyUse::Polygon if corners.is_empty() => {
                 let message = format!("{} has no vertices", what());
                 return Err((line, Problem::malformed(message, "remove it")));
             }
-            Use::Polygon => self.triangles.extend(text::fan(corners)),
-            Use::Strips => {
+            PropertyUse::Polygon => self.triangles.extend(text::fan(corners)),
+            PropertyUse::Strips => {
                 for strip in corners.split(|&corner| corner == -1) {
                     // Every second triangle of a strip has its first two corners exchanged.
                     let turned = |(i, corners): (usize, &[i64])| match (i % 2, corners) {
@@ -221,13 +221,13 @@ impl Mesh {
                         .extend(strip.windows(3).enumerate().map(turned));
                 }
             }
-            Use::Coordinate(_) | Use::Nothing => {}
+            PropertyUse::Coordinate(_) | PropertyUse::Nothing => {}
         }
         self.lines.resize(self.triangles.len(), line);
         Ok(())
     }
 
-    fn into_parts(self) -> Result<Parts, Fault> {
+    fn into_parts(self) -> Result<RawMesh, LineProblem> {
         if self.points.is_empty() {
             return Err((None, Problem::NoVertices));
         }
@@ -236,7 +236,7 @@ impl Mesh {
                 .map_err(|problem| (*line, problem))?;
         }
         let triangles = self.triangles.iter().map(|t| t.map(|index| index as u32));
-        Ok(Parts::indexed(self.points, triangles.collect()))
+        Ok(RawMesh::indexed(self.points, triangles.collect()))
     }
 }
 

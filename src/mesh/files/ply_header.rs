@@ -1,9 +1,9 @@
-//! The header of a PLY file: elements, their properties, and what becomes of each.
+//! The header of a PLY file: elements, their properties, and how each is used.
 
-use super::text::{self, Fault, Token, excerpt};
+use super::text::{self, LineProblem, Token, excerpt};
 use crate::mesh::Problem;
 
-/// A type of numbers.
+/// A number type.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Scalar {
     I8,
@@ -40,7 +40,7 @@ impl Scalar {
         }
     }
 
-    /// The number that the first bytes of `word`, least significant first, stand for.
+    /// The number that the first bytes of `word` encode, least significant first.
     pub fn number(self, word: [u8; 8]) -> f64 {
         let [a, b, c, d, ..] = word;
         match self {
@@ -56,14 +56,14 @@ impl Scalar {
     }
 }
 
-/// What becomes of a property.
+/// How a property is used.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Use {
-    /// A vertex' coordinate of this axis.
+pub(super) enum PropertyUse {
+    /// A vertex's coordinate along this axis.
     Coordinate(usize),
     /// A face's corners.
     Polygon,
-    /// Corners of strips, between which −1 stands.
+    /// Corners of triangle strips, separated by −1.
     Strips,
     Nothing,
 }
@@ -74,17 +74,17 @@ pub(super) struct Property {
     pub length: Option<Scalar>,
     /// The type of the value, or of a list's items.
     pub scalar: Scalar,
-    pub used_as: Use,
+    pub used_as: PropertyUse,
 }
 
-/// A kind of elements.
+/// A kind of element, and how many there are.
 pub(super) struct Element {
     pub name: String,
     pub count: usize,
     pub properties: Vec<Property>,
 }
 
-/// How the values are written.
+/// How values are encoded.
 #[derive(Clone, Copy)]
 pub(super) enum Encoding {
     Text,
@@ -95,14 +95,14 @@ pub(super) enum Encoding {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Bytes up to the end of the line `end_header`.
+    /// Number of bytes up to the end of the line `end_header`.
     pub size: usize,
-    /// Lines up to there.
+    /// Number of lines up to there.
     pub lines: usize,
 }
 
 impl Header {
-    pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
+    pub fn read(bytes: &[u8]) -> Result<Self, LineProblem> {
         let mut encoding = None;
         let mut header = Self {
             encoding: Encoding::Text,
@@ -149,8 +149,7 @@ impl Header {
         ))
     }
 
-    /// The next line. Lines end with LF, before which a CR is white space, or all with CR: numbers
-    /// may follow the last one.
+    /// The next line. Lines end with LF (a CR before it is white space), or all of them with CR.
     fn next_line<'a>(&mut self, bytes: &'a [u8]) -> Option<&'a [u8]> {
         let rest = &bytes[self.size..];
         if rest.is_empty() {
@@ -187,10 +186,10 @@ impl Header {
         let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
         let is_indices = length.is_some() && ["vertex_indices", "vertex_index"].contains(&name);
         let used_as = match (element.name.as_str(), axis) {
-            ("vertex", Some(axis)) if length.is_none() => Use::Coordinate(axis),
-            ("face", _) if is_indices => Use::Polygon,
-            ("tristrips", _) if is_indices => Use::Strips,
-            _ => Use::Nothing,
+            ("vertex", Some(axis)) if length.is_none() => PropertyUse::Coordinate(axis),
+            ("face", _) if is_indices => PropertyUse::Polygon,
+            ("tristrips", _) if is_indices => PropertyUse::Strips,
+            _ => PropertyUse::Nothing,
         };
         element.properties.push(Property {
             length,
@@ -201,14 +200,14 @@ impl Header {
     }
 
     /// A mesh needs vertices with x, y, z and faces or strips with a list of indices.
-    fn checked(self) -> Result<Self, Fault> {
-        let has = |used_as: Use| {
+    fn checked(self) -> Result<Self, LineProblem> {
+        let has = |used_as: PropertyUse| {
             let mut properties = self.elements.iter().flat_map(|element| &element.properties);
             properties.any(|property| property.used_as == used_as)
         };
-        let missing = if !(0..3).all(|axis| has(Use::Coordinate(axis))) {
+        let missing = if !(0..3).all(|axis| has(PropertyUse::Coordinate(axis))) {
             "an element vertex with the properties x, y and z"
-        } else if !has(Use::Polygon) && !has(Use::Strips) {
+        } else if !has(PropertyUse::Polygon) && !has(PropertyUse::Strips) {
             "an element face with a list property vertex_indices"
         } else {
             return Ok(self);

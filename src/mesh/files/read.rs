@@ -1,15 +1,14 @@
-//! Reading a mesh: the extension names the format, the format's reader makes the parts, validation
-//! makes the mesh.
+//! Reading a mesh file: the extension selects the format's reader, and validation makes the mesh.
 
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::parts::Parts;
+use super::parts::RawMesh;
 use super::{TriFormat, obj, off, ply, stl, tri};
 use crate::files;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
 
-/// A file format.
+/// A mesh file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshFormat {
     /// `.tri` in one of its dialects.
@@ -24,12 +23,12 @@ pub enum MeshFormat {
     Off,
 }
 
-/// What a file cannot say about itself, and how much of it is read.
+/// Options for reading: what a file does not say about itself, and a size limit.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadOptions {
-    /// The dialect of a `.tri` file; without it, the one that fits.
+    /// The dialect of a `.tri` file; `None` detects the one that fits.
     pub tri_format: Option<TriFormat>,
-    /// Larger files are refused.
+    /// The largest allowed file, in bytes.
     pub max_bytes: u64,
 }
 
@@ -43,7 +42,7 @@ impl Default for ReadOptions {
 }
 
 impl MeshFormat {
-    /// The format that the extension names, in either case.
+    /// The format of a path's extension, in upper or lower case.
     pub fn from_path(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "tri" => Some(Self::Tri),
@@ -55,7 +54,7 @@ impl MeshFormat {
         }
     }
 
-    /// The same, or the problem that the extension is; `action` is what was to be done, "read" or
+    /// As [`Self::from_path`], with an error for unknown extensions; `action` is "read" or
     /// "written".
     pub(super) fn of_path(path: &Path, action: &'static str) -> Result<Self, Problem> {
         Self::from_path(path).ok_or_else(|| Problem::UnknownFormat {
@@ -72,8 +71,7 @@ impl MeshFormat {
 /// Reads a mesh file; the mesh is named after the file's stem.
 ///
 /// # Errors
-/// An extension that names no format, a file that cannot be read, or any problem that
-/// [`read_bytes`] finds.
+/// An unknown extension, a file that cannot be read, or any error of [`read_bytes`].
 pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMesh, MeshError> {
     let path = path.as_ref();
     let file = path.display().to_string();
@@ -93,11 +91,12 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMes
     read_bytes(&file, format, &bytes, options)
 }
 
-/// Reads a mesh from a file's contents; `file` is what messages call it, its stem the mesh's name.
+/// Reads a mesh from a file's contents. `file` is the name for messages, and its stem the mesh's
+/// name.
 ///
 /// # Errors
-/// Anything that breaks the format or the mesh contract, with the line in a text file. Never
-/// panics, whatever the bytes.
+/// Anything that breaks the format or the mesh contract, with the line in a text file. No input
+/// panics.
 pub fn read_bytes(
     file: &str,
     format: MeshFormat,
@@ -111,7 +110,7 @@ pub fn read_bytes(
         MeshFormat::Ply => ply::read(bytes),
         MeshFormat::Off => off::read(bytes),
     };
-    let Parts { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
+    let RawMesh { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
     let stem = Path::new(file)
         .file_stem()
         .unwrap_or_default()

@@ -1,20 +1,20 @@
 //! STL, text and binary; equal corners are welded into shared vertices.
 //!
-//! Binary files may start with the word of text files, `solid`, so the length decides first: a
-//! binary file has exactly 84 + 50·n bytes. In a text file the lines `solid` and `endsolid` hold
-//! names, which decide nothing, normals are not read, and a file may hold many solids. A facet is
-//! `facet normal`, `outer loop`, its vertices, `endloop`, `endfacet`, in either case and however
-//! lines are broken. Whatever else stands between facets is an error, except comments.
+//! Binary files may start with `solid` as text files do, so the length decides first: a binary file
+//! has exactly 84 + 50·n bytes. In a text file, the names after `solid` and `endsolid` and the
+//! normals are ignored, and there may be many solids. A facet is `facet normal`, `outer loop`, its
+//! vertices, `endloop`, `endfacet`, in upper or lower case and with any line breaks. Anything else
+//! between facets is an error, except comments.
 
-use super::parts::Parts;
-use super::text::{self, Fault, Token, put, wide};
+use super::parts::RawMesh;
+use super::text::{self, LineProblem, Token, put, wide};
 use crate::mesh::{Problem, TriangleMesh, check_vertex, in_f64};
 
 const HEADER_BYTES: usize = 84;
 const TRIANGLE_BYTES: usize = 50;
 
 /// Reads a text or binary STL file.
-pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     if bytes.is_empty() {
         return Err((None, Problem::NoVertices));
     }
@@ -26,7 +26,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     if size == Some(bytes.len() as u64) {
         return binary(&bytes[HEADER_BYTES..]);
     }
-    // Text has no byte 0 (but in UTF-16), where the count of any file below 800 megabytes has one.
+    // The count of triangles in a binary file below 800 megabytes has a byte 0 here, which text
+    // does not have, except UTF-16.
     if bytes.get(83) != Some(&0) || text::utf16(bytes).is_some() {
         let text = text::decode(bytes);
         let tokens = text::tokens(&text);
@@ -46,7 +47,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
 }
 
 /// Reads the triangles of a binary file: a normal, three corners and two more bytes each.
-fn binary(bytes: &[u8]) -> Result<Parts, Fault> {
+fn binary(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     let mut points = Vec::with_capacity(3 * bytes.len() / TRIANGLE_BYTES);
     for triangle in bytes.as_chunks::<TRIANGLE_BYTES>().0 {
         let numbers = triangle.as_chunks::<4>().0;
@@ -56,10 +57,10 @@ fn binary(bytes: &[u8]) -> Result<Parts, Fault> {
             points.push(position);
         }
     }
-    Ok(Parts::soup(points))
+    Ok(RawMesh::soup(points))
 }
 
-/// The words of a text file from its first solid or facet on, if those begin it.
+/// The words of a text file, if it begins with a solid or a facet.
 fn start_of_text<'t, 'a>(tokens: &'t [Token<'a>]) -> Option<Facets<'t, 'a>> {
     let mut facets = Facets {
         tokens,
@@ -70,14 +71,14 @@ fn start_of_text<'t, 'a>(tokens: &'t [Token<'a>]) -> Option<Facets<'t, 'a>> {
     (first.is("solid") || first.is("facet")).then_some(facets)
 }
 
-/// What is left of a text file, and the corners that were read, three a triangle.
+/// The rest of a text file, and the corners read so far, three per triangle.
 struct Facets<'t, 'a> {
     tokens: &'t [Token<'a>],
     points: Vec<[f64; 3]>,
 }
 
 impl Facets<'_, '_> {
-    fn read(mut self) -> Result<Parts, Fault> {
+    fn read(mut self) -> Result<RawMesh, LineProblem> {
         let (mut open, last) = (false, self.tokens.last().map(|token| token.line));
         while !self.tokens.is_empty() {
             if self.skip_comment() {
@@ -99,7 +100,7 @@ impl Facets<'_, '_> {
                 malformed("the file ends before `endsolid`".to_owned()),
             ));
         }
-        Ok(Parts::soup(self.points))
+        Ok(RawMesh::soup(self.points))
     }
 
     fn starts_with(&self, keywords: &[&str]) -> bool {
@@ -110,8 +111,8 @@ impl Facets<'_, '_> {
                 .all(|(word, token)| token.is(word))
     }
 
-    /// Takes one of two spellings of what should come next.
-    fn take(&mut self, keyword: &[&str], other: &[&str]) -> Result<(), Fault> {
+    /// Reads a keyword that may be spelled in two ways.
+    fn take(&mut self, keyword: &[&str], other: &[&str]) -> Result<(), LineProblem> {
         for words in [keyword, other] {
             if self.starts_with(words) {
                 self.tokens = &self.tokens[words.len()..];
@@ -121,7 +122,7 @@ impl Facets<'_, '_> {
         Err(self.missing(&format!("`{}`", keyword.join(" "))))
     }
 
-    fn missing(&self, what: &str) -> Fault {
+    fn missing(&self, what: &str) -> LineProblem {
         match self.tokens.first() {
             Some(token) => {
                 let message = format!(
@@ -160,7 +161,7 @@ impl Facets<'_, '_> {
         self.tokens = &self.tokens[rest.unwrap_or(self.tokens.len())..];
     }
 
-    fn facet(&mut self) -> Result<(), Fault> {
+    fn facet(&mut self) -> Result<(), LineProblem> {
         self.take(&["facet"], &["facet"])?;
         let structure = ["outer", "facet", "vertex", "endfacet", "endsolid"];
         while self
@@ -197,8 +198,8 @@ fn malformed(message: String) -> Problem {
     Problem::malformed(message, help)
 }
 
-/// The mesh as an STL file: binary, or text where it is far from its origin, since binary STL has
-/// f32. Sharing of vertices is lost, and so are unused ones; positions are kept to the bit.
+/// The mesh as an STL file: binary, or text if the mesh is far from its origin, because binary STL
+/// stores f32. Shared indices and unused vertices are lost; positions are kept to the bit.
 pub(super) fn bytes(mesh: &TriangleMesh) -> Vec<u8> {
     if mesh.is_far() {
         return text(mesh).into_bytes();

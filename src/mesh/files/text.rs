@@ -1,23 +1,23 @@
-//! The text layer of all readers: lines, words and numbers, read as the formats' other programs
+//! The text layer of all readers: lines, words and numbers, read as tolerantly as other programs
 //! read them.
 //!
 //! | what | how |
 //! |---|---|
-//! | bytes | UTF-8, or UTF-16 after its byte-order mark, lossily: bytes of other encodings are in names and comments, which decide nothing |
+//! | bytes | UTF-8, or UTF-16 after its byte-order mark, lossily: other encodings occur only in names and comments, which are ignored |
 //! | lines | end with LF, CR LF or CR |
 //! | words | are separated by blanks and tabs; keywords in either case |
 //! | numbers | as C and Fortran print them: `1.`, `.5`, `+1e3`, `1.0D+05`, `inf`, `-nan(ind)`, `1.#QNAN` |
 //! | unused columns | are not read at all |
 //!
-//! What starts a comment is the format's own.
+//! Each format has its own comment sign.
 
 use std::borrow::Cow;
 use std::fmt::{Display, LowerExp, Write};
 
 use crate::mesh::{Problem, check_vertex};
 
-/// A problem with the 1-based line where it shows, if it has one.
-pub(super) type Fault = (Option<usize>, Problem);
+/// A problem with its 1-based line, if it has one.
+pub(super) type LineProblem = (Option<usize>, Problem);
 
 /// A word and its 1-based line.
 #[derive(Clone, Copy, Debug)]
@@ -27,13 +27,13 @@ pub(super) struct Token<'a> {
 }
 
 impl Token<'_> {
-    /// Whether this is the keyword, in capitals or not.
+    /// Whether this is the keyword, in upper or lower case.
     pub(super) fn is(&self, keyword: &str) -> bool {
         self.text.eq_ignore_ascii_case(keyword)
     }
 
-    /// The number written here: an f64 that rounds to the f32 nearest to the text.
-    pub(super) fn number(&self, what: &str) -> Result<f64, Fault> {
+    /// Parses a number: an f64 that rounds to the f32 nearest to the text.
+    pub(super) fn number(&self, what: &str) -> Result<f64, LineProblem> {
         number(self.text).ok_or_else(|| {
             let message = format!("{what} should be a number, found {}", excerpt(self.text));
             let help = "correct the number or the line's layout";
@@ -42,7 +42,7 @@ impl Token<'_> {
     }
 
     /// A whole number.
-    pub(super) fn integer(&self, what: &str) -> Result<i64, Fault> {
+    pub(super) fn integer(&self, what: &str) -> Result<i64, LineProblem> {
         self.text.parse().map_err(|_| {
             let message = format!(
                 "{what} should be a whole number, found {}",
@@ -54,15 +54,15 @@ impl Token<'_> {
     }
 }
 
-/// At most 24 characters, quoted and escaped, so that garbage cannot flood a message.
+/// At most 24 characters of a text, quoted and escaped, for messages.
 pub(super) fn excerpt(text: &str) -> String {
     let short: String = text.chars().take(24).collect();
     let dots = if short.len() < text.len() { "…" } else { "" };
     format!("{short:?}{dots}")
 }
 
-/// The bytes as text without a byte-order mark. What is no text becomes U+FFFD, of which no number
-/// and no keyword is made.
+/// The bytes as text, without a byte-order mark. Invalid bytes become U+FFFD, which is in no number
+/// and no keyword.
 pub(super) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     match utf16(bytes) {
         Some(units) => String::from_utf16_lossy(&units).into(),
@@ -70,7 +70,7 @@ pub(super) fn decode(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// The units of UTF-16, if its byte-order mark begins the bytes.
+/// The units of UTF-16, if the bytes begin with its byte-order mark.
 pub(super) fn utf16(bytes: &[u8]) -> Option<Vec<u16>> {
     let (unit, text): (fn([u8; 2]) -> u16, _) = match bytes {
         [0xfe, 0xff, text @ ..] => (u16::from_be_bytes, text),
@@ -80,16 +80,16 @@ pub(super) fn utf16(bytes: &[u8]) -> Option<Vec<u16>> {
     Some(text.as_chunks().0.iter().map(|&pair| unit(pair)).collect())
 }
 
-/// The refusal of a file in which a text format's reader found nothing, if it has a byte that text
-/// never has.
-pub(super) fn not_text(bytes: &[u8]) -> Option<Fault> {
+/// The error for a file in which a text format's reader found nothing and that has a byte which
+/// text never has.
+pub(super) fn not_text(bytes: &[u8]) -> Option<LineProblem> {
     let offset = bytes.iter().position(|&byte| byte == 0)?;
     let message = format!("this is not text: byte 0x00 at offset {offset}");
     let help = "the file is binary or damaged; does its extension name the right format?";
     Some((None, Problem::malformed(message, help)))
 }
 
-/// The lines with their numbers from 1, without their ends.
+/// The lines without their ends, numbered from 1.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut rest = Some(text);
     let lines = std::iter::from_fn(move || {
@@ -128,7 +128,7 @@ pub(super) fn number(text: &str) -> Option<f64> {
     if digits.starts_with("nan(") || digits.starts_with("1.#") {
         return Some(f64::NAN); // MSVC's infinities too: neither is a coordinate
     }
-    // Of what has a digit first, only an exponent has the letter d.
+    // In a word that starts with a digit, d can only be an exponent.
     let fortran = lower.replacen('d', "e", 1);
     if fortran == lower {
         return None;
@@ -138,7 +138,7 @@ pub(super) fn number(text: &str) -> Option<f64> {
 }
 
 /// The vertex written in the first three tokens.
-pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], Fault> {
+pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], LineProblem> {
     let mut position = [0.0; 3];
     for (coordinate, token) in position.iter_mut().zip(tokens) {
         *coordinate = token.number("a coordinate")?;
@@ -148,9 +148,8 @@ pub(super) fn position(vertex: usize, tokens: &[Token]) -> Result<[f64; 3], Faul
     Ok(position)
 }
 
-/// The number as an f64 that rounds to the f32 that is nearest to the text. Where an f64 lies in
-/// the middle of two f32, the text may lie on either side of it, and is read once more, by
-/// `nearest`.
+/// A number as an f64 that rounds to the f32 nearest to the text. If the f64 is exactly between two
+/// f32, the text may be on either side of it, and `nearest` parses it again.
 pub(super) fn between_f32<E>(
     number: f64,
     nearest: impl FnOnce() -> Result<f32, E>,
@@ -171,8 +170,7 @@ pub(super) fn between_f32<E>(
     })
 }
 
-/// The shortest text that reads back to the same f64, also where that lies in the middle of two
-/// f32.
+/// The shortest text that reads back to the same f64, even if that is exactly between two f32.
 pub(super) fn wide(x: f64) -> String {
     let text = shortest(x);
     if between_f32(x, || text.parse()) == Ok(x) {
@@ -201,8 +199,8 @@ pub(super) fn shortest(value: impl Display + LowerExp) -> String {
     }
 }
 
-/// A polygon as triangles: a fan about its first corner; of one or two corners a degenerate one, so
-/// that nothing is lost.
+/// A polygon as a fan of triangles about its first corner. One or two corners give a degenerate
+/// triangle, so that nothing is lost.
 pub(super) fn fan(corners: &[i64]) -> Vec<[i64; 3]> {
     match *corners {
         [] => Vec::new(),
@@ -212,11 +210,11 @@ pub(super) fn fan(corners: &[i64]) -> Vec<[i64; 3]> {
     }
 }
 
-/// A place in the tokens. Taking a record by line asks that it fill exactly one line.
+/// A position in the tokens. Reading a record by line requires that it fills exactly one line.
 pub(super) struct Cursor<'t, 'a> {
     pub(super) tokens: &'t [Token<'a>],
     pub(super) by_line: bool,
-    /// How many tokens have been taken.
+    /// How many tokens have been read.
     pub(super) at: usize,
     /// Whether a triangle has been read.
     pub(super) seen_triangle: bool,
@@ -236,8 +234,9 @@ impl<'t, 'a> Cursor<'t, 'a> {
         &self.tokens[self.at..]
     }
 
-    /// Vertices and triangles start on lines of their own, however their records are laid out.
-    pub(super) fn start_section(&self) -> Result<(), Fault> {
+    /// Checks that a section starts on a new line, which is required however records are broken
+    /// into lines.
+    pub(super) fn start_section(&self) -> Result<(), LineProblem> {
         let (before, after) = (self.at.checked_sub(1), self.rest().first());
         match (before.map(|at| self.tokens[at].line), after) {
             (Some(line), Some(token)) if token.line == line => {
@@ -249,7 +248,11 @@ impl<'t, 'a> Cursor<'t, 'a> {
         }
     }
 
-    pub(super) fn record(&mut self, numbers: usize, what: &str) -> Result<&'t [Token<'a>], Fault> {
+    pub(super) fn record(
+        &mut self,
+        numbers: usize,
+        what: &str,
+    ) -> Result<&'t [Token<'a>], LineProblem> {
         let rest = self.rest();
         let line = rest.first().or(self.tokens.last()).map(|token| token.line);
         let found = if self.by_line {

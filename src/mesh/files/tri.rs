@@ -1,4 +1,5 @@
-//! `.tri` files: one extension, many formats, distinguished by structure and counts.
+//! `.tri` files: one extension for several formats, which are distinguished by structure and
+//! counts.
 //!
 //! | name | header | vertex | face | described by |
 //! |---|---|---|---|---|
@@ -9,22 +10,22 @@
 //! | `openmeeg` | `- nv` | position, normal | after a line `- nt nt nt`: 3 indices from 0 | OpenMEEG, BrainVISA |
 //! | `soup` | none | | 9 coordinates, perhaps a colour 0x… | POV-Ray raw triangles; AC3D as OpenFOAM reads it |
 //!
-//! A dialect *fits* when every number is what it should be, every index is in range and nothing is
-//! left over. Fits with one record a line come first. Only when none comes to a triangle may
-//! records run over line ends, which Fortran's list-directed output and the raw format allow; each
-//! section must start a line even then, or a file that was cut off could pass for one of another
-//! dialect. One fit is the answer, two are refused with both names. When nothing fits, the message
-//! comes from the dialect that got furthest into the file.
+//! A dialect *fits* if every number is valid, every index is in range and nothing is left over.
+//! Dialects are tried with one record per line first. Only if none of them reads a triangle may
+//! records continue over line ends, as Fortran's list-directed output and the raw format allow.
+//! Each section must start on a new line even then; otherwise a truncated file could be taken for
+//! one of another dialect. If exactly one dialect fits, it is used; if two fit, the error names
+//! both. If none fits, the error is that of the dialect that got furthest into the file.
 
-use super::parts::Parts;
-use super::text::{self, Cursor, Fault, Token};
+use super::parts::RawMesh;
+use super::text::{self, Cursor, LineProblem, Token};
 use crate::choice::choices;
 use crate::mesh::{Problem, check_triangle};
 
 choices! {
     /// A `.tri` dialect.
     TriFormat, ".tri dialect", {
-        /// Position, normal and colour a vertex; indices from 0.
+        /// Position, normal and colour per vertex; indices from 0.
         Bourke = "bourke",
         /// Positions; faces of three indices from 0.
         Indexed = "indexed",
@@ -35,15 +36,15 @@ choices! {
         Labelled = "labelled",
         /// Positions; faces of a count or label and three indices from 1.
         LabelledFromOne = "labelled-1",
-        /// Headers that start with a dash; position and normal a vertex; indices from 0.
+        /// Headers that start with a dash; position and normal per vertex; indices from 0.
         OpenMeeg = "openmeeg",
-        /// No header; nine coordinates a triangle.
+        /// No header; nine coordinates per triangle.
         Soup = "soup",
     }
 }
 
-/// How the counted dialects differ.
-struct Layout {
+/// The layout of a dialect that begins with counts.
+struct TriLayout {
     dashed: bool,
     vertex_numbers: usize,
     face_numbers: usize,
@@ -52,7 +53,7 @@ struct Layout {
 }
 
 impl TriFormat {
-    /// The dialect in words.
+    /// A description of the dialect.
     pub fn description(self) -> &'static str {
         match self {
             Self::Bourke => "Bourke's format (position, normal and colour a vertex)",
@@ -67,7 +68,7 @@ impl TriFormat {
         }
     }
 
-    fn layout(self) -> Option<Layout> {
+    fn layout(self) -> Option<TriLayout> {
         let (vertex_numbers, face_numbers, first_index) = match self {
             Self::Bourke => (9, 3, 0),
             Self::Indexed => (3, 3, 0),
@@ -78,7 +79,7 @@ impl TriFormat {
             Self::Soup => return None,
         };
         let (dashed, components) = (self == Self::OpenMeeg, self == Self::Cart3d);
-        Some(Layout {
+        Some(TriLayout {
             dashed,
             vertex_numbers,
             face_numbers,
@@ -89,13 +90,13 @@ impl TriFormat {
 }
 
 /// Reads a `.tri` file of the given dialect, or of the one that fits.
-pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fault> {
+pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<RawMesh, LineProblem> {
     let text = text::decode(bytes);
     let tokens = text::tokens(&text);
     if tokens.is_empty() {
         return Err((None, Problem::NoVertices));
     }
-    let mut furthest: Option<(usize, Fault)> = None;
+    let mut furthest: Option<(usize, LineProblem)> = None;
     let mut seen_triangle = false;
     for by_line in [true, false] {
         if !by_line && seen_triangle && format.is_none() {
@@ -129,9 +130,9 @@ pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<Parts, Fau
     }
 }
 
-/// The dialects to try. Any nine numbers are a triangle of a soup, so that a cut-off file of
-/// another dialect would pass for one when lines do not count: then, a first line like `nv nt`
-/// rules it out.
+/// The dialects to try. Any nine numbers are a triangle of the dialect `soup`, so that a truncated
+/// file of another dialect would fit it when line ends are ignored. In that case a first line like
+/// `nv nt` excludes `soup`.
 fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec<TriFormat> {
     let first_line: Vec<_> = tokens
         .iter()
@@ -145,10 +146,10 @@ fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec
     }
 }
 
-/// No header is longer than this: a dialect that got past it has seen a vertex or a triangle.
+/// The longest header, in words: a dialect that got further has read a vertex or a triangle.
 const HEADER_TOKENS: usize = 2;
 
-fn ambiguous(fits: &[(TriFormat, Parts)]) -> Problem {
+fn ambiguous(fits: &[(TriFormat, RawMesh)]) -> Problem {
     Problem::Ambiguous {
         readings: fits
             .iter()
@@ -165,7 +166,7 @@ fn unknown_dialect() -> Problem {
 }
 
 /// Reads one dialect to the end of the file.
-fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<Parts, Fault> {
+fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<RawMesh, LineProblem> {
     let Some(layout) = format.layout() else {
         return soup(cursor);
     };
@@ -204,7 +205,7 @@ fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<Parts, Fault> {
         component_numbers(cursor, triangle_count)?;
     }
     match cursor.rest().first() {
-        None => Ok(Parts::indexed(vertices, triangles)),
+        None => Ok(RawMesh::indexed(vertices, triangles)),
         Some(token) => {
             let message = format!("{} after the last triangle", excess(cursor.rest().len()));
             let help = "remove what follows, or correct the counts in the header";
@@ -221,15 +222,19 @@ fn excess(count: usize) -> String {
     }
 }
 
-fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<[f64; 3]>, Fault> {
+fn vertices(
+    cursor: &mut Cursor,
+    count: usize,
+    numbers: usize,
+) -> Result<Vec<[f64; 3]>, LineProblem> {
     if count == 0 {
         return Err((None, Problem::NoVertices));
     }
     let mut vertices = Vec::with_capacity(count.min(cursor.tokens.len() / numbers));
     for index in 0..count {
         let record = cursor.record(numbers, &format!("vertex {index} of {count}"))?;
-        // Normals and colours are not used, and a degenerate mesh has NaN normals: they need only
-        // be numbers.
+        // Normals and colours are not used; a degenerate mesh has NaN normals. They only have to be
+        // numbers.
         for token in &record[3..] {
             token.number("a normal or colour")?;
         }
@@ -241,10 +246,10 @@ fn vertices(cursor: &mut Cursor, count: usize, numbers: usize) -> Result<Vec<[f6
 fn triangles(
     cursor: &mut Cursor,
     count: usize,
-    layout: &Layout,
+    layout: &TriLayout,
     vertices: usize,
-) -> Result<Vec<[u32; 3]>, Fault> {
-    let Layout {
+) -> Result<Vec<[u32; 3]>, LineProblem> {
+    let TriLayout {
         face_numbers,
         first_index,
         ..
@@ -272,9 +277,8 @@ fn triangles(
     Ok(triangles)
 }
 
-/// Cart3D's configurations name a component for each triangle; the numbers may be spread over lines
-/// in any way.
-fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault> {
+/// Reads Cart3D's component number per triangle, with any line breaks.
+fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), LineProblem> {
     let numbers = cursor.rest();
     cursor.at = cursor.tokens.len();
     if numbers.len() != triangles {
@@ -290,7 +294,7 @@ fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), Fault>
         .try_for_each(|token| token.integer("a component number").map(|_| ()))
 }
 
-fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
+fn soup(cursor: &mut Cursor) -> Result<RawMesh, LineProblem> {
     let coordinates = without_colours(cursor.tokens);
     let mut inner = Cursor::new(&coordinates, cursor.by_line);
     let mut points = Vec::new();
@@ -305,10 +309,10 @@ fn soup(cursor: &mut Cursor) -> Result<Parts, Fault> {
         Ok(())
     })();
     cursor.at = inner.at;
-    result.map(|()| Parts::soup(points))
+    result.map(|()| RawMesh::soup(points))
 }
 
-/// The tokens without the colours (0xRRGGBB) that close a triangle of nine numbers.
+/// The tokens without the colours (0xRRGGBB) after each triangle's nine numbers.
 fn without_colours<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let mut kept: Vec<Token<'a>> = Vec::with_capacity(tokens.len());
     let mut after_colour = true;
@@ -322,7 +326,7 @@ fn without_colours<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     kept
 }
 
-fn count(token: &Token) -> Result<usize, Fault> {
+fn count(token: &Token) -> Result<usize, LineProblem> {
     token.text.parse().map_err(|_| {
         let message = format!(
             "a count should be a whole number, found {}",
@@ -333,7 +337,7 @@ fn count(token: &Token) -> Result<usize, Fault> {
     })
 }
 
-fn dash(token: &Token) -> Result<(), Fault> {
+fn dash(token: &Token) -> Result<(), LineProblem> {
     if token.text == "-" {
         return Ok(());
     }

@@ -1,11 +1,10 @@
-//! Joins vertices at equal positions, for formats that write every triangle with its own three
+//! Merges vertices at equal positions, for formats in which every triangle has its own three
 //! points.
 
 use std::collections::HashMap;
 
-/// Gives each distinct position one index, in the order of first use, and keeps each once; three in
-/// a row are a triangle, whose indices are returned. Positions are equal when their coordinates are
-/// (0 and −0 too).
+/// Keeps each distinct position once, in the order of first use, and returns the indices of the
+/// triangles, which are three consecutive corners each. 0 and −0 are equal.
 pub(crate) fn weld(corners: &mut Vec<[f32; 3]>) -> Vec<[u32; 3]> {
     let mut vertices = Vec::new();
     let mut index_of: HashMap<[u32; 3], u32> = HashMap::new();

@@ -1,10 +1,10 @@
-//! Writing a mesh; the extension names the format.
+//! Writing a mesh file; the extension selects the format.
 //!
-//! Coordinates are the shortest decimals that read back to the same f32, or f64 for a mesh far from
-//! its origin or nearly so: a mesh survives the way to a file and back to the bit. `.tri` files are
-//! Bourke's dialect, whose vertices also have a unit normal and a colour: the normal is the sum of
-//! the adjacent triangles' cross products (area-weighted), in three decimals since it is for
-//! display only; a vertex without one gets 0 0 1.
+//! Coordinates are the shortest decimals that read back to the same f32, or to the same f64 for a
+//! mesh that is far, or nearly far, from its origin. A mesh that is written and read again is the
+//! same to the bit. `.tri` files have Bourke's dialect, in which vertices also have a unit normal
+//! and a colour. The normal is the area-weighted sum of the adjacent triangles' normals with three
+//! decimals, for display only; a vertex without triangles has the normal 0 0 1.
 
 use std::path::Path;
 
@@ -16,10 +16,10 @@ use crate::files;
 use crate::mesh::far::place;
 use crate::mesh::{MeshError, Problem, TriangleMesh, in_f64};
 
-/// Writes a mesh in the format that the extension names; the file appears when it is whole.
+/// Writes a mesh in the format of the path's extension. The file appears only when it is complete.
 ///
 /// # Errors
-/// An extension that names no format, or a file that cannot be written.
+/// An unknown extension, or a file that cannot be written.
 pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshError> {
     let path = path.as_ref();
     let file = path.display().to_string();
@@ -33,7 +33,7 @@ pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshErro
     })
 }
 
-/// The contents of a file that holds the mesh.
+/// The contents of a mesh file.
 pub fn write_bytes(mesh: &TriangleMesh, format: MeshFormat) -> Vec<u8> {
     match format {
         MeshFormat::Tri => tri_text(mesh).into_bytes(),
@@ -104,16 +104,16 @@ fn off_text(mesh: &TriangleMesh) -> String {
     text
 }
 
-/// Each vertex' coordinates in the file, as text that is read back as they are: the shortest f32
-/// where that keeps the mesh where it is, f64 otherwise.
+/// Each vertex's coordinates as text that reads back exactly: the shortest f32 if the mesh would be
+/// read back without an offset, otherwise the f64.
 fn coordinates(mesh: &TriangleMesh) -> impl Iterator<Item = [String; 3]> + '_ {
     let short = !mesh.is_far() && stays_when_shortened(mesh);
     let word = move |x: f64| if short { shortest(x as f32) } else { wide(x) };
     mesh.points().map(move |point| point.map(word))
 }
 
-/// Whether a mesh that isn't far would not be so as the shortest decimals of its f32: read as f64,
-/// they are others.
+/// Whether a mesh without an offset would be read back without one from the shortest decimals of
+/// its f32, which are other numbers as f64.
 fn stays_when_shortened(mesh: &TriangleMesh) -> bool {
     let shortened = |x: f64| shortest(x as f32).parse().unwrap_or(x);
     let points: Vec<[f64; 3]> = mesh.points().map(|point| point.map(shortened)).collect();

@@ -1,11 +1,11 @@
-//! Procedural shapes: closed, outward-oriented 2-manifolds with named sizes, equal to the bit on
-//! every platform.
+//! Procedural shapes: closed, outward-oriented 2-manifolds with named sizes, the same bits on every
+//! platform.
 //!
-//! Each shape stresses a volume in its own way: the box is tight for every or-DOP, the icosphere
-//! for the sphere alone, needle and plate for neither sphere nor small k, torus and gear have
-//! holes, the L-shape and the knot leave most of their hull empty. Coordinates are computed in f64
-//! with `libm`'s trigonometry (the platform's own differs in the last bit), then rounded once to
-//! f32. All shapes are centred on the origin; counter-clockwise triangles face outward.
+//! The shapes suit different volumes. The box fits every or-DOP tightly and the icosphere fits the
+//! sphere; needle and plate fit neither spheres nor or-DOPs of small k; torus and gear have holes;
+//! the L-shape and the knot leave most of their hull empty. Coordinates are computed in f64 with
+//! `libm`'s trigonometry (the platform's own differs in the last bit), then rounded once to f32.
+//! All shapes are centred on the origin; counter-clockwise triangles face outward.
 
 mod polyhedra;
 mod prisms;
@@ -18,7 +18,7 @@ use glam::Vec3;
 
 use super::TriangleMesh;
 
-/// A shape made from a few sizes; lengths in scene units, counts in pieces.
+/// A shape made from a few sizes. Lengths are in scene units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProceduralShape {
     /// A box with edges `x`, `y`, `z`.
@@ -34,7 +34,7 @@ pub enum ProceduralShape {
     Icosphere {
         /// Radius of the sphere through the vertices.
         radius: f32,
-        /// How often each triangle is split in four, 0 to 7.
+        /// How often each triangle is split into four: 0 to 7.
         subdivisions: u32,
     },
     /// A slim bipyramid along z.
@@ -104,7 +104,7 @@ pub enum ProceduralShape {
 }
 
 impl ProceduralShape {
-    /// Every shape's name, as scene files and the command line spell it.
+    /// The name of every shape in scene files and on the command line.
     pub const NAMES: [&str; 8] = [
         "box",
         "icosphere",
@@ -184,7 +184,7 @@ impl ProceduralShape {
     /// The shape of that name with some sizes replaced; a size not named keeps its default.
     ///
     /// # Errors
-    /// An unknown shape or size, or a value that the size does not allow; each names what would do.
+    /// An unknown shape or size, or a value that is not allowed. The error lists what is allowed.
     pub fn from_name(name: &str, sizes: &[(&str, f64)]) -> Result<Self, ShapeError> {
         let mut shape = Self::default_of(name).ok_or_else(|| ShapeError::UnknownShape {
             name: name.to_owned(),
@@ -199,7 +199,7 @@ impl ProceduralShape {
     /// The mesh.
     ///
     /// # Errors
-    /// Sizes that [`Self::from_name`] would refuse.
+    /// Invalid sizes, as in [`Self::from_name`].
     pub fn build(&self) -> Result<TriangleMesh, ShapeError> {
         self.check()?;
         let (vertices, triangles) = match *self {

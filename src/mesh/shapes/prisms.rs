@@ -6,7 +6,8 @@ use glam::{DVec3, Vec3};
 
 use super::quad;
 
-/// A tooth, in parts of the pitch: flank up to the tip, tip land, flank down, root land.
+/// A tooth's outline as fractions of the pitch, and whether each point is at the tip: flank up, tip
+/// land, flank down, root land.
 const TOOTH_PROFILE: [(f64, bool); 4] = [(0.0, false), (0.2, true), (0.5, true), (0.7, false)];
 
 /// A gear with the radii [tip, root, bore]: outline and bore share their angles, so plain quads
@@ -43,7 +44,7 @@ fn corners(i: u32) -> [u32; 4] {
     [4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3]
 }
 
-/// An L of outer lengths [x, y]. Its whole outline is seen from the inner corner, so a fan from
+/// An L of outer lengths [x, y]. The whole outline is visible from the inner corner, so a fan from
 /// there fills it.
 pub(super) fn l_shape([x, y]: [f32; 2], arm: f32, thickness: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let inner_corner = 3;

@@ -1,14 +1,14 @@
-//! A shape's sizes by name: which there are, what they may be, and what is said when they may not.
+//! A shape's sizes by name: their values, their limits and the errors beyond them.
 
 use super::ProceduralShape;
 
-/// One size of a shape, to be set by name.
-enum Size<'a> {
+/// A size of a shape that can be set by name.
+enum SizeSlot<'a> {
     Length(&'a mut f32),
     Count(&'a mut u32),
 }
 
-/// Why a shape cannot be made from the given name and sizes.
+/// Why a shape cannot be made from a name and sizes.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// No shape has this name.
@@ -36,7 +36,7 @@ pub enum ShapeError {
         size: &'static str,
         /// The value as given.
         value: f64,
-        /// What would do.
+        /// The allowed values.
         allowed: String,
     },
 }
@@ -57,12 +57,12 @@ impl ShapeError {
 
 /// Sizes by the names of their fields.
 macro_rules! sizes {
-    ($($kind:ident $size:ident),+) => { vec![$((stringify!($size), Size::$kind($size))),+] };
+    ($($kind:ident $size:ident),+) => { vec![$((stringify!($size), SizeSlot::$kind($size))),+] };
 }
 
 impl ProceduralShape {
     #[rustfmt::skip]
-    fn sizes(&mut self) -> Vec<(&'static str, Size<'_>)> {
+    fn sizes(&mut self) -> Vec<(&'static str, SizeSlot<'_>)> {
         match self {
             Self::Box { x, y, z } => sizes![Length x, Length y, Length z],
             Self::Icosphere { radius, subdivisions } => sizes![Length radius, Count subdivisions],
@@ -89,12 +89,13 @@ impl ProceduralShape {
                 continue;
             }
             match slot {
-                Size::Length(length) => *length = value as f32,
-                Size::Count(count) if value.fract() == 0.0 && value.abs() < 1e9 => {
-                    // A negative count saturates to 0, which `check` judges like any other.
+                SizeSlot::Length(length) => *length = value as f32,
+                SizeSlot::Count(count) if value.fract() == 0.0 && value.abs() < 1e9 => {
+                    // A negative count saturates to 0, which `check` then rejects if 0 is not
+                    // allowed.
                     *count = value as u32;
                 }
-                Size::Count(_) => {
+                SizeSlot::Count(_) => {
                     let allowed = "a whole number".to_owned();
                     return Err(ShapeError::BadSize {
                         shape,
@@ -125,12 +126,12 @@ impl ProceduralShape {
         };
         for (size, slot) in self.sizes() {
             match slot {
-                Size::Length(&mut length) => {
+                SizeSlot::Length(&mut length) => {
                     if !(MIN_LENGTH..=MAX_LENGTH).contains(&length) {
                         return bad(size, f64::from(length), "from 2^-60 to 2^58".to_owned());
                     }
                 }
-                Size::Count(&mut count) => {
+                SizeSlot::Count(&mut count) => {
                     let (least, most) = match (shape, size) {
                         ("icosphere", _) => (0, 7),
                         ("knot", "segments") => (32, 1024),
@@ -154,7 +155,8 @@ impl ProceduralShape {
         Ok(())
     }
 
-    /// Sizes that must stay below a limit set by other sizes, or the surface would cut itself.
+    /// Sizes that must be below a limit set by other sizes; otherwise the surface would intersect
+    /// itself.
     fn relations(&self) -> Vec<(&'static str, f32, f32, &'static str)> {
         match *self {
             Self::Torus { radius, tube, .. } => vec![("tube", tube, radius, "the ring's radius")],

@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use super::quad;
 
 /// A point of the curve with the normals n and m.
-struct Frame {
+struct CurveFrame {
     point: DVec3,
     n: DVec3,
     m: DVec3,
@@ -24,7 +24,7 @@ pub(super) fn torus(
 ) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     sweep(tube, segments, sides, |u| {
         let outward = DVec3::new(libm::cos(u), libm::sin(u), 0.0);
-        Frame {
+        CurveFrame {
             point: outward * f64::from(radius),
             n: outward,
             m: DVec3::Z,
@@ -50,7 +50,7 @@ pub(super) fn trefoil(
         let acceleration = DVec3::new(-s1 - 8.0 * s2, 8.0 * c2 - c1, 9.0 * s3);
         let tangent = velocity.normalize();
         let binormal = velocity.cross(acceleration).normalize();
-        Frame {
+        CurveFrame {
             point,
             n: binormal.cross(tangent),
             m: -binormal,
@@ -62,13 +62,13 @@ fn sweep(
     tube: f32,
     segments: u32,
     sides: u32,
-    frame: impl Fn(f64) -> Frame,
+    frame: impl Fn(f64) -> CurveFrame,
 ) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut vertices = Vec::new();
     let mut triangles = Vec::new();
     let index = |i: u32, j: u32| (i % segments) * sides + j % sides;
     for i in 0..segments {
-        let Frame { point, n, m } = frame(TAU * f64::from(i) / f64::from(segments));
+        let CurveFrame { point, n, m } = frame(TAU * f64::from(i) / f64::from(segments));
         for j in 0..sides {
             let v = TAU * f64::from(j) / f64::from(sides);
             let offset = n * libm::cos(v) + m * libm::sin(v);

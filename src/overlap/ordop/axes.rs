@@ -1,7 +1,7 @@
-//! Separating axes of one pair per lane: both bodies' slab normals, and edge × edge.
+//! Separating axes of one pair per lane: both bodies' slab normals, and cross products of edges.
 
 use super::edges;
-use super::slabs::Slabs;
+use super::slabs::LaneSlabs;
 use super::support::support;
 use super::table::each_direction;
 use crate::simd::{Lanes, ROW};
@@ -9,12 +9,12 @@ use crate::update::row::{O, Q, S, T};
 
 type Vector<L> = [<L as Lanes>::F; 3];
 
-/// Numbers in [`Frames`].
-pub const FRAMES: usize = 17;
+/// The number of numbers in a [`PairFrames`].
+pub const NUMBERS_PER_FRAMES: usize = 17;
 
-/// Two bodies' frames in each other's coordinates.
+/// Two bodies' frames in each other's coordinates, one pair per lane.
 #[derive(Clone, Copy)]
-pub struct Frames<L: Lanes> {
+pub struct PairFrames<L: Lanes> {
     /// `turn[i][j]` = axis i of A · axis j of B: row i is A's axis in B's coordinates, column j B's
     /// axis in A's.
     turn: [Vector<L>; 3],
@@ -22,13 +22,13 @@ pub struct Frames<L: Lanes> {
     gap_a: Vector<L>,
     /// −Δ along B's axes.
     gap_b: Vector<L>,
-    /// The shapes of A and B, as rows hold them.
+    /// The shapes of A and B, as stored in rows.
     pub shapes: [L::F; 2],
 }
 
-impl<L: Lanes> Frames<L> {
-    /// Relates two rows. Δ is the difference of the input translations plus that of the offsets: a
-    /// difference of rounded world centres would lose it far from the origin.
+impl<L: Lanes> PairFrames<L> {
+    /// The frames of two rows. Δ is the difference of the input translations plus that of the
+    /// offsets, because a difference of rounded world centres would be inexact far from the origin.
     #[cfg_attr(not(unoptimised), inline(always))]
     pub fn new(l: L, a: [L::F; ROW], b: [L::F; ROW]) -> Self {
         let zero = l.splat(0.0);
@@ -52,9 +52,9 @@ impl<L: Lanes> Frames<L> {
         }
     }
 
-    /// The same as plain numbers.
+    /// The frames as an array of vectors.
     #[inline(always)]
-    pub fn numbers(&self) -> [L::F; FRAMES] {
+    pub fn numbers(&self) -> [L::F; NUMBERS_PER_FRAMES] {
         let ([x, y, z], [ga, gb, gc], [ha, hb, hc]) = (self.turn, self.gap_b, self.gap_a);
         let [one, other] = self.shapes;
         [
@@ -63,9 +63,9 @@ impl<L: Lanes> Frames<L> {
         ]
     }
 
-    /// Back from [`Self::numbers`].
+    /// The inverse of [`Self::numbers`].
     #[inline(always)]
-    pub fn from_numbers(n: [L::F; FRAMES]) -> Self {
+    pub fn from_numbers(n: [L::F; NUMBERS_PER_FRAMES]) -> Self {
         Self {
             shapes: [n[0], n[1]],
             turn: [[n[2], n[3], n[4]], [n[5], n[6], n[7]], [n[8], n[9], n[10]]],
@@ -74,15 +74,25 @@ impl<L: Lanes> Frames<L> {
         }
     }
 
-    /// Lanes that a normal of A separates.
+    /// Lanes in which a slab normal of A separates the pair.
     #[inline(always)]
-    pub fn by_normals_of_a<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
+    pub fn by_normals_of_a<const K: usize>(
+        &self,
+        l: L,
+        a: &LaneSlabs<L>,
+        b: &LaneSlabs<L>,
+    ) -> L::M {
         by_normals::<L, K>(l, self.turn, self.gap_a, a, b)
     }
 
-    /// Lanes that a normal of B separates.
+    /// Lanes in which a slab normal of B separates the pair.
     #[inline(always)]
-    pub fn by_normals_of_b<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
+    pub fn by_normals_of_b<const K: usize>(
+        &self,
+        l: L,
+        a: &LaneSlabs<L>,
+        b: &LaneSlabs<L>,
+    ) -> L::M {
         let back = [self.column(0), self.column(1), self.column(2)];
         by_normals::<L, K>(l, back, self.gap_b, b, a)
     }
@@ -93,10 +103,11 @@ impl<L: Lanes> Frames<L> {
         [self.turn[0][j], self.turn[1][j], self.turn[2][j]]
     }
 
-    /// Axes edge × edge. An axis shorter than ½ (nearly parallel edges) is skipped: the error
-    /// bounds are relative to its length, and the normals serve such pairs.
+    /// Lanes in which a cross product of edges separates the pair. An axis shorter than ½ (of
+    /// nearly parallel edges) is skipped, because the error bounds are relative to its length, and
+    /// normals separate such pairs.
     #[cfg_attr(not(unoptimised), inline(always))]
-    pub fn by_edges<const K: usize>(&self, l: L, a: &Slabs<L>, b: &Slabs<L>) -> L::M {
+    pub fn by_edges<const K: usize>(&self, l: L, a: &LaneSlabs<L>, b: &LaneSlabs<L>) -> L::M {
         let all = l.bits(l.first(L::WIDTH));
         let (zero, quarter) = (l.splat(0.0), l.splat(0.25));
         let mut separated = l.first(0);
@@ -128,14 +139,14 @@ impl<L: Lanes> Frames<L> {
 }
 
 /// Lanes separated along one body's own slab normals. `turn[i]` is its axis i in the other's
-/// coordinates, `gap` the way to the other's centre along its own axes.
+/// coordinates, `gap` is the vector to the other's centre along its own axes.
 #[cfg_attr(not(unoptimised), inline(always))]
 fn by_normals<L: Lanes, const K: usize>(
     l: L,
     turn: [Vector<L>; 3],
     gap: Vector<L>,
-    own: &Slabs<L>,
-    other: &Slabs<L>,
+    own: &LaneSlabs<L>,
+    other: &LaneSlabs<L>,
 ) -> L::M {
     let all = l.bits(l.first(L::WIDTH));
     let [x, y, z] = [
@@ -144,16 +155,16 @@ fn by_normals<L: Lanes, const K: usize>(
         combinations::<L>(turn[0][2], turn[1][2], turn[2][2]),
     ];
     let tau = combinations::<L>(gap[0], gap[1], gap[2]);
-    // The normal turned towards the other body faces one slab end; the other body answers in the
-    // opposite direction.
+    // The normal towards the other body selects one slab end; the other body's support is needed in
+    // the opposite direction.
     let other = other.mirrored();
     let mut separated = l.first(0);
     each_direction!(K, |i, _place| {
         let towards = flip(l, [x[i], y[i], z[i]], tau[i]);
         let reach = own.own(l, i, tau[i]) + support::<L, K>(l, &other, towards);
         separated = separated | l.gt(l.abs(tau[i]), reach);
-        // One lane alone leaves at its first separating axis; in a wide vector all lanes seldom
-        // agree so early.
+        // A single lane returns at its first separating axis. In a wide vector all lanes are rarely
+        // separated early.
         if L::WIDTH == 1 && l.bits(separated) == all {
             return separated;
         }
@@ -236,10 +247,11 @@ mod tests {
         lanes[0]
     }
 
+    /// Combinations and products are those of whole numbers.
     #[test]
-    fn combinations_and_products_are_those_of_whole_numbers() {
-        struct Of([f32; 3], [f32; 3]);
-        impl Kernel for Of {
+    fn combinations_match_integer_arithmetic() {
+        struct CombineAndCross([f32; 3], [f32; 3]);
+        impl Kernel for CombineAndCross {
             type Output = ([f32; 13], [f32; 3], f32);
             #[inline(always)]
             fn run<L: Lanes>(self, l: L) -> Self::Output {
@@ -253,7 +265,7 @@ mod tests {
         }
         let (n, v) = ([2.0, -3.0, 5.0], [1.0, 10.0, 100.0]);
         for tier in Tier::available() {
-            let (combined, crossed, product) = dispatch(tier, Of(n, v));
+            let (combined, crossed, product) = dispatch(tier, CombineAndCross(n, v));
             let expected =
                 COEFFICIENTS.map(|c| (0..3).map(|i| f32::from(c[i]) * v[i]).sum::<f32>());
             assert_eq!(combined, expected, "{tier}");
@@ -264,9 +276,9 @@ mod tests {
 
     /// Boxes of these half edges, the second turned and moved: whether an edge × edge axis
     /// separates them, for k = 6.
-    struct Boxes([[f32; 3]; 2], Rotation, [f32; 3]);
+    struct BoxPair([[f32; 3]; 2], Rotation, [f32; 3]);
 
-    impl Kernel for Boxes {
+    impl Kernel for BoxPair {
         type Output = bool;
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> bool {
@@ -275,7 +287,7 @@ mod tests {
                 for (end, x) in ends.iter_mut().zip(half) {
                     *end = [l.splat(x); 2];
                 }
-                Slabs { ends }
+                LaneSlabs { ends }
             });
             let row = |turn: [[f64; 3]; 3], t: [f32; 3]| {
                 let mut row = [l.splat(0.0); ROW];
@@ -288,13 +300,13 @@ mod tests {
                 row
             };
             let still = rotation([0.0, 0.0, 0.0, 1.0]);
-            let frames = Frames::new(l, row(still, [0.0; 3]), row(self.1, self.2));
+            let frames = PairFrames::new(l, row(still, [0.0; 3]), row(self.1, self.2));
             let separated = l.bits(frames.by_edges::<6>(l, &slabs[0], &slabs[1]));
             separated & 1 != 0
         }
     }
 
-    impl Boxes {
+    impl BoxPair {
         /// How far, in plain f64, the best axis long enough to be asked separates the two.
         fn gap(&self) -> f64 {
             let Self(halves, turn, way) = self;
@@ -320,8 +332,9 @@ mod tests {
         }
     }
 
+    /// Edges separate boxes as plain arithmetic says.
     #[test]
-    fn edges_separate_boxes_as_plain_arithmetic_says() {
+    fn edge_axes_match_plain_arithmetic() {
         let mut random = ChaCha8Rng::seed_from_u64(17);
         let mut next = || (random.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0;
         for tier in Tier::available() {
@@ -329,7 +342,7 @@ mod tests {
             for _ in 0..2000 {
                 let halves = [(); 2].map(|()| [(); 3].map(|()| 1.25 + next()));
                 let turn = rotation([next(), next(), next(), 1.5 + next()]);
-                let boxes = Boxes(halves, turn, [(); 3].map(|()| 3.0 * next()));
+                let boxes = BoxPair(halves, turn, [(); 3].map(|()| 3.0 * next()));
                 let gap = boxes.gap();
                 if gap.abs() > 1e-3 {
                     assert_eq!(dispatch(tier, boxes), gap > 0.0, "{tier}: {gap}");

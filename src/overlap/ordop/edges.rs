@@ -1,9 +1,9 @@
 //! Edge directions of a k-DOP, up to sign: the cross products of its slab normals, as integer
 //! coefficients.
 //!
-//! An edge of a polytope lies in two of its facets, so it is parallel to the cross product of their
-//! normals. Which of these edges a given DOP really has depends on its slabs; trying all of them is
-//! conservative and the same for every body.
+//! An edge of a polytope is in two of its facets, so it is parallel to the cross product of their
+//! normals. Which of these edges a DOP has depends on its slabs. Trying all of them is
+//! conservative, and the same for every body.
 
 /// 3 axes; with cube or face diagonals also the 6 face diagonals; face diagonals bring the 4 cube
 /// diagonals, and both diagonals together the 12 of type (1, 1, 2).
@@ -35,7 +35,7 @@ const EDGES: [[f32; 3]; 25] = [
     [1.0, 1.0, -2.0],
 ];
 
-/// The edge directions of the DOP with k half-spaces.
+/// The edge directions of a DOP with k half-spaces.
 #[must_use]
 pub fn of(k: usize) -> &'static [[f32; 3]] {
     match k {
@@ -51,8 +51,9 @@ mod tests {
     use super::super::table::{COEFFICIENTS, members_of};
     use super::*;
 
+    /// Edges are all cross products of the normals up to sign and length.
     #[test]
-    fn edges_are_all_cross_products_of_the_normals_up_to_sign_and_length() {
+    fn edges_are_normals_cross_products() {
         for k in [6, 14, 18, 26] {
             let mut found = std::collections::BTreeSet::new();
             for &i in members_of(k) {

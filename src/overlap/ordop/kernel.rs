@@ -1,7 +1,7 @@
-//! Lists of pairs through the separating-axis test, a vector of pairs at a time.
+//! The separating-axis test of a list of pairs, a vector of pairs at a time.
 
-use super::axes::{FRAMES, Frames};
-use super::slabs::Slabs;
+use super::axes::{NUMBERS_PER_FRAMES, PairFrames};
+use super::slabs::LaneSlabs;
 use super::table::SlabTables;
 use crate::pairs::PairList;
 use crate::settings::Overlap;
@@ -9,20 +9,20 @@ use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
 use crate::update::RowsByNumber;
 use crate::volume::DirectionSet;
 
-/// Pairs that go through the first bodies' normals before the rest: their survivors' frames fit the
-/// first-level cache.
+/// Pairs per block: all are tested with the first bodies' normals before the survivors take the
+/// other axes, so that the survivors' frames fit into the first-level cache.
 const PAIRS_PER_BLOCK: usize = 128;
 
 /// How many pairs ahead rows are prefetched.
-const PREFETCH_AHEAD: usize = 48;
+const PREFETCH_DISTANCE: usize = 48;
 
-/// Up to so many rows the caches hold them all, and prefetching only costs.
+/// The most rows that fit into the caches. With fewer, prefetching only costs time.
 const ROWS_IN_CACHE: usize = 1 << 13;
 
 /// The or-DOPs of all bodies as the pair test reads them.
 #[derive(Clone, Copy)]
 pub struct OrDopColumns<'a> {
-    /// Q, t, o, shape: a row a body.
+    /// One row per body: Q, t, o and the shape.
     pub rows: RowsByNumber<'a>,
     /// Each shape's slabs.
     pub tables: &'a SlabTables,
@@ -30,17 +30,17 @@ pub struct OrDopColumns<'a> {
     pub overlap: Overlap,
 }
 
-/// Outcome of a range of pair tests.
+/// The counts of a range of pair tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TestOutcome {
     /// Pairs tested.
     pub tests: u64,
-    /// Pairs that no tried axis separates.
+    /// Pairs that none of the tried axes separates.
     pub hits: u64,
 }
 
 impl OrDopColumns<'_> {
-    /// Tests the listed pairs in the tier `tier` and appends the ones that may overlap to `out`, in
+    /// Tests the listed pairs in the tier `tier` and appends those that may overlap to `out`, in
     /// list order.
     pub fn test_pairs(
         &self,
@@ -60,8 +60,8 @@ impl OrDopColumns<'_> {
         dispatch(tier, Test(self, first, second, out))
     }
 
-    /// Whether no tried axis separates the two rows: the same test of one pair, in one lane, which
-    /// leaves at the first axis that does.
+    /// Whether none of the tried axes separates the two rows: the same test for one pair, in one
+    /// lane, which returns at the first separating axis.
     #[must_use]
     pub fn may_overlap(&self, first: u32, second: u32) -> bool {
         struct Test<'a, 'b>(&'a OrDopColumns<'b>, [u32; 2]);
@@ -84,7 +84,7 @@ impl OrDopColumns<'_> {
     fn test_one<L: Lanes, const K: usize>(&self, l: L, pair: [u32; 2]) -> bool {
         let [a, b] =
             pair.map(|body| l.load_transposed(&self.rows, &[self.rows.find(body); MAX_WIDTH]));
-        let frames = Frames::new(l, a, b);
+        let frames = PairFrames::new(l, a, b);
         let [a, b] = self.slabs::<L, K, false>(l, &frames);
         let apart = |mask: L::M| l.bits(mask) & 1 != 0;
         !(apart(frames.by_normals_of_a::<K>(l, &a, &b))
@@ -116,8 +116,8 @@ impl OrDopColumns<'_> {
         second: &[u32],
         out: &mut PairList,
     ) -> TestOutcome {
-        // Only a vector of 16 has a permutation for 16 shapes; with two halves each, rows are as
-        // quick.
+        // Only a vector of 16 lanes has a permutation for 16 shapes; with two halves, loading rows
+        // is as fast.
         let few = L::WIDTH == 16 && !self.tables.columns().is_empty();
         if few {
             self.test_blocks::<L, K, true>(l, first, second, out)
@@ -134,12 +134,12 @@ impl OrDopColumns<'_> {
         second: &[u32],
         out: &mut PairList,
     ) -> TestOutcome {
-        let (mut pairs, mut alive) = (Pairs::new(), Survivors::new());
+        let (mut pairs, mut alive) = (PairBlock::new(), SurvivorBlock::new());
         let listed = out.len();
         for start in (0..first.len()).step_by(PAIRS_PER_BLOCK) {
             let end = first.len().min(start + PAIRS_PER_BLOCK);
             pairs.fill(&first[start..end], &second[start..end]);
-            let later = first.len().min(start + PREFETCH_AHEAD);
+            let later = first.len().min(start + PREFETCH_DISTANCE);
             let later = [&first[later..], &second[later..]];
             self.by_first::<L, K, FEW>(l, &pairs, later, &mut alive);
             self.by_rest::<L, K, FEW>(l, &alive, out);
@@ -150,15 +150,15 @@ impl OrDopColumns<'_> {
         }
     }
 
-    /// Pairs through the normals of the first bodies. `later` are the pairs that follow
-    /// [`PREFETCH_AHEAD`] behind these.
+    /// Tests pairs with the normals of the first bodies. `later` are the pairs
+    /// [`PREFETCH_DISTANCE`] after these, whose rows are prefetched.
     #[cfg_attr(not(unoptimised), inline(always))]
     fn by_first<L: Lanes, const K: usize, const FEW: bool>(
         &self,
         l: L,
-        pairs: &Pairs,
+        pairs: &PairBlock,
         later: [&[u32]; 2],
-        alive: &mut Survivors,
+        alive: &mut SurvivorBlock,
     ) {
         alive.pairs.len = 0;
         let mut start = 0;
@@ -168,7 +168,7 @@ impl OrDopColumns<'_> {
                     self.prefetch_rows(column.iter().skip(start).take(L::WIDTH));
                 }
             }
-            let frames = Frames::new(
+            let frames = PairFrames::new(
                 l,
                 l.load_transposed(&self.rows, &self.rows_of(&pairs.first[start..])),
                 l.load_transposed(&self.rows, &self.rows_of(&pairs.second[start..])),
@@ -182,12 +182,12 @@ impl OrDopColumns<'_> {
         alive.pad();
     }
 
-    /// Pairs that are still alive through all other axes; survivors are appended to `out`.
+    /// Tests the remaining pairs with all other axes, and appends the survivors to `out`.
     #[cfg_attr(not(unoptimised), inline(always))]
     fn by_rest<L: Lanes, const K: usize, const FEW: bool>(
         &self,
         l: L,
-        alive: &Survivors,
+        alive: &SurvivorBlock,
         out: &mut PairList,
     ) {
         let pairs = &alive.pairs;
@@ -210,7 +210,7 @@ impl OrDopColumns<'_> {
         }
     }
 
-    /// Where the rows of the first bodies stand, a vector of them.
+    /// The indices of the first bodies' rows, a vector of them.
     #[inline(always)]
     fn rows_of(&self, bodies: &[u32]) -> [u32; MAX_WIDTH] {
         let mut rows = [0; MAX_WIDTH];
@@ -233,23 +233,23 @@ impl OrDopColumns<'_> {
     fn slabs<L: Lanes, const K: usize, const FEW: bool>(
         &self,
         l: L,
-        frames: &Frames<L>,
-    ) -> [Slabs<L>; 2] {
+        frames: &PairFrames<L>,
+    ) -> [LaneSlabs<L>; 2] {
         [
-            Slabs::load::<K, FEW>(l, self.tables, frames.shapes[0]),
-            Slabs::load::<K, FEW>(l, self.tables, frames.shapes[1]),
+            LaneSlabs::load::<K, FEW>(l, self.tables, frames.shapes[0]),
+            LaneSlabs::load::<K, FEW>(l, self.tables, frames.shapes[1]),
         ]
     }
 }
 
-/// A block of pairs, padded by a vector of the first one.
-struct Pairs {
+/// A block of pairs, padded with copies of the first one.
+struct PairBlock {
     len: usize,
     first: [u32; PAIRS_PER_BLOCK + MAX_WIDTH],
     second: [u32; PAIRS_PER_BLOCK + MAX_WIDTH],
 }
 
-impl Pairs {
+impl PairBlock {
     #[inline(always)]
     fn new() -> Self {
         Self {
@@ -276,18 +276,18 @@ impl Pairs {
     }
 }
 
-/// Pairs of a block that the first bodies' normals don't separate, with the frames already found.
-struct Survivors {
-    pairs: Pairs,
-    frames: [[f32; PAIRS_PER_BLOCK + MAX_WIDTH]; FRAMES],
+/// Pairs of a block that the first bodies' normals don't separate, with their frames.
+struct SurvivorBlock {
+    pairs: PairBlock,
+    frames: [[f32; PAIRS_PER_BLOCK + MAX_WIDTH]; NUMBERS_PER_FRAMES],
 }
 
-impl Survivors {
+impl SurvivorBlock {
     #[inline(always)]
     fn new() -> Self {
         Self {
-            pairs: Pairs::new(),
-            frames: [[0.0; PAIRS_PER_BLOCK + MAX_WIDTH]; FRAMES],
+            pairs: PairBlock::new(),
+            frames: [[0.0; PAIRS_PER_BLOCK + MAX_WIDTH]; NUMBERS_PER_FRAMES],
         }
     }
 
@@ -296,9 +296,9 @@ impl Survivors {
         &mut self,
         l: L,
         keep: u32,
-        from: &Pairs,
+        from: &PairBlock,
         start: usize,
-        frames: &Frames<L>,
+        frames: &PairFrames<L>,
         overlap: Overlap,
     ) {
         let at = self.pairs.len..self.pairs.len + MAX_WIDTH;
@@ -315,8 +315,8 @@ impl Survivors {
         );
         let needed = match overlap {
             Overlap::OneSided => 0,
-            Overlap::TwoSided => FRAMES - 3,
-            Overlap::Full => FRAMES,
+            Overlap::TwoSided => NUMBERS_PER_FRAMES - 3,
+            Overlap::Full => NUMBERS_PER_FRAMES,
         };
         let numbers = frames.numbers();
         for (column, number) in self.frames.iter_mut().zip(numbers).take(needed) {
@@ -325,7 +325,7 @@ impl Survivors {
         self.pairs.len += keep.count_ones() as usize;
     }
 
-    /// Fills the last vector up with the first pair.
+    /// Pads the last vector with the first pair.
     #[inline(always)]
     fn pad(&mut self) {
         self.pairs.pad();
@@ -337,11 +337,11 @@ impl Survivors {
     }
 
     #[inline(always)]
-    fn frames<L: Lanes>(&self, l: L, start: usize) -> Frames<L> {
-        let mut numbers = [l.splat(0.0); FRAMES];
+    fn frames<L: Lanes>(&self, l: L, start: usize) -> PairFrames<L> {
+        let mut numbers = [l.splat(0.0); NUMBERS_PER_FRAMES];
         for (number, column) in numbers.iter_mut().zip(&self.frames) {
             *number = l.load(&column[start..]);
         }
-        Frames::from_numbers(numbers)
+        PairFrames::from_numbers(numbers)
     }
 }

@@ -1,4 +1,5 @@
-//! The or-DOPs of one frame apart from a culler: what studies and benches test listed pairs of.
+//! [`PosedOrDops`]: the or-DOPs of one frame, outside of a culler. Studies and benches test listed
+//! pairs with it.
 
 use super::kernel::OrDopColumns;
 use super::table::SlabTables;
@@ -10,8 +11,7 @@ use crate::threads::Threads;
 use crate::update::{OrDopRows, RowsByNumber, ShapeFrame, ShapeFrames, UpdateInputs};
 use crate::volume::{DirectionSet, OrDop, Shape};
 
-/// Rows and tables of bodies in the order of their columns, so that pairs of rows are pairs of
-/// bodies.
+/// Rows and tables in the order of the bodies' columns, so that pairs of rows are pairs of bodies.
 #[derive(Debug)]
 pub struct PosedOrDops {
     rows: OrDopRows,
@@ -19,7 +19,7 @@ pub struct PosedOrDops {
 }
 
 impl PosedOrDops {
-    /// Poses the bodies. `shapes` gives each shape its or-DOP; all have the same directions.
+    /// Updates the or-DOPs to the bodies' poses. All shapes have the same slab directions.
     #[must_use]
     pub fn new<'a>(
         shapes: impl Iterator<Item = (&'a Shape, &'a OrDop)> + Clone,
@@ -47,7 +47,7 @@ impl PosedOrDops {
         }
     }
 
-    /// As the pair test takes them.
+    /// The form that the pair test takes.
     #[must_use]
     pub fn columns(&self, overlap: Overlap) -> OrDopColumns<'_> {
         OrDopColumns {

@@ -1,11 +1,11 @@
-//! How far from its centre an or-DOP can matter: the radius by which pair finders bin a homogeneous
-//! or-DOP.
+//! The distance from its centre within which an or-DOP can be reported: the radius by which pair
+//! finders bin or-DOPs in a strategy without spheres.
 //!
-//! Two or-DOPs whose circumscribed balls are apart may still be reported, since slab normals alone
-//! don't separate all disjoint polytopes. But some normal a of A is within the covering angle θ of
-//! Δ, so a·Δ ≥ cos θ·|Δ|, while the supports are at most S = C·w each: w is the widest slab half
-//! over its normal's length, and C bounds Σλᵢ‖dᵢ‖ of the weak-duality multipliers of a unit vector.
-//! Hence separated if |Δ| > (S_A + S_B)/cos θ:
+//! Two or-DOPs whose circumscribed balls are apart may still be reported, because slab normals
+//! alone don't separate all disjoint polytopes. But some normal a of A is within the covering angle
+//! θ of Δ, so a·Δ ≥ cos θ·|Δ|, while each support is at most S = C·w: w is the largest half width
+//! of a slab over its normal's length, and C bounds Σλᵢ‖dᵢ‖ of the weak-duality multipliers of a
+//! unit vector. Therefore they are separated if |Δ| > (S_A + S_B)/cos θ:
 //!
 //! | k | cos θ | C | C/cos θ |
 //! |---|---|---|---|
@@ -16,12 +16,12 @@
 
 use super::table::{COEFFICIENTS, members_of};
 
-/// More than some forty roundings, and what the once-rounded offset of the centre takes.
+/// Exceeds about forty roundings, and the rounding of the centre's offset.
 const MARGIN: f64 = 1.0 / 4096.0;
 const OFFSET_MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
-/// The radius about the or-DOP's centre such that the test separates any two or-DOPs with |Δ| above
-/// the sum of theirs. `reach` bounds the distance of the shape's centre from the body origin.
+/// The radius about the or-DOP's centre: the test separates any two or-DOPs with |Δ| above the sum
+/// of their radii. `reach` bounds the distance of the shape's centre from the body origin.
 pub fn reach(table: &[f32], k: usize, reach: f32) -> f64 {
     let factor = match k {
         6 => 3.0,
@@ -77,7 +77,7 @@ mod tests {
                 .iter()
                 .flat_map(|m| [length(m).sqrt(); 2])
                 .collect();
-            // Written out: taken from the code, a margin would be as wide as whatever stands there.
+            // Written out, so that the test does not take the margin from the code.
             let factor = reach(&table, k, 0.0) / (1.0 + 1.0 / 4096.0);
             let cosine = directions().map(|e| nearest(k, e)).fold(1.0, f64::min);
             let support = directions()
@@ -91,8 +91,9 @@ mod tests {
         }
     }
 
+    /// A centre far from the origin reaches farther.
     #[test]
-    fn a_centre_far_from_the_origin_reaches_farther() {
+    fn far_centre_reaches_farther() {
         let table = [1.0; 6];
         let gained = reach(&table, 6, 4096.0) - reach(&table, 6, 0.0);
         // 4096 of 2^-20.

@@ -1,10 +1,10 @@
-//! Slab ends of a vector of or-DOPs, one per lane, as columns: an end is picked by signs, never
-//! fetched.
+//! [`LaneSlabs`]: the slab ends of a vector of or-DOPs, one per lane, as columns. An end is
+//! selected by signs, without a memory access.
 //!
-//! A lane's shape is its own, so its ends can't be a broadcast, and fetching them look-up by
-//! look-up takes 144 gathers a vector at k = 18, which was two thirds of the test. Instead all ends
-//! of each lane's shape are loaded once, and every look-up becomes one to seven selections by the
-//! sign bits of the direction.
+//! Each lane has its own shape, so ends can't be broadcast, and gathering them one by one takes 144
+//! gathers per vector at k = 18, which was two thirds of the test's time. Instead all ends of each
+//! lane's shape are loaded once, and every look-up is one to seven selections by the sign bits of
+//! the direction.
 
 use super::table::{SlabTables, each_direction};
 use crate::simd::{Lanes, MAX_WIDTH, ROW};
@@ -12,27 +12,27 @@ use crate::update::row::SHAPE;
 
 /// The ends of each lane's slabs.
 #[derive(Clone, Copy)]
-pub struct Slabs<L: Lanes> {
-    /// By direction in the order of K26: the end that the direction faces, and the one that its
-    /// opposite faces. What the set of directions lacks is zero.
+pub struct LaneSlabs<L: Lanes> {
+    /// For each direction in the order of K26: the end in that direction, and the one in the
+    /// opposite direction. Directions that the set lacks have zeros.
     pub ends: [[L::F; 2]; 13],
 }
 
-/// Which coordinates of a direction are negative, lane by lane.
+/// Which coordinates of a direction are negative, per lane.
 #[derive(Clone, Copy)]
 pub struct DirectionSigns<L: Lanes>([L::M; 3]);
 
 impl<L: Lanes> DirectionSigns<L> {
-    /// Of e. A zero's sign counts as it is.
+    /// The signs of e. A zero counts by its sign bit.
     #[inline(always)]
     pub fn of(l: L, e: [L::F; 3]) -> Self {
         Self([l.negative(e[0]), l.negative(e[1]), l.negative(e[2])])
     }
 }
 
-impl<L: Lanes> Slabs<L> {
-    /// The slabs of each lane's shape, with the K half-spaces that all tables have; shapes as rows
-    /// hold them.
+impl<L: Lanes> LaneSlabs<L> {
+    /// Loads the slabs of each lane's shape, with the K half-spaces that all tables have. `shapes`
+    /// are as stored in rows.
     #[inline(always)]
     pub fn load<const K: usize, const FEW: bool>(l: L, tables: &SlabTables, shape: L::F) -> Self {
         let shape = l.add_u32(l.as_u32(shape), l.splat_u32(0u32.wrapping_sub(SHAPE)));
@@ -43,7 +43,7 @@ impl<L: Lanes> Slabs<L> {
         }
     }
 
-    /// Every end by one permutation of a column that holds it for all shapes.
+    /// Loads every end by one permutation of a column that has it for all shapes.
     #[cfg_attr(not(unoptimised), inline(always))]
     fn look_up<const K: usize>(l: L, columns: &[[f32; ROW]], shape: L::I) -> Self {
         let mut ends = [[l.splat(0.0); 2]; 13];
@@ -77,7 +77,7 @@ impl<L: Lanes> Slabs<L> {
         Self { ends }
     }
 
-    /// The same bodies turned inside out: what faced a direction now faces its opposite.
+    /// The point reflections of the bodies: ends in a direction become those in the opposite one.
     #[inline(always)]
     pub fn mirrored(&self) -> Self {
         let mut ends = self.ends;
@@ -87,13 +87,13 @@ impl<L: Lanes> Slabs<L> {
         Self { ends }
     }
 
-    /// The end of a direction's own slab, or with a negative `sign` its other end.
+    /// The end of a direction's slab, or the other end if `sign` is negative.
     #[inline(always)]
     pub fn own(&self, l: L, member: usize, sign: L::F) -> L::F {
         pick(l, l.negative(sign), self.ends[member])
     }
 
-    /// The ends that the axes face.
+    /// The ends in the directions of the axes.
     #[inline(always)]
     pub fn axes(&self, l: L, DirectionSigns([x, y, z]): DirectionSigns<L>) -> [L::F; 3] {
         [
@@ -103,7 +103,7 @@ impl<L: Lanes> Slabs<L> {
         ]
     }
 
-    /// The ends that the face diagonals xy, xz, yz face.
+    /// The ends in the directions of the face diagonals xy, xz and yz.
     #[inline(always)]
     pub fn pairs(&self, l: L, DirectionSigns([x, y, z]): DirectionSigns<L>) -> [L::F; 3] {
         [
@@ -113,7 +113,8 @@ impl<L: Lanes> Slabs<L> {
         ]
     }
 
-    /// Of directions (1, 1) and (1, −1) in a pair of coordinates, which are `member` and the next.
+    /// The end of one of the directions (1, 1) and (1, −1) in a pair of coordinates, which are
+    /// `member` and the next.
     #[inline(always)]
     fn pair(&self, l: L, member: usize, x: L::M, y: L::M) -> L::F {
         if L::WIDTH == 1 {
@@ -127,7 +128,8 @@ impl<L: Lanes> Slabs<L> {
         pick(l, y, [with, against])
     }
 
-    /// The end that the cube diagonal faces, then those of its neighbours bent over at x, y, z.
+    /// The end in the direction of the cube diagonal, then those of its neighbours with x, y or z
+    /// negated.
     #[inline(always)]
     pub fn cube(&self, l: L, DirectionSigns([x, y, z]): DirectionSigns<L>) -> (L::F, [L::F; 3]) {
         if L::WIDTH == 1 {
@@ -141,7 +143,7 @@ impl<L: Lanes> Slabs<L> {
             return (facing(x, y, z), bent);
         }
         let [a, b, c, d] = [self.ends[9], self.ends[10], self.ends[11], self.ends[12]];
-        // Pairs in the sign of x; the four stand for the signs of (y, z): ++, −+, +−, −−.
+        // Pairs by the sign of x; the four are for the signs of (y, z): ++, −+, +−, −−.
         let by_x = [[a[0], b[0]], [c[0], d[0]], [d[1], c[1]], [b[1], a[1]]];
         let (mut kept, mut bent) = ([a[0]; 4], [a[0]; 4]);
         for (i, [plus, minus]) in by_x.into_iter().enumerate() {
@@ -167,14 +169,14 @@ impl<L: Lanes> Slabs<L> {
     }
 }
 
-/// The only lane of a mask as an index: one lane alone does better by an indexed load than by
-/// choices.
+/// The only lane of a mask as an index, because with one lane an indexed load is faster than
+/// selections.
 #[inline(always)]
 fn bit<L: Lanes>(l: L, mask: L::M) -> usize {
     (l.bits(mask) & 1) as usize
 }
 
-/// The first, or where negative the second.
+/// The first number, or the second where the mask is set.
 #[inline(always)]
 fn pick<L: Lanes>(l: L, negative: L::M, ends: [L::F; 2]) -> L::F {
     if L::WIDTH == 1 {

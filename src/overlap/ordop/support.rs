@@ -1,5 +1,4 @@
-//! Support of an or-DOP in any direction, bounded from its slabs alone by weak duality (design,
-//! section 4.5).
+//! Support of an or-DOP in any direction, bounded from its slabs alone by weak duality.
 //!
 //! If e = Σ λᵢdᵢ with λ ≥ 0, then h(e) ≤ Σ λᵢhᵢ, the dual of the linear program that maximises e·x
 //! over the slabs. The multipliers below are the optimal ones for a DOP whose slabs are all tight
@@ -8,12 +7,12 @@
 //! No vertices are needed, rounding keeps λ ≥ 0, and the bound reports .9 % more pairs than the
 //! vertices would.
 
-use super::slabs::{DirectionSigns, Slabs};
+use super::slabs::{DirectionSigns, LaneSlabs};
 use crate::simd::Lanes;
 
 /// Upper bound of the support in direction e, in the coordinates of the DOP's own basis.
 #[cfg_attr(not(unoptimised), inline(always))]
-pub fn support<L: Lanes, const K: usize>(l: L, slabs: &Slabs<L>, e: [L::F; 3]) -> L::F {
+pub fn support<L: Lanes, const K: usize>(l: L, slabs: &LaneSlabs<L>, e: [L::F; 3]) -> L::F {
     let signs = DirectionSigns::of(l, e);
     let size = [l.abs(e[0]), l.abs(e[1]), l.abs(e[2])];
     match K {
@@ -31,7 +30,12 @@ pub fn support<L: Lanes, const K: usize>(l: L, slabs: &Slabs<L>, e: [L::F; 3]) -
 /// on the diagonal that is bent over the lowest coordinate, and the lead of the largest on its
 /// axis.
 #[inline(always)]
-fn support_14<L: Lanes>(l: L, slabs: &Slabs<L>, signs: DirectionSigns<L>, size: [L::F; 3]) -> L::F {
+fn support_14<L: Lanes>(
+    l: L,
+    slabs: &LaneSlabs<L>,
+    signs: DirectionSigns<L>,
+    size: [L::F; 3],
+) -> L::F {
     let (low, [ab, ac, bc]) = minima(l, size);
     let half = l.splat(0.5);
     // The median is the largest of the pairwise minima.
@@ -48,7 +52,7 @@ fn support_14<L: Lanes>(l: L, slabs: &Slabs<L>, signs: DirectionSigns<L>, size: 
 #[inline(always)]
 fn support_18<L: Lanes>(
     l: L,
-    slabs: &Slabs<L>,
+    slabs: &LaneSlabs<L>,
     signs: DirectionSigns<L>,
     [a, b, c]: [L::F; 3],
 ) -> L::F {
@@ -65,7 +69,12 @@ fn support_18<L: Lanes>(
 /// All groups: the lowest coordinate on the cube diagonal, the median's lead over it on a face
 /// diagonal, and the largest's lead on its axis.
 #[inline(always)]
-fn support_26<L: Lanes>(l: L, slabs: &Slabs<L>, signs: DirectionSigns<L>, size: [L::F; 3]) -> L::F {
+fn support_26<L: Lanes>(
+    l: L,
+    slabs: &LaneSlabs<L>,
+    signs: DirectionSigns<L>,
+    size: [L::F; 3],
+) -> L::F {
     let (low, [ab, ac, bc]) = minima(l, size);
     let [xy, xz, yz] = slabs.pairs(l, signs);
     let pairs = ((ab - low) * xy + (ac - low) * xz) + (bc - low) * yz;
@@ -83,7 +92,12 @@ fn minima<L: Lanes>(l: L, [a, b, c]: [L::F; 3]) -> (L::F, [L::F; 3]) {
 /// The axes' part where diagonals take the rest: the lead of the largest coordinate over the
 /// second.
 #[inline(always)]
-fn leads<L: Lanes>(l: L, slabs: &Slabs<L>, signs: DirectionSigns<L>, [a, b, c]: [L::F; 3]) -> L::F {
+fn leads<L: Lanes>(
+    l: L,
+    slabs: &LaneSlabs<L>,
+    signs: DirectionSigns<L>,
+    [a, b, c]: [L::F; 3],
+) -> L::F {
     let zero = l.splat(0.0);
     let (lead_a, lead_b) = (l.max(a - l.max(b, c), zero), l.max(b - l.max(a, c), zero));
     let lead_c = l.max(c - l.max(a, b), zero);
@@ -108,7 +122,7 @@ mod tests {
             let ends = self.0.map(|ends| ends.map(|end| l.splat(end)));
             let e = self.1.map(|x| l.splat(x));
             let mut bound = [0.0; MAX_WIDTH];
-            l.store(support::<L, K>(l, &Slabs { ends }, e), &mut bound);
+            l.store(support::<L, K>(l, &LaneSlabs { ends }, e), &mut bound);
             bound[0]
         }
     }
@@ -131,7 +145,7 @@ mod tests {
     /// A bound is linear in the ends: one end of 1 among zeros reveals its multiplier, and all of
     /// them put e together again.
     #[test]
-    fn multipliers_are_no_less_than_zero_and_make_up_the_direction() {
+    fn multipliers_reproduce_the_direction() {
         for tier in Tier::available() {
             for k in [6, 14, 18, 26] {
                 for e in directions() {
@@ -156,7 +170,7 @@ mod tests {
     /// About a ball of radius 1, whose slabs end at the lengths of their normals, the multipliers
     /// are the best there are.
     #[test]
-    fn a_ball_s_bound_is_the_polytope_s_own_support() {
+    fn ball_bound_is_optimal() {
         let length = |c: [i8; 3]| f32::from(c.iter().map(|x| x * x).sum::<i8>()).sqrt();
         let ball = COEFFICIENTS.map(|c| [length(c); 2]);
         let [of_two, of_three] = [2.0_f32, 3.0].map(f32::sqrt);

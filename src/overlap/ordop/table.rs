@@ -1,16 +1,16 @@
-//! Inflated slabs of all shapes, as rows that lanes load.
+//! [`SlabTables`]: the inflated slabs of all shapes, as rows that lanes load.
 //!
-//! A shape has two rows: for its n-th direction d (in the order of its set), number 2n is the end
-//! that d faces, hi, and number 2n + 1 the one that −d faces, −lo. Both are support values, so both
-//! are positive.
+//! A shape has two rows. For its n-th direction d (in the order of its set), number 2n is the end
+//! in the direction d, hi, and number 2n + 1 the one in the direction −d, −lo. Both are support
+//! values, so both are positive.
 
 use crate::rounding::pose::norm;
 use crate::rounding::slab::inflate_slab;
 use crate::simd::ROW;
 use crate::volume::{DirectionSet, OrDop, Shape};
 
-/// Floats in one shape's table: its two rows.
-pub const TABLE: usize = 2 * ROW;
+/// Floats in a shape's table, which has two rows.
+pub const FLOATS_PER_TABLE: usize = 2 * ROW;
 
 /// All 13 directions in the order of K26, as integer coefficients over the basis.
 pub const COEFFICIENTS: [[i8; 3]; 13] = [
@@ -29,7 +29,7 @@ pub const COEFFICIENTS: [[i8; 3]; 13] = [
     [-1, -1, 1],
 ];
 
-/// Which of the 13 directions the set of k half-spaces has, in its order.
+/// The members of the set of k half-spaces among the 13 directions, in its order.
 #[must_use]
 pub const fn members_of(k: usize) -> &'static [usize] {
     match k {
@@ -40,7 +40,7 @@ pub const fn members_of(k: usize) -> &'static [usize] {
     }
 }
 
-/// Place of a member among those of the set of k half-spaces, if it is one.
+/// The index of a member in the set of k half-spaces, if it is in it.
 #[must_use]
 pub const fn place_of(member: usize, k: usize) -> Option<usize> {
     match (k, member) {
@@ -50,9 +50,8 @@ pub const fn place_of(member: usize, k: usize) -> Option<usize> {
     }
 }
 
-/// Writes `$body` out for every direction `$member` of the set of `$k` half-spaces, which has place
-/// `$place` in it: a loop would keep vectors in memory for the sake of its index, at twice the
-/// time.
+/// Unrolls `$body` for every direction `$member` of the set of `$k` half-spaces, at index `$place`
+/// in it. A loop would keep vectors in memory because of its index, and take twice the time.
 macro_rules! each_direction {
     ($k:expr, |$member:ident, $place:ident| $body:block) => {
         each_direction!(@ $k, |$member, $place| $body, 0 1 2 3 4 5 6 7 8 9 10 11 12)
@@ -75,7 +74,7 @@ pub struct SlabTables {
 }
 
 impl SlabTables {
-    /// Builds the tables of `shapes`, each with its or-DOP as `ordop` picks it; all have the same
+    /// Builds the tables of `shapes`, each with the or-DOP that `ordop` returns. All have the same
     /// directions.
     pub fn new<'a>(
         directions: DirectionSet,
@@ -92,8 +91,8 @@ impl SlabTables {
         tables
     }
 
-    /// Appends a table: an or-DOP about the ball's `centre`, no point of it farther than `reach`
-    /// from the body origin.
+    /// Appends the table of an or-DOP about the ball's `centre`, all of whose points are within
+    /// `reach` of the body origin.
     pub(crate) fn push(&mut self, ordop: &OrDop, centre: [f32; 3], reach: f32) {
         let (shape, table) = (self.rows.len() / 2, table(ordop, centre, reach));
         self.rows.extend_from_slice(table.as_chunks::<ROW>().0);
@@ -106,7 +105,7 @@ impl SlabTables {
         }
     }
 
-    /// Puts another table in the place of one, as [`Self::push`] appends it.
+    /// Replaces a table; arguments are those of [`Self::push`].
     pub(crate) fn set(&mut self, shape: usize, ordop: &OrDop, centre: [f32; 3], reach: f32) {
         let table = table(ordop, centre, reach);
         self.rows[2 * shape..2 * shape + 2].copy_from_slice(table.as_chunks::<ROW>().0);
@@ -115,7 +114,7 @@ impl SlabTables {
         }
     }
 
-    /// Keeps the first `shapes` tables, and no room for more.
+    /// Keeps the first `shapes` tables, and frees other memory.
     pub(crate) fn shrink_to(&mut self, shapes: usize) {
         self.rows.truncate(2 * shapes);
         self.rows.shrink_to_fit();
@@ -136,14 +135,14 @@ impl SlabTables {
         self.directions
     }
 
-    /// All rows; shape s has numbers 2s and 2s + 1.
+    /// All rows. Shape s has rows 2s and 2s + 1.
     #[must_use]
     pub fn rows(&self) -> &[[f32; ROW]] {
         &self.rows
     }
 
-    /// With up to [`ROW`] shapes, the same the other way: row n holds number n of every shape.
-    /// Otherwise empty.
+    /// For up to [`ROW`] shapes, the transposed table: row n has number n of every shape. Otherwise
+    /// empty.
     #[must_use]
     pub fn columns(&self) -> &[[f32; ROW]] {
         &self.columns
@@ -155,8 +154,8 @@ impl SlabTables {
     }
 }
 
-fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; TABLE] {
-    let mut table = [0.0; TABLE];
+fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; FLOATS_PER_TABLE] {
+    let mut table = [0.0; FLOATS_PER_TABLE];
     let columns = ordop.basis.columns;
     let scale = norm(columns[0]);
     for (slab, &member) in members_of(2 * ordop.lo.len()).iter().enumerate() {
@@ -187,8 +186,9 @@ mod tests {
     use crate::mesh::shapes::ProceduralShape;
     use crate::volume::ShapeSpec;
 
+    /// Members are the directions of each set.
     #[test]
-    fn members_are_the_directions_of_each_set() {
+    fn members_match_each_set() {
         for &directions in DirectionSet::ALL {
             let members = members_of(directions.k()).iter();
             let places = members.clone().map(|&m| place_of(m, directions.k()));
@@ -200,9 +200,9 @@ mod tests {
         }
     }
 
-    /// What one gather reads of the rows, a vector of shapes reads of a column.
+    /// Rows and columns give the same numbers.
     #[test]
-    fn columns_are_the_rows_of_up_to_sixteen_shapes() {
+    fn columns_transpose_the_rows() {
         let box_of = |z: u16| {
             let mesh = ProceduralShape::Box {
                 x: 1.0,

@@ -211,9 +211,10 @@ fn no_touching_balls_are_rejected() {
     }
 }
 
+/// No touching balls are rejected up to six bits.
 #[test]
 #[ignore = "takes minutes: .ci/full"]
-fn no_touching_balls_are_rejected_up_to_six_bits() {
+fn touching_balls_pass_in_six_bits() {
     for format in formats(5..=6) {
         spheres_hold(&format);
     }
@@ -260,9 +261,10 @@ fn no_ball_drifts_beyond_its_budget() {
     formats(3..=4).for_each(|format| skins_hold(&format));
 }
 
+/// No ball drifts beyond its budget in five bits.
 #[test]
 #[ignore = "takes minutes: .ci/full"]
-fn no_ball_drifts_beyond_its_budget_in_five_bits() {
+fn drift_budget_holds_in_five_bits() {
     formats(5..=5).for_each(|format| skins_hold(&format));
 }
 
@@ -299,9 +301,10 @@ fn boxes_that_surely_meet_do() {
     no_boxes_taken_to_meet(&small(3, UNDERFLOWS[0]));
 }
 
+/// Boxes that surely meet do in four bits.
 #[test]
 #[ignore = "takes minutes: .ci/full"]
-fn boxes_that_surely_meet_do_in_four_bits() {
+fn certain_boxes_meet_in_four_bits() {
     formats(3..=4).for_each(|format| no_boxes_taken_to_meet(&format));
 }
 
@@ -324,21 +327,23 @@ fn cells_hold(format: Format) {
     assert!(apart > 0, "{format:?}");
 }
 
+/// Touching balls have cells next to each other.
 #[test]
-fn touching_balls_have_cells_next_to_each_other() {
+fn touching_balls_have_adjacent_cells() {
     formats(3..=3).for_each(cells_hold);
 }
 
+/// Touching balls have cells next to each other in four bits.
 #[test]
 #[ignore = "takes minutes: .ci/full"]
-fn touching_balls_have_cells_next_to_each_other_in_four_bits() {
+fn touching_cells_in_four_bits() {
     formats(4..=4).for_each(cells_hold);
 }
 
 /// Whatever the size of a cell, no centre lies beyond the last one; by the former count, which
 /// divided the extent by the size, some do.
 #[test]
-fn the_former_count_of_cells_is_refuted() {
+fn former_cell_count_is_refuted() {
     for precision in 3..=5 {
         let format = small(precision, UNDERFLOWS[0]);
         let rule = rule(format);

@@ -1,9 +1,8 @@
-//! A crowd of boxes that all overlap: how many of their pairs does one step of a new Box3D world
-//! make contacts of?
+//! Counts the contacts of one step of a new Box3D world in which all boxes overlap.
 //!
 //! Cargo.toml: boxddd-sys = "=0.4.0". All boxes have a side of 1 and are moved by less than half of
 //! it, so that every two overlap. The broad phase has room for 16 new pairs per moving shape and
-//! ignores further ones (`b3PairQueryCallback` in broad_phase.c).
+//! ignores others (`b3PairQueryCallback` in broad_phase.c).
 
 use boxddd_sys::ffi::*;
 

@@ -1,4 +1,4 @@
-//! What the adapters in Rust share: the judge's wire.
+//! The common part of the adapters in Rust: the judge's encoding of cases and answers.
 
 use std::io::{BufRead, Write};
 use std::time::Instant;
@@ -8,13 +8,13 @@ use serde::Deserialize;
 /// A box: lower corner, upper corner.
 pub type Box6 = [f32; 6];
 
-/// A body: its shape, and whether it stays where it is.
+/// A body: its shape, and whether it is static.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct Body {
     pub shape: usize,
     #[serde(rename = "static")]
     pub fixed: bool,
-    /// Its number in the frame before; none for a new one.
+    /// Its number in the frame before; `None` for a new one.
     #[serde(default)]
     was: Option<usize>,
 }
@@ -25,8 +25,8 @@ pub struct Shape {
     pub ball: [f32; 4],
 }
 
-/// A frame. `ids` are the bodies' numbers for life, counted on from 0; `gone` are the ids that no
-/// body has any more.
+/// A frame. `ids` are permanent numbers of the bodies, counted from 0; `gone` are the ids of
+/// removed bodies.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
     pub shapes: Vec<Shape>,
@@ -37,7 +37,7 @@ pub struct Frame {
     pub poses: Vec<[f32; 7]>,
 }
 
-/// Pairs of ids, in any order and maybe twice; or why the library can't do this case.
+/// Pairs of ids, in any order and possibly twice, or the reason why the library can't do this case.
 pub type Found = Result<Vec<[usize; 2]>, &'static str>;
 
 #[derive(Deserialize)]
@@ -50,8 +50,8 @@ struct Line {
     poses: Option<Vec<[f32; 7]>>,
 }
 
-/// Answers cases on standard input until it ends, each by a culler of its own; or says the version
-/// of a crate.
+/// Answers cases on standard input until it ends, each with a new culler, or prints the version of
+/// a crate.
 pub fn serve<C: FnMut(&Frame) -> Found>(package: &str, make: impl Fn() -> C) {
     if std::env::args().any(|argument| argument == "--version") {
         println!("{}", version(package));
@@ -118,7 +118,7 @@ pub fn serve<C: FnMut(&Frame) -> Found>(package: &str, make: impl Fn() -> C) {
     }
 }
 
-/// Pairs of ids as the judge takes them.
+/// Converts pairs of ids to the judge's form.
 fn asked(frame: &Frame, found: &[[usize; 2]]) -> Vec<[usize; 2]> {
     let mut numbers = vec![usize::MAX; frame.ids.iter().max().map_or(0, |most| most + 1)];
     frame
@@ -137,7 +137,7 @@ fn asked(frame: &Frame, found: &[[usize; 2]]) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// The version of a crate that this program was built with.
+/// The version of a crate with which this program was built.
 fn version(package: &str) -> &'static str {
     let lock = include_str!("../Cargo.lock");
     let named = lock

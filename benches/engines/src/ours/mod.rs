@@ -1,5 +1,5 @@
-//! Ourselves: boxes for the comparison on equal work, and what a user of the culler has instead of
-//! boxes.
+//! Our cullers: boxes for the comparison on equal work, and the meshes' volumes that users cull
+//! instead of boxes.
 
 mod boxes;
 mod culler;

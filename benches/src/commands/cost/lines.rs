@@ -1,7 +1,7 @@
 //! The formula's numbers as CSV: one number per line, with what it is, its unit and its interval.
 
 use sdop_bench::cost::predict::{TermWidths, Terms};
-use sdop_bench::cost::study::Report;
+use sdop_bench::cost::study::CostReport;
 use sdop_bench::cost::table::{Compared, Cost, PriceRow};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::Estimate;
@@ -23,7 +23,7 @@ pub struct Line<'a> {
 }
 
 /// Counts, terms, sums and prices of every strategy, warm and cold.
-pub fn of_report(report: &Report) -> Vec<Line<'_>> {
+pub fn of_report(report: &CostReport) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = report.costs.iter().flat_map(of_cost).collect();
     for price in &report.prices {
         lines.extend(of_price(&report.scene, price));

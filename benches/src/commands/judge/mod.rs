@@ -1,4 +1,4 @@
-//! `sdop judge CMD`: any program against the exact reference.
+//! `sdop judge CMD`: tests any program against the exact reference.
 
 mod print;
 
@@ -22,68 +22,69 @@ use super::output::{print as say, progress};
 use super::{Outcome, files, one_of};
 pub use print::{ReportFormat, emit as emit_verdict};
 
-/// Judge a culler of your own, in any language, by the exact reference
+/// Test your own culler, in any language, against the exact reference
 ///
 /// The program reads cases on standard input and answers with pairs on standard output. Every
-/// answer is compared with the exact one: a missed pair fails, an extra pair is counted. The first
-/// miss ends as the smallest case that shows it. How to write the program:
-/// `examples/judge/README.md`.
+/// answer is compared with the exact one: a missed pair is a failure, an extra pair is counted. The
+/// first miss is reduced to the smallest case that shows it. `examples/judge/README.md` says how to
+/// write the program.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop judge ./my-culler --claims aabb\n          sdop judge 'python3 boxes.py' --claims aabb --no-fresh\n          sdop judge ./my-culler --replay missed-pair.ndjson"
 )]
 pub struct Args {
-    /// The program, as a line for the shell
+    /// The program, as a shell command
     #[arg(value_name = "CMD", required_unless_present = "exec")]
     command: Option<String>,
     /// The former name of CMD
     #[arg(long, value_name = "CMD", hide = true, conflicts_with = "command")]
     exec: Option<String>,
-    /// What it claims never to miss
+    /// What the program claims never to miss
     #[arg(long, value_name = "CLAIM", default_value_t = Claim::Mesh, value_parser = one_of::<Claim>(Claim::NAMES))]
     claims: Claim,
-    /// How cases are written for it
+    /// Encoding of the program's input and output
     #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
-    /// The program reads further cases after the last frame of one: its processes are kept
+    /// Keep the processes: the program reads the next case after the last frame of one
     #[arg(long)]
     keep: bool,
-    /// Seconds that it has for a case, and one more for each megabyte of it
+    /// Time limit per case, in seconds, plus one second per megabyte of the case
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = seconds)]
     timeout: f64,
-    /// Cases of these names only: * stands for any text, ? for one character
+    /// Only cases with matching names: * matches any text, ? one character
     #[arg(long, value_name = "GLOB", default_value = "*")]
     case: String,
-    /// The seed of the fresh cases, in place of the clock's
+    /// The seed of the fresh cases [default: from the clock]
     #[arg(long, value_name = "SEED")]
     fresh: Option<u64>,
     /// Published cases only
     #[arg(long, conflicts_with = "fresh")]
     no_fresh: bool,
-    /// A case from a file in place of the catalogue's
+    /// A case from a file instead of the catalogue
     #[arg(long, value_name = "FILE", conflicts_with_all = ["case", "fresh", "no_fresh"])]
     replay: Option<PathBuf>,
-    /// A file with a case's name a line: these fail, and it is an error when one of them passes
+    /// A file with the names of cases that are known to fail, one per line; it is an error if one
+    /// of them passes
     #[arg(long, value_name = "FILE")]
     known: Option<PathBuf>,
-    /// Start no case after the first that fails
+    /// Stop after the first case that fails
     #[arg(long)]
     fail_fast: bool,
-    /// The most extra pairs for each required one; without it they are counted only
+    /// Largest allowed ratio of extra to required pairs; without it, extra pairs are only counted
     #[arg(long, value_name = "RATIO")]
     extra_limit: Option<f64>,
-    /// Print the smallest scene of a miss as a unit test, and write it beside the scene
+    /// Print the smallest scene of a miss as a unit test, and write it next to the scene
     #[arg(long, value_name = "LANGUAGE", value_parser = one_of::<Language>(Language::NAMES))]
     as_test: Option<Language>,
-    /// Start no case after so many seconds
+    /// Start no new case after this many seconds
     #[arg(long, value_name = "S")]
     time: Option<u64>,
-    /// Where the case that shows a missed pair is written
+    /// Output directory for the case that shows a missed pair
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     #[command(flatten)]
     files: files::ReadArgs,
-    /// How the verdict is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: ReportFormat,
 }
@@ -147,7 +148,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 }
 
 impl Args {
-    /// The seed of the fresh cases: nobody can prepare for the clock's.
+    /// The seed of the fresh cases; by default from the clock, so that a program can't be prepared
+    /// for them.
     fn seed(&self) -> Option<u64> {
         if self.no_fresh || self.replay.is_some() {
             return None;
@@ -163,7 +165,7 @@ impl Args {
 /// a line of another, has at most `most` bytes.
 ///
 /// # Errors
-/// A file that can't be read or is none.
+/// A file that can't be read or is not a case.
 pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::Read> {
     if path
         .extension()
@@ -190,7 +192,7 @@ pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::Read> {
     })
 }
 
-/// The names of a list, without comments.
+/// The names in a list, without comments.
 fn known(path: &Path) -> miette::Result<BTreeSet<String>> {
     let text = sdop::files::read_text(path, MAX_BYTES)
         .into_diagnostic()

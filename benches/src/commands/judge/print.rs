@@ -1,4 +1,4 @@
-//! A verdict printed: a table for people, JSON, CSV or JUnit's XML for programs.
+//! Printing a verdict: as a table for people, as JSON, CSV or JUnit's XML for programs.
 
 use clap::ValueEnum;
 use sdop_judge::report::junit;
@@ -16,7 +16,7 @@ pub enum ReportFormat {
     Table,
     /// One JSON value.
     Json,
-    /// A header, then one line a record.
+    /// A header, then one line per record.
     Csv,
     /// JUnit's XML.
     Junit,
@@ -77,8 +77,7 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
     }
 }
 
-/// The groups that have more to say than that they passed, the failed ones first; all others in one
-/// line.
+/// The groups that did not simply pass, failed ones first; one line counts the others.
 fn table(verdict: &Verdict) -> String {
     let header = [
         "cases", "passed", "failed", "errors", "skipped", "judged", "required", "missed", "extra",

@@ -1,7 +1,7 @@
 //! Records of work in units: measured by the ranks of `mpirun`, or put together from shards.
 //!
 //! Each rank runs the experiment's command as a rank; the first alone keeps what it writes. A shard
-//! is kept beside the record to be, until all of them become it.
+//! is stored next to the future record until all shards are merged.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -10,13 +10,13 @@ use clap::Parser as _;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::mpi;
-use sdop_bench::report::{Experiment, Manifest, Step};
+use sdop_bench::report::{Experiment, ExperimentStep, Manifest};
 use sdop_bench::sweep::{Units, code};
 
 use super::super::Cli;
 use super::{Args, beside, chosen, command_line, complete, finish, prepare, steps};
 
-/// The shards of a record, in a directory beside it.
+/// The directory of a record's shards, next to the record's.
 const SHARDS: &str = ".shards";
 
 impl Args {
@@ -53,16 +53,18 @@ impl Args {
 }
 
 /// The command of an experiment that is one sweep.
-fn only_step(experiment: &Experiment) -> Option<&'static Step> {
+fn only_step(experiment: &Experiment) -> Option<&'static ExperimentStep> {
     match experiment.steps {
-        [step @ (Step::Sdop(_) | Step::SdopPrints(..))] => Some(step),
+        [step @ (ExperimentStep::Sdop(_) | ExperimentStep::SdopPrints(..))] => Some(step),
         _ => None,
     }
 }
 
 /// Whether all that an experiment does is cut into units, by what its command says of itself.
 pub(super) fn sweep(experiment: &Experiment) -> bool {
-    let Some(Step::Sdop(arguments) | Step::SdopPrints(_, arguments)) = only_step(experiment) else {
+    let Some(ExperimentStep::Sdop(arguments) | ExperimentStep::SdopPrints(_, arguments)) =
+        only_step(experiment)
+    else {
         return false;
     };
     let line = ["sdop"].iter().chain(*arguments);
@@ -78,7 +80,7 @@ pub(super) fn serve(args: &Args, experiment: &Experiment, directory: &Path) -> m
     Ok(())
 }
 
-/// Measures a shard, and leaves it beside the record to be.
+/// Measures a shard, and stores it next to the future record.
 pub(super) fn shard(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
     for step in experiment.steps {
         let (mut command, _) = complete(args, experiment, step, &beside(directory, SHARDS))?;
@@ -123,7 +125,7 @@ pub(super) fn merge(args: &Args, experiment: &Experiment, directory: &Path) -> m
         .args(["--format", "json"]);
     for step in experiment.steps {
         let said = steps::output(experiment, step, &mut command)?;
-        if let Step::SdopPrints(file, _) = step {
+        if let ExperimentStep::SdopPrints(file, _) = step {
             super::write(&part.join(file), said)?;
         }
     }

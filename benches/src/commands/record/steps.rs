@@ -4,12 +4,12 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop_bench::report::{Experiment, Step};
+use sdop_bench::report::{Experiment, ExperimentStep};
 
 /// What a step's command says, when it ends well.
 pub(super) fn output(
     experiment: &Experiment,
-    step: &Step,
+    step: &ExperimentStep,
     command: &mut Command,
 ) -> miette::Result<Vec<u8>> {
     let output = command
@@ -25,12 +25,15 @@ pub(super) fn output(
     Ok(output.stdout)
 }
 
-fn planted(step: &Step) -> bool {
-    matches!(step, Step::Rapier(_, arguments) | Step::Bullet(_, arguments) if arguments.contains("--without-margin"))
+fn planted(step: &ExperimentStep) -> bool {
+    matches!(step, ExperimentStep::Rapier(_, arguments) | ExperimentStep::Bullet(_, arguments) if arguments.contains("--without-margin"))
 }
 
 /// A step's command, and the file that its output becomes.
-pub(super) fn command(step: &Step, out: &Path) -> miette::Result<(Command, Option<&'static str>)> {
+pub(super) fn command(
+    step: &ExperimentStep,
+    out: &Path,
+) -> miette::Result<(Command, Option<&'static str>)> {
     let cargo = |arguments: &[&str]| {
         let mut cargo = Command::new("cargo");
         cargo.args(arguments);
@@ -38,17 +41,17 @@ pub(super) fn command(step: &Step, out: &Path) -> miette::Result<(Command, Optio
     };
     let this = || Ok::<_, miette::Report>(Command::new(std::env::current_exe().into_diagnostic()?));
     let (mut command, file) = match *step {
-        Step::Sdop(arguments) => {
+        ExperimentStep::Sdop(arguments) => {
             let mut command = this()?;
             command.args(arguments).arg("--out").arg(out);
             (command, None)
         }
-        Step::SdopPrints(file, arguments) => {
+        ExperimentStep::SdopPrints(file, arguments) => {
             let mut command = this()?;
             command.args(arguments);
             (command, Some(file))
         }
-        Step::Peers(arguments) => {
+        ExperimentStep::Peers(arguments) => {
             let mut command = cargo(&PEERS);
             // Engines in C++ are built as their packages are.
             command
@@ -58,7 +61,7 @@ pub(super) fn command(step: &Step, out: &Path) -> miette::Result<(Command, Optio
                 .arg(out);
             (command, None)
         }
-        Step::Rapier(file, arguments) => {
+        ExperimentStep::Rapier(file, arguments) => {
             let mut command = cargo(&RAPIER);
             command.args(arguments.split(' '));
             let dropped = out.with_extension("dropped");
@@ -68,15 +71,17 @@ pub(super) fn command(step: &Step, out: &Path) -> miette::Result<(Command, Optio
             command.arg("--out").arg(out.join(file));
             (command, None)
         }
-        Step::Bullet(file, arguments) => {
+        ExperimentStep::Bullet(file, arguments) => {
             let mut command = cargo(&BULLET);
             command.args(arguments.split(' '));
             command.arg("--out").arg(out.join(file));
             (command, None)
         }
-        Step::Bench(file, bench) => (cargo(&["bench", "--quiet", "--bench", bench]), Some(file)),
-        Step::Estimates(file, benches) => (estimates(benches, &out.join(file))?, None),
-        Step::Script(file, arguments) => {
+        ExperimentStep::Bench(file, bench) => {
+            (cargo(&["bench", "--quiet", "--bench", bench]), Some(file))
+        }
+        ExperimentStep::Estimates(file, benches) => (estimates(benches, &out.join(file))?, None),
+        ExperimentStep::Script(file, arguments) => {
             let mut command = Command::new(arguments[0]);
             command.args(&arguments[1..]);
             (command, Some(file))

@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use sdop_bench::report::Table;
 use serde_json::{Map, Value};
 
-use crate::commands::curves::{self, Chart, Curves, Drawn, Stroke};
+use crate::commands::curves::{self, Chart, Curves, DrawResult, Stroke};
 
 /// Where the axis of distances, which is logarithmic, has the origin.
 const ORIGIN: f64 = 100.0;
@@ -55,13 +55,13 @@ fn point(row: &Map<String, Value>) -> Option<(&str, f64, [f64; 2])> {
     Some((series, number("distance")?, [share, number("ns_per_body")?]))
 }
 
-/// One quantity against distance, a curve a series.
+/// One quantity against distance, one curve per series.
 fn panel<Y>(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
     curves: &Curves,
     title: &str,
     values: Y,
-) -> Drawn
+) -> DrawResult
 where
     Y: plotters::coord::ranged1d::AsRangedCoord<Value = f64>,
     Y::CoordDescType: plotters::coord::ranged1d::ValueFormatter<f64>,

@@ -5,7 +5,7 @@ use std::fmt::{Result, Write as _};
 use sdop_bench::cost::table::Cost;
 use sdop_bench::report::digits::{interval, number};
 use sdop_bench::reproduce::paper_name;
-use sdop_bench::reproduce::readings::{Cell, Reading, TABLE_1_STRATEGIES};
+use sdop_bench::reproduce::readings::{Reading, TABLE_1_STRATEGIES, Table1Cell};
 
 use super::rows::{Tables, distinct};
 use crate::commands::output::table;
@@ -31,8 +31,8 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
     let mut rows = table(&heads);
     for strategy in TABLE_1_STRATEGIES {
         let reading = Reading::shown(strategy);
-        let of = |cell: &&Cell| cell.reading == reading && cell.strategy == strategy;
-        let cell = |cell: &Cell| {
+        let of = |cell: &&Table1Cell| cell.reading == reading && cell.strategy == strategy;
+        let cell = |cell: &Table1Cell| {
             let paper = cell
                 .paper
                 .map_or(String::new(), |paper| format!(" ({paper:.2})"));

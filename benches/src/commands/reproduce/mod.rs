@@ -12,7 +12,7 @@ use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::measure::conditions::Conditions;
 pub use sdop_bench::reproduce::units::NAME;
 use sdop_bench::reproduce::units::{ExperimentSettings, Experiments};
-use sdop_bench::reproduce::{Plan, Results};
+use sdop_bench::reproduce::{ExperimentPlan, Results};
 use sdop_bench::sweep::{Merged, Sweep as _};
 
 use super::Outcome;
@@ -26,51 +26,51 @@ use rows::Tables;
 /// Run the paper's experiments: Table 1, Figs 12 to 14, costs, claims
 ///
 /// For 50, 150, 300, 350 and 500 objects in one box, and 500 in a small one, every strategy culls
-/// the same seeded trajectories. Counts and hashes are equal on every CPU; times are medians over
-/// warm frames with intervals over seeds. Results are written as CSV, JSON and SVG; of a record
-/// (`sdop record reproduce`), `sdop report` makes the page paper/summary.md. The exit code is 1
-/// when the sequential and the listed S-DOP report different pairs.
+/// the same seeded trajectories. Counts and hashes are the same on every CPU; times are medians
+/// over warm frames with intervals over seeds. Results are written as CSV, JSON and SVG; from a
+/// record (`sdop record reproduce`), `sdop report` makes the page paper/summary.md. The exit code
+/// is 1 if sequential and batch S-DOP report different pairs.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop reproduce --quick\n          sdop reproduce --out results --seeds 20\n          \
     sdop reproduce --seeds 640 --shard 3/10 --out shards"
 )]
 pub struct Args {
-    /// A look at everything within seconds: few seeds, wide intervals
+    /// A short run that takes seconds: few seeds, wide intervals
     #[arg(long)]
     quick: bool,
     /// Runs of each scene [default: 64, with --quick 5]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: Option<u64>,
-    /// Frames a run [default: 400, with --quick 100]
+    /// Frames per run [default: 400, with --quick 100]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: Option<u32>,
     #[command(flatten)]
     sweep: SweepArgs,
-    /// Where tables go
+    /// Output directory for tables
     #[arg(long, value_name = "DIR", default_value = "target/reproduce")]
     out: PathBuf,
-    /// Where figures go, in a directory of that name [default: the same]
+    /// Output directory for figures [default: the same]
     #[arg(long, value_name = "DIR")]
     paper: Option<PathBuf>,
-    /// Where the paper's scenes are
+    /// Directory of the paper's scenes
     #[arg(long, value_name = "DIR", default_value = "data/scenes")]
     scenes: PathBuf,
     #[command(flatten)]
     machine: MachineArgs,
-    /// What is printed: the main numbers, or all results as JSON, or Table 1 as CSV
+    /// Output format: the main numbers, all results as JSON, or Table 1 as CSV
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
 /// How much is run by default.
-struct Size {
+struct RunSize {
     seeds: u64,
     frames: u32,
     effort: Effort,
 }
 
-const QUICK: Size = Size {
+const QUICK: RunSize = RunSize {
     seeds: 5,
     frames: 100,
     effort: Effort {
@@ -78,7 +78,7 @@ const QUICK: Size = Size {
         builds: 3,
     },
 };
-const FULL: Size = Size {
+const FULL: RunSize = RunSize {
     seeds: 64,
     frames: 400,
     effort: Effort {
@@ -103,7 +103,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let machine = experiments.settings().machine;
     let paper = args.paper.as_ref().unwrap_or(&args.out);
     let tables = Tables::new(&results, &machine, command(), before);
-    let written = Written {
+    let written = OutputPlace {
         numbers: &args.out,
         paper,
         seconds,
@@ -126,7 +126,7 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
     let unknown = Conditions::default();
     let line = merged.header.line.clone();
     let tables = Tables::new(&results, &settings.machine, line, unknown);
-    let written = Written {
+    let written = OutputPlace {
         numbers: out,
         paper: out,
         seconds: merged.seconds,
@@ -137,13 +137,13 @@ pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Out
 }
 
 /// Where results go, and how long they took.
-struct Written<'a> {
+struct OutputPlace<'a> {
     numbers: &'a Path,
     paper: &'a Path,
     seconds: f64,
 }
 
-impl Written<'_> {
+impl OutputPlace<'_> {
     fn write(&self, tables: &Tables, format: Format, why: Option<&str>) -> miette::Result<()> {
         write_tables(self.numbers, tables)?;
         for (name, svg) in figures::draw_all(&tables.drawings())? {
@@ -158,7 +158,7 @@ impl Written<'_> {
     }
 }
 
-fn plan(args: &Args) -> miette::Result<Plan> {
+fn plan(args: &Args) -> miette::Result<ExperimentPlan> {
     let size = if args.quick { QUICK } else { FULL };
     let seeds = args.seeds.unwrap_or(size.seeds);
     let frames = args.frames.unwrap_or(size.frames);
@@ -171,7 +171,13 @@ fn plan(args: &Args) -> miette::Result<Plan> {
         ));
     }
     let tier = args.machine.tier();
-    Ok(Plan::new(&args.scenes, seeds, frames, size.effort, tier))
+    Ok(ExperimentPlan::new(
+        &args.scenes,
+        seeds,
+        frames,
+        size.effort,
+        tier,
+    ))
 }
 
 /// Says so if sequential and listed S-DOP did not report the same pairs in every run.

@@ -1,8 +1,8 @@
 //! The result files: each CSV file is one table, and `results.json` holds all but the two of single
 //! runs.
 //!
-//! Of those, `counts` has what is equal on every machine, and its hash stands in the summary;
-//! `times` has what is not.
+//! Of those, `counts` has the numbers that are the same on every machine, whose hash is in the
+//! summary; `times` has the others.
 
 use miette::IntoDiagnostic as _;
 use sdop::settings::Strategy;
@@ -13,9 +13,9 @@ use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::check::{PaperClaim, Verdict};
 use sdop_bench::reproduce::closed_form::{probability, relative_reach};
 use sdop_bench::reproduce::rates::{self, Rate};
-use sdop_bench::reproduce::readings::{self, Cell};
+use sdop_bench::reproduce::readings::{self, Table1Cell};
 use sdop_bench::reproduce::sensitivity::Interpretation;
-use sdop_bench::reproduce::{Estimate, PaperScene, Results, Run, claims, study};
+use sdop_bench::reproduce::{Estimate, PaperScene, Results, StrategyRun, claims, study};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -34,7 +34,7 @@ pub struct Tables {
     pub boxes: Vec<BoxRow>,
     pub conditions: Conditions,
     pub prices: Vec<ScenePrice>,
-    pub table_1: Vec<Cell>,
+    pub table_1: Vec<Table1Cell>,
     pub rates: Vec<Rate>,
     pub hidden: Vec<HiddenRow>,
     /// Warm frames.
@@ -56,7 +56,7 @@ pub struct Tables {
 #[derive(Deserialize)]
 pub struct Drawings {
     pub boxes: Vec<BoxRow>,
-    pub table_1: Vec<Cell>,
+    pub table_1: Vec<Table1Cell>,
     pub rates: Vec<Rate>,
     /// Warm frames.
     pub costs: Vec<Cost>,
@@ -161,7 +161,7 @@ pub struct SurvivalRow {
     pub percent: Estimate,
 }
 
-/// One number behind one claim.
+/// One number that supports or contradicts a claim.
 #[derive(Serialize)]
 struct CheckRow<'a> {
     source: &'a str,
@@ -283,7 +283,7 @@ fn hash(counts: &[CountRow]) -> miette::Result<String> {
     Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-fn box_row(scene: PaperScene, run: &Run) -> BoxRow {
+fn box_row(scene: PaperScene, run: &StrategyRun) -> BoxRow {
     BoxRow {
         scene: run.scene.clone(),
         crowded: scene.crowded(),
@@ -337,7 +337,7 @@ fn prices(results: &Results) -> Vec<ScenePrice> {
     prices
 }
 
-fn count_row(run: &Run) -> CountRow {
+fn count_row(run: &StrategyRun) -> CountRow {
     let counters = &run.counters;
     CountRow {
         scene: run.scene.clone(),
@@ -357,7 +357,7 @@ fn count_row(run: &Run) -> CountRow {
     }
 }
 
-fn time_row(run: &Run) -> TimeRow {
+fn time_row(run: &StrategyRun) -> TimeRow {
     TimeRow {
         scene: run.scene.clone(),
         seed: run.seed,

@@ -57,7 +57,7 @@ fn same(network: &MpiNetwork, (work, scene): (u64, Scene)) -> miette::Result<Sce
     }
 }
 
-/// All frames of a share; the scene without its bodies, and what is to be told of it.
+/// Runs all frames of a share. Returns the scene without its bodies, and the results.
 fn frames(args: &Args, network: &MpiNetwork, scene: Scene) -> Option<(Scene, DomainSummary)> {
     let about = without_bodies(&scene);
     let bar = (network.rank() == 0).then(|| progress(about.frames.into(), &about.name));
@@ -95,9 +95,8 @@ fn tell(
     }
 }
 
-/// The value, when every rank has one. Otherwise nothing on all of them, and the first that has an
-/// error of its own says it: with its number, unless all have one, which they have then come to
-/// alike. Collective.
+/// The value, if every rank has one. Otherwise `None` on all of them, and the first rank with its
+/// own error prints it, with the rank's number unless all ranks have the error. Collective.
 fn agreed<T>(network: &MpiNetwork, outcome: Result<T, Option<miette::Report>>) -> Option<T> {
     let own = matches!(outcome, Err(Some(_)));
     let troubles = network.gather(&[u64::from(outcome.is_err()), own.into()]);

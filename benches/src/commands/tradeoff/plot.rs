@@ -94,7 +94,7 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
     })
 }
 
-/// What lies behind a name, so that it can be read over a line.
+/// The background of a name, so that it can be read over a line.
 fn plate(name: &str, (x, y): (i32, i32)) -> [(i32, i32); 2] {
     [(x - 1, y), (x + 7 * name.chars().count() as i32, y + 13)]
 }
@@ -229,7 +229,7 @@ mod tests {
 
     use super::*;
 
-    /// A comparison of which variants have these names, microseconds, precisions and standings.
+    /// A comparison of variants with these names, microseconds, precisions and standings.
     fn compared(rows: &[(&str, f64, f64, Standing)]) -> Tradeoff {
         let estimate = |mean: f64| serde_json::json!({"mean": mean, "half_width": 0.0, "seeds": 1});
         let rows: Vec<_> = rows
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_is_named_and_nothing_on_it_is_beaten() {
+    fn only_the_front_is_named() {
         let rows = [
             ("fast", 10.0, 0.3, Standing::Front),
             ("middle", 30.0, 0.6, Standing::Front),
@@ -285,8 +285,9 @@ mod tests {
         assert_eq!(black.count(), 3, "a dot for each on the front");
     }
 
+    /// Names of near points lie above one another and far ones stay.
     #[test]
-    fn names_of_near_points_lie_above_one_another_and_far_ones_stay() {
+    fn near_labels_are_stacked() {
         let points = [(100, 300), (110, 298), (105, 297), (600, 300)];
         let tops: Vec<i32> = label_offsets(&points)
             .iter()

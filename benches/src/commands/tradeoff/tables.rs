@@ -75,8 +75,8 @@ pub fn text(result: &Tradeoff) -> String {
     parts.join("\n\n")
 }
 
-/// A line a density and class of shapes, a column a price of a check: what to use, and what is tied
-/// with it.
+/// One row per density and class of shapes, one column per price of a check: what to use, and what
+/// is tied with it.
 pub fn decisions(result: &Tradeoff) -> Table {
     let checks: Vec<String> = CHECKS.iter().map(|check| nanoseconds(*check)).collect();
     let header = [
@@ -107,8 +107,8 @@ fn with_ties(best: &str, tied: &[String]) -> String {
     }
 }
 
-/// A line a change of the scene, a column a price of a check: what to use, and what is tied with
-/// it.
+/// One row per change of the scene, one column per price of a check: what to use, and what is tied
+/// with it.
 pub fn variations(result: &Tradeoff) -> Table {
     let checks = CHECKS.map(nanoseconds);
     let header = [
@@ -189,7 +189,7 @@ pub fn plus_minus(estimate: &Estimate, scale: f64, digits: usize) -> String {
     }
 }
 
-/// A line a variant, with how it stands to the Pareto front.
+/// One row per variant, with its relation to the Pareto front.
 pub fn variants(result: &Tradeoff) -> Table {
     let header = [
         "variant",
@@ -334,7 +334,8 @@ pub fn break_even(result: &Tradeoff) -> Table {
     rows
 }
 
-/// A line a shape: two-sided at each k beside what each other test lets through, hulls and meshes.
+/// One row per shape: the shares of pairs that the two-sided test at each k, each other test, hulls
+/// and meshes don't separate.
 pub fn shapes(result: &Tradeoff) -> Table {
     let mut header = vec!["shape".to_owned()];
     for &overlap in Overlap::ALL {

@@ -20,7 +20,7 @@ use crate::commands::output::progress;
 use crate::commands::scene_args::SceneArgs;
 
 /// What was found.
-pub enum Input {
+pub enum ViewInput {
     /// Something to show; with a record that is broken somewhere, what is wrong.
     Show(Box<Show>, Option<RecordError>),
     /// A record with no frame that can be read.
@@ -38,13 +38,13 @@ pub fn read(
     run: Option<usize>,
     answers: Option<&Path>,
     tier: Tier,
-) -> miette::Result<Input> {
+) -> miette::Result<ViewInput> {
     let (path, most) = (args.path(), args.max_bytes());
     if is_record(path)? {
         if answers.is_some() || is_claimed(path, most).unwrap_or(false) {
             refuse(args, run, "its poses are given")?;
             let show = judged((path, most), answers)?;
-            return Ok(Input::Show(Box::new(show), None));
+            return Ok(ViewInput::Show(Box::new(show), None));
         }
         return record(args, run);
     }
@@ -56,7 +56,7 @@ pub fn read(
         ));
     }
     if is_case(path, most) {
-        return Ok(Input::Show(
+        return Ok(ViewInput::Show(
             Box::new(case(args, run.unwrap_or(0), tier)?),
             None,
         ));
@@ -72,7 +72,7 @@ pub fn read(
     let bar = progress(scene.frames.into(), &scene.name);
     let show = Show::scene(&scene, path, tier, || bar.inc(1))?;
     bar.finish_and_clear();
-    Ok(Input::Show(Box::new(show), None))
+    Ok(ViewInput::Show(Box::new(show), None))
 }
 
 fn is_record(path: &Path) -> miette::Result<bool> {
@@ -168,7 +168,7 @@ fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> 
     }
 }
 
-/// Flags that what is shown as it stands can't have.
+/// Rejects flags that have no effect on what is shown.
 fn refuse(args: &SceneArgs, run: Option<usize>, why: &str) -> miette::Result<()> {
     match args.scene_only().or(run.map(|_| "--run")) {
         None => Ok(()),
@@ -180,13 +180,13 @@ fn refuse(args: &SceneArgs, run: Option<usize>, why: &str) -> miette::Result<()>
     }
 }
 
-fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<Input> {
+fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<ViewInput> {
     refuse(args, run, "a record is shown as it was culled")?;
     match Show::record(args.path(), args.frames()) {
-        Ok((show, broken)) => Ok(Input::Show(Box::new(show), broken)),
+        Ok((show, broken)) => Ok(ViewInput::Show(Box::new(show), broken)),
         // Nothing there is no record that is broken.
         Err(error @ RecordError::Unreadable { .. }) => Err(error).or_report(),
-        Err(error) => Ok(Input::Broken(error)),
+        Err(error) => Ok(ViewInput::Broken(error)),
     }
 }
 

@@ -1,4 +1,5 @@
-//! Parry's own dispatcher, counted: what reaches the narrow phase, and what it costs.
+//! Counts and times calls of parry's dispatcher: which pairs reach the narrow phase, and at what
+//! cost.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
@@ -93,7 +94,7 @@ impl Calls {
         self.timing.store(timing, Ordering::Relaxed);
     }
 
-    /// Plants a bug: the filter is told of a prediction distance of zero.
+    /// Plants a bug: the filter gets a prediction distance of zero.
     pub fn leave_margin_out(&self) {
         self.without_margin.store(true, Ordering::Relaxed);
     }
@@ -111,7 +112,7 @@ fn since(start: Option<Instant>) -> Option<u64> {
     start.map(|start| start.elapsed().as_nanos() as u64)
 }
 
-/// [`DefaultQueryDispatcher`] behind a [`CullingDispatcher`], with [`Calls`].
+/// A [`CullingDispatcher`] followed by the [`DefaultQueryDispatcher`], with [`Calls`].
 #[derive(Clone, Default)]
 pub struct Counted {
     /// The counts.

@@ -21,8 +21,8 @@ pub struct Sim {
     pub mode: Mode,
     counted: Counted,
     filter: Filter,
-    /// A bug for the check to see: the filter is told of a prediction distance of zero, and of a
-    /// step without length.
+    /// A bug for the check to see: the filter gets a prediction distance of zero, and a step
+    /// without length.
     without_margin: bool,
 }
 

@@ -1,5 +1,5 @@
-//! Boxes with what a claim asks on top: filters, margins, states that are saved and restored, orders
-//! of insertion.
+//! Boxes with the additional input of a claim: filters, margins, states that are saved and
+//! restored, orders of insertion.
 
 use rand::{Rng, RngExt};
 

@@ -1,7 +1,7 @@
-//! Changes along one axis: whoever keeps a body's old place or extent along that axis, and no
-//! other, misses a pair.
+//! Changes along one axis: a culler that keeps a body's old place or extent along that axis alone
+//! misses a pair.
 //!
-//! Small bodies stand in rows, far from one another. In each row a change brings one of them to its
+//! Small bodies are in rows, far from one another. In each row a change brings one of them to its
 //! partner along one axis alone: from either side, so that both ends of a box matter.
 
 use rand::{Rng, RngExt};

@@ -94,8 +94,8 @@ pub struct Group {
     draw: Draw,
 }
 
-/// One list of groups: the catalogue's own, then the files of hard cases. A test for each of them is
-/// stamped from it.
+/// One list of groups: the catalogue's own, then the files of hard cases. It also generates a test
+/// for each of them.
 macro_rules! groups {
     (
         hard { $($hard:ident = $file:literal;)+ }
@@ -109,8 +109,9 @@ macro_rules! groups {
     (@source) => { "drawn for this catalogue" };
     (@source $reports:literal) => { concat!("drawn for this catalogue, after ", $reports) };
     (@stamp ($d:tt) $($test:ident = $name:expr;)+) => {
-        /// Stamps a test for each group of cases: `judge_tests!(Claim::Mesh, |scene| Mine::new(scene));`
-        /// in a module of its own. Groups that have no case of the claim have a test with nothing in it.
+        /// Generates a test for each group of cases, in a separate module:
+        /// `judge_tests!(Claim::Mesh, |scene| Mine::new(scene));`. Groups without a case of the
+        /// claim get an empty test.
         #[macro_export]
         macro_rules! judge_tests {
             ($d claim:expr, $d make:expr) => {

@@ -219,7 +219,7 @@ fn world_ball(body: &reference::Body<'_>) -> reference::Ball {
     }
 }
 
-/// The strategies as predicates (design, section 2): which volumes must overlap.
+/// The strategies as predicates: which volumes must overlap.
 fn reports(
     strategy: Strategy,
     overlap: Overlap,

@@ -9,7 +9,7 @@
 //! guided.
 
 use sdop::bodies::Bodies;
-use sdop::broad_phase::{Bounds, Cells, TableLayout};
+use sdop::broad_phase::{BallBounds, Cells, TableLayout};
 use sdop::culler::{CullError, Culler};
 use sdop::mesh::TriangleMesh;
 use sdop::rounding::{sphere::inflate_radius, widen};
@@ -182,7 +182,7 @@ struct Plan {
 
 impl Plan {
     fn cells(&self, axes: &[Axis; 3]) -> Cells {
-        let bounds = Bounds {
+        let bounds = BallBounds {
             lo: axes.map(|axis| axis.lo),
             hi: axes.map(|axis| axis.hi),
             widest: self.widest,

@@ -1,5 +1,5 @@
-//! A culler's list against the exact answers: what it must report, what it reports on top, and
-//! where that comes from.
+//! Compares a culler's list with the exact answers: required pairs, additional pairs, and their
+//! causes.
 
 use super::answers::{Answers, Predicate};
 use super::ways::Mode;

@@ -1,4 +1,4 @@
-//! Seeded draws: orientations that stand in a chosen relation, contacts, and whole frames of them.
+//! Seeded draws: orientations in a chosen relation, contacts, and whole frames of them.
 
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! The same tests as most programs write them: f32, no margin, no directed rounding.
 //!
-//! They are here to be wrong. A group of hard cases on which they miss nothing teaches nothing and
-//! is replaced.
+//! They are wrong on purpose. A group of hard cases on which they miss nothing is useless and is
+//! replaced.
 
 use sdop_reference as reference;
 

@@ -1,5 +1,5 @@
-//! What a verification run does with frames: exact answers once, then every way to cull against
-//! them and against all-pairs, in the modes whose turn it is.
+//! Judges frames in a verification run: exact answers once, then every configuration against them
+//! and against all-pairs, in the modes of this turn.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -29,7 +29,7 @@ use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 
-/// Why a round can't be run.
+/// The error of a round that can't be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RoundError {
     /// A culler that can't be made, or bodies that it refuses.

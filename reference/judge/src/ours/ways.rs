@@ -1,4 +1,4 @@
-//! Every way to cull a frame, and in which mode each way takes its turn.
+//! Every configuration of culling a frame, and the modes in which each takes its turn.
 //!
 //! A *way* decides what is reported: strategy × overlap test × finder, for one or-DOP (k, axes). A
 //! *mode* decides how it is computed and must change nothing: updates × tier × threads. Every way

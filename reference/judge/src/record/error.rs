@@ -1,4 +1,4 @@
-//! What can be wrong with a record: where, what, and how to mend it.
+//! Errors of records: where, what, and how to mend them.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::VERSION;
 
-/// Why a record could not be written or read.
+/// The error of a record that could not be written or read.
 #[derive(Debug, Error)]
 pub enum RecordError {
     /// The file can't be written.
@@ -14,7 +14,7 @@ pub enum RecordError {
     Unwritable {
         /// The path as given.
         file: String,
-        /// What the system said.
+        /// The system's error.
         cause: std::io::Error,
     },
     /// The file can't be read.
@@ -22,7 +22,7 @@ pub enum RecordError {
     Unreadable {
         /// The path as given.
         file: String,
-        /// What the system said.
+        /// The system's error.
         cause: std::io::Error,
     },
     /// Another kind of file.

@@ -1,4 +1,4 @@
-//! `sdop-record`, version 1: a run as lines of JSON, enough for a stranger's oracle to judge the
+//! `sdop-record`, version 1: a run as lines of JSON, enough for an independent oracle to judge the
 //! pairs.
 //!
 //! Line 1 holds shapes and bodies, every further line a frame with its poses and sorted pairs.
@@ -44,7 +44,7 @@ use sdop::counters::VolumeCounters;
 use sdop::settings::CullSettings;
 use sdop::volume::{Ball, Basis, DirectionSet, OrDop, Shape};
 
-/// What every record's first line says.
+/// The format's name in every record's first line.
 pub const FORMAT: &str = "sdop-record";
 /// The version written and read here.
 pub const VERSION: u32 = 1;
@@ -69,7 +69,7 @@ pub struct Header {
     pub frames: Option<u32>,
     /// The scene's name.
     pub scene: String,
-    /// Where all random draws started.
+    /// The seed of all random draws.
     pub seed: u64,
     /// Seconds between frames.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -80,7 +80,7 @@ pub struct Header {
     /// What is simulated and what isn't.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects: Option<Vec<EffectLine>>,
-    /// How it was culled.
+    /// The settings of culling.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cull: Option<CullSettings>,
     /// The shapes as built.
@@ -148,7 +148,7 @@ pub struct FrameLine {
     pub translations: Option<Vec<[f64; 3]>>,
     /// The reported pairs i < j, sorted.
     pub pairs: Vec<[u32; 2]>,
-    /// What this frame's culling counted, in the order of its tests.
+    /// The counters of this frame's culling, in the order of its tests.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub counters: Option<Vec<VolumeLine>>,
     /// The pairs whose meshes meet.

@@ -1,5 +1,4 @@
-//! Reads a record line by line, so that it need not fit into memory. Anything amiss is an error
-//! with its line.
+//! Reads a record line by line, so that it need not fit into memory. Errors name the line.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};

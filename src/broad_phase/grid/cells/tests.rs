@@ -3,8 +3,8 @@ use super::*;
 /// Rows that one body looks through, its own and the others' views of it included, differ by up to
 /// two each way; three cells of each must not share a place.
 #[test]
-fn rows_of_a_wrapped_table_lie_apart() {
-    let bounds = Bounds {
+fn wrapped_rows_are_disjoint() {
+    let bounds = BallBounds {
         lo: [0.0; 3],
         hi: [1e6; 3],
         widest: 1.0,
@@ -25,8 +25,9 @@ fn rows_of_a_wrapped_table_lie_apart() {
     }
 }
 
+/// Bounds beyond the contract get some cells.
 #[test]
-fn bounds_beyond_the_contract_get_some_cells() {
+fn invalid_bounds_get_some_cells() {
     let ends = [
         0.0,
         -0.0,
@@ -39,7 +40,7 @@ fn bounds_beyond_the_contract_get_some_cells() {
         f32::NAN,
     ];
     for [lo, hi, widest] in (0..9 * 9 * 9).map(|i| [i % 9, i / 9 % 9, i / 81]) {
-        let bounds = Bounds {
+        let bounds = BallBounds {
             lo: [ends[lo], 0.0, 1.0],
             hi: [ends[hi], ends[hi], 2.0],
             widest: ends[widest].max(0.0),
@@ -52,17 +53,18 @@ fn bounds_beyond_the_contract_get_some_cells() {
     }
 }
 
+/// The farthest centre falls in the last cell.
 #[test]
-fn the_farthest_centre_falls_in_the_last_cell() {
+fn farthest_centre_is_in_last_cell() {
     for (n, radius) in (1..200u16).zip([0.954, 1.0, 1e-9, 7.0].into_iter().cycle()) {
-        let widest = Bounds {
+        let widest = BallBounds {
             widest: radius,
-            ..Bounds::EMPTY
+            ..BallBounds::EMPTY
         };
         let size = Cells::fit(&widest, 1000, TableLayout::Box).size();
         let far = ((f64::from(n) + 0.5) * size) as f32;
         for lo in [0.0, (f64::from(far) - (f64::from(n) + 0.5) * size) as f32] {
-            let bounds = Bounds {
+            let bounds = BallBounds {
                 lo: [lo; 3],
                 hi: [far, lo, lo],
                 widest: radius,
@@ -87,7 +89,7 @@ fn the_farthest_centre_falls_in_the_last_cell() {
 /// A box's table has room for every body's cell; its cells are as small as that and the widest body
 /// allow, within a sixteenth.
 #[test]
-fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
+fn box_cells_are_minimal() {
     let mut larger = 0;
     for bodies in [0, 1, 10, 300, 5000, 100_000] {
         for sides in [
@@ -99,7 +101,7 @@ fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
             for widest in [0.01, 0.5, 3.0, 1000.0] {
                 let lo = [-7.0, 3.0, 100.0];
                 let hi = [0, 1, 2].map(|i| lo[i] + sides[i]);
-                let cells = Cells::fit(&Bounds { lo, hi, widest }, bodies, TableLayout::Box);
+                let cells = Cells::fit(&BallBounds { lo, hi, widest }, bodies, TableLayout::Box);
                 let most = CELLS_PER_BODY * bodies as f64 + SPARE_CELLS;
                 let needed = 2.0 * f64::from(widen(widest)) * (1.0 + 1.0 / 65536.0);
                 let in_box = |size: f64| -> f64 {
@@ -121,7 +123,7 @@ fn cells_of_a_box_are_as_small_as_its_bodies_allow() {
 
 /// Cells of size 2 and a little, so many each way.
 fn cells(count: [u8; 3]) -> Cells {
-    let bounds = Bounds {
+    let bounds = BallBounds {
         lo: [0.0; 3],
         hi: count.map(|n| 2.0 * f32::from(n) - 2.0),
         widest: 1.0,
@@ -134,7 +136,7 @@ fn cells(count: [u8; 3]) -> Cells {
 /// An empty cell lies after each row, and an empty row after each layer that has more than one;
 /// the table ends with the last cell that the last body looks at.
 #[test]
-fn a_box_has_as_few_cells_as_looks_allow() {
+fn box_table_is_minimal() {
     for (count, row, layer, farthest) in [
         ([10, 4, 2], 11, 55, 66),
         ([10, 1, 2], 11, 11, 11),
@@ -158,10 +160,11 @@ fn a_box_has_as_few_cells_as_looks_allow() {
     }
 }
 
+/// Cells far from the origin are as small as others.
 #[test]
-fn cells_far_from_the_origin_are_as_small_as_others() {
+fn far_cells_are_as_small() {
     let lo = 2.0_f32.powi(34);
-    let bounds = Bounds {
+    let bounds = BallBounds {
         lo: [lo; 3],
         hi: [lo + 4096.0; 3],
         widest: 1.0,

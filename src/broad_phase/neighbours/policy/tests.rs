@@ -4,7 +4,7 @@ impl Policy {
     /// That makes its first list with a skin of so many radii, all of this size.
     pub(in super::super) fn of_typical(typical: f64) -> Self {
         Self {
-            radii: Radii::Typical,
+            radii: RadiusKind::Typical,
             sizes: SizeSummary::new(typical, typical),
             ..Self::default()
         }
@@ -22,9 +22,9 @@ fn list(pairs: usize, candidates: u64, [own, typical]: [f64; 2]) -> EndedList {
     }
 }
 
-/// What 2000 frames come to in which the fastest body moves by so many radii each, its own or
-/// typical ones, where a list without a skin has 0.75 pairs a body: lists made, frames that one
-/// served, and the policy by then.
+/// Runs the policy for 2000 frames and returns lists made, frames that a list served, and the
+/// policy at the end. The fastest body moves by `speeds` per frame, in its own radii and in typical
+/// ones; a list without a skin has 0.75 pairs per body.
 fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
     let (mut policy, mut since) = (Policy::default(), None);
     let (mut made, mut served) = (0, 0);
@@ -33,7 +33,7 @@ fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
             *since += 1;
             let drifts = speeds.map(|speed| speed * f64::from(*since));
             let [own, typical] = drifts;
-            let drift = if policy.radii == Radii::Own {
+            let drift = if policy.radii == RadiusKind::Own {
                 own
             } else {
                 typical
@@ -54,8 +54,9 @@ fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
     (made, served, policy)
 }
 
+/// Slow bodies are followed and fast ones searched for.
 #[test]
-fn slow_bodies_are_followed_and_fast_ones_searched_for() {
+fn only_slow_bodies_are_followed() {
     let mut before = 0;
     for speed in [0.0, 0.001, 0.01, 0.03, 0.1] {
         let (made, served, _) = frames([speed; 2]);
@@ -73,13 +74,14 @@ fn slow_bodies_are_followed_and_fast_ones_searched_for() {
     }
 }
 
+/// Skins are measured by the radii that last longer.
 #[test]
-fn skins_are_measured_by_the_radii_that_last_longer() {
+fn skins_use_longer_lasting_radii() {
     for (speeds, radii) in [
-        ([0.4, 0.05], Radii::Typical),
-        ([5.0, 0.05], Radii::Typical),
-        ([0.05, 0.4], Radii::Own),
-        ([0.05, 0.0499], Radii::Own),
+        ([0.4, 0.05], RadiusKind::Typical),
+        ([5.0, 0.05], RadiusKind::Typical),
+        ([0.05, 0.4], RadiusKind::Own),
+        ([0.05, 0.0499], RadiusKind::Own),
     ] {
         let (made, served, policy) = frames(speeds);
         assert_eq!(policy.radii, radii, "{speeds:?}");
@@ -87,18 +89,19 @@ fn skins_are_measured_by_the_radii_that_last_longer() {
     }
 }
 
+/// A skin is a share or a length and brings its cube of pairs.
 #[test]
-fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
+fn skin_multiplies_pairs_by_cube() {
     let of = |radii, skin| Policy {
         radii,
         skin,
         sizes: SizeSummary::new(3.0, 3.0),
         ..Policy::default()
     };
-    assert_eq!(of(Radii::Own, 1).skin(), Skin::share(0.125));
-    assert_eq!(of(Radii::Typical, 1).skin(), Skin::length(0.375));
+    assert_eq!(of(RadiusKind::Own, 1).skin(), Skin::share(0.125));
+    assert_eq!(of(RadiusKind::Typical, 1).skin(), Skin::length(0.375));
     assert_eq!(Policy::default().skin(), Skin::share(0.25));
-    for radii in [Radii::Own, Radii::Typical] {
+    for radii in [RadiusKind::Own, RadiusKind::Typical] {
         let policy = of(radii, 1);
         assert_eq!(policy.wider(), 1.125 * 1.125 * 1.125);
         let widest = 1.375f64 / 1.125;
@@ -109,15 +112,15 @@ fn a_skin_is_a_share_or_a_length_and_brings_its_cube_of_pairs() {
 /// Within two skins a body has gone straight on; beyond, it has jumped, unless the list served no
 /// frame but its own.
 #[test]
-fn one_that_jumps_tells_nothing_of_the_others() {
+fn jumping_body_is_ignored() {
     let never = f64::INFINITY;
     for (radii, served, drifts, speeds) in [
-        (Radii::Own, 4, [0.5, 3.0], [0.125, 0.75]),
-        (Radii::Own, 4, [0.51, 3.0], [0.25 / 3.5, never]),
-        (Radii::Typical, 4, [3.0, 0.5], [0.75, 0.125]),
-        (Radii::Typical, 2, [3.0, 0.51], [never, 0.25 / 1.5]),
-        (Radii::Own, 1, [9.0, 0.1], [9.0, 0.1]),
-        (Radii::Typical, 1, [0.1, 9.0], [0.1, 9.0]),
+        (RadiusKind::Own, 4, [0.5, 3.0], [0.125, 0.75]),
+        (RadiusKind::Own, 4, [0.51, 3.0], [0.25 / 3.5, never]),
+        (RadiusKind::Typical, 4, [3.0, 0.5], [0.75, 0.125]),
+        (RadiusKind::Typical, 2, [3.0, 0.51], [never, 0.25 / 1.5]),
+        (RadiusKind::Own, 1, [9.0, 0.1], [9.0, 0.1]),
+        (RadiusKind::Typical, 1, [0.1, 9.0], [0.1, 9.0]),
     ] {
         let policy = Policy {
             radii,
@@ -129,14 +132,15 @@ fn one_that_jumps_tells_nothing_of_the_others() {
     }
 }
 
+/// A list that was too long is tried again seldom.
 #[test]
-fn a_list_that_was_too_long_is_tried_again_seldom() {
+fn overflow_lengthens_the_pause() {
     let mut policy = Policy::of_typical(1.0);
     let made = (0..4000).filter(|_| {
         let made = policy.next().is_some();
         if made {
             policy.overflowed();
-            assert_eq!((policy.radii, policy.skin), (Radii::Own, 0));
+            assert_eq!((policy.radii, policy.skin), (RadiusKind::Own, 0));
         }
         made
     });
@@ -147,23 +151,72 @@ fn a_list_that_was_too_long_is_tried_again_seldom() {
 /// its place: the skin of the next one, up to so many pairs and with a pair more, each with so many
 /// candidates. No skin is the grid's frames.
 #[test]
-fn the_next_skin_is_the_cheapest_to_the_pair() {
-    const FAR: f64 = f64::INFINITY;
-    let own = |skin| Some((Radii::Own, skin));
-    let typical = |skin| Some((Radii::Typical, skin));
+fn next_skin_is_the_cheapest() {
+    const INFINITE_DRIFT: f64 = f64::INFINITY;
+    let own = |skin| Some((RadiusKind::Own, skin));
+    let typical = |skin| Some((RadiusKind::Typical, skin));
     for (at, served, drifts, candidates, pairs, next) in [
-        (own(3), 2, [0.3, FAR], 6, 3_837_626, [own(4), None]),
-        (own(3), 3, [0.26, FAR], 4, 6_009_424, [own(5), own(2)]),
-        (own(0), 2, [0.1, FAR], 5, 18_812_129, [own(3), None]),
-        (own(3), 10, [0.27, FAR], 6, 2_195_551, [own(4), own(3)]),
-        (own(2), 5, [0.2, FAR], 0, 7_728_640, [own(1), None]),
-        (own(3), 2, [0.4, FAR], 3, 1_434_156, [own(3), None]),
-        (own(4), 2, [0.33, FAR], 1, 4_149_165, [own(5), None]),
+        (
+            own(3),
+            2,
+            [0.3, INFINITE_DRIFT],
+            6,
+            3_837_626,
+            [own(4), None],
+        ),
+        (
+            own(3),
+            3,
+            [0.26, INFINITE_DRIFT],
+            4,
+            6_009_424,
+            [own(5), own(2)],
+        ),
+        (
+            own(0),
+            2,
+            [0.1, INFINITE_DRIFT],
+            5,
+            18_812_129,
+            [own(3), None],
+        ),
+        (
+            own(3),
+            10,
+            [0.27, INFINITE_DRIFT],
+            6,
+            2_195_551,
+            [own(4), own(3)],
+        ),
+        (
+            own(2),
+            5,
+            [0.2, INFINITE_DRIFT],
+            0,
+            7_728_640,
+            [own(1), None],
+        ),
+        (
+            own(3),
+            2,
+            [0.4, INFINITE_DRIFT],
+            3,
+            1_434_156,
+            [own(3), None],
+        ),
+        (
+            own(4),
+            2,
+            [0.33, INFINITE_DRIFT],
+            1,
+            4_149_165,
+            [own(5), None],
+        ),
         (own(3), 3, [9.0, 0.1], 6, 7_692_074, [own(4), None]),
         (
             typical(5),
             100,
-            [FAR, 0.376],
+            [INFINITE_DRIFT, 0.376],
             10,
             2_458_240,
             [typical(2), typical(1)],
@@ -196,7 +249,7 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
                 is_by_boxes: false,
                 served,
                 wait: 0,
-                pause: FIRST_PAUSE,
+                pause: INITIAL_PAUSE_FRAMES,
             };
             let pairs = pairs + more;
             policy.ended(&list(pairs, candidates * pairs as u64, drifts));
@@ -209,7 +262,7 @@ fn the_next_skin_is_the_cheapest_to_the_pair() {
 
 /// Sizes of boxes that are longer than wide, of cubes next to them, and where no length suits all.
 #[test]
-fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
+fn long_boxes_use_length_skins() {
     let [long, cubes, giant] =
         [(3.0, 24.0), (2.0, 2.0), (0.0, 5.0)].map(|(a, b)| SizeSummary::new(a, b));
     let mut policy = Policy::default();
@@ -228,12 +281,18 @@ fn lists_of_long_boxes_have_a_length_for_a_skin_and_wider_ones() {
         sizes: long,
         ..slow
     });
-    assert_eq!((policy.radii, SKINS[policy.skin]), (Radii::Typical, 0.75));
+    assert_eq!(
+        (policy.radii, SKINS[policy.skin]),
+        (RadiusKind::Typical, 0.75)
+    );
     policy.overflowed();
-    assert_eq!((policy.radii, policy.skin), (Radii::Typical, 0));
+    assert_eq!((policy.radii, policy.skin), (RadiusKind::Typical, 0));
     policy.skin = 7;
     policy.turn_to(false, || cubes);
-    assert_eq!((policy.radii, SKINS[policy.skin]), (Radii::Typical, 0.375));
+    assert_eq!(
+        (policy.radii, SKINS[policy.skin]),
+        (RadiusKind::Typical, 0.375)
+    );
     assert_eq!(policy.more_candidates(), policy.wider());
     let mut policy = Policy::default();
     policy.turn_to(true, || giant);

@@ -1,10 +1,10 @@
 //! Lists of long boxes, of which the balls of a finder, cubes about them, tell little.
 
-use super::Followed;
+use super::TrackedBodies;
 use crate::bodies::Aabb;
 use crate::broad_phase::ends::grown;
-use crate::broad_phase::neighbours::{Neighbours, State, Volume};
-use crate::broad_phase::{Boxes, EndSlots};
+use crate::broad_phase::neighbours::{ListState, Neighbours, Volume};
+use crate::broad_phase::{EndSlots, GivenBoxes};
 use crate::rounding::cube::{Cube, SCALE};
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
@@ -25,7 +25,7 @@ impl Kernel for CubeAbout {
 
 /// Boxes with sides 1 : 8 : 64 in any order, the last ones of which stand still.
 struct Needles {
-    bodies: Followed,
+    bodies: TrackedBodies,
     boxes: Vec<Aabb>,
     are_long: bool,
 }
@@ -44,7 +44,7 @@ impl Needles {
             Aabb::new(end(-1.0), end(1.0))
         };
         let boxes: Vec<Aabb> = (0..620).map(around).collect();
-        let mut bodies = Followed::new(500, vec![[0.0; 4]; 620]);
+        let mut bodies = TrackedBodies::new(500, vec![[0.0; 4]; 620]);
         bodies.finder = Neighbours::new(Volume::Cube);
         Self {
             bodies,
@@ -60,10 +60,10 @@ impl Needles {
         }
         let all = boxes.as_slice();
         let are_long = self.are_long;
-        bodies.step_with(Some(Boxes { all, are_long }));
+        bodies.step_with(Some(GivenBoxes { all, are_long }));
     }
 
-    fn state(&self) -> State {
+    fn state(&self) -> ListState {
         self.bodies.finder.state
     }
 
@@ -79,13 +79,14 @@ impl Needles {
     }
 }
 
+/// A list of long boxes holds the pairs whose grown ones meet and each once.
 #[test]
-fn a_list_of_long_boxes_holds_the_pairs_whose_grown_ones_meet_and_each_once() {
+fn long_box_list_has_each_pair() {
     let mut needles = Needles::within(40.0);
     for _ in 0..2 {
         needles.step();
     }
-    assert_eq!(needles.state(), State::Made);
+    assert_eq!(needles.state(), ListState::Made);
     assert!(needles.bodies.finder.policy.is_by_boxes());
     let (listed, grown) = (needles.bodies.candidates(true), needles.grown());
     let moving = needles.bodies.moving;
@@ -100,8 +101,9 @@ fn a_list_of_long_boxes_holds_the_pairs_whose_grown_ones_meet_and_each_once() {
     assert!(wanted.len() > 600, "{}", wanted.len());
 }
 
+/// Bytes are those of the grid the list and the grown boxes.
 #[test]
-fn bytes_are_those_of_the_grid_the_list_and_the_grown_boxes() {
+fn bytes_count_grown_boxes_too() {
     let mut needles = Needles::within(40.0);
     for _ in 0..2 {
         needles.step();
@@ -126,7 +128,7 @@ fn end(aabb: &mut Aabb, axis: usize, is_upper: bool) -> &mut f32 {
 
 /// The cube about a box stays as it is when a short side grows.
 #[test]
-fn a_list_of_long_boxes_is_followed_until_an_end_leaves_its_grown_box() {
+fn long_list_lasts_until_end_leaves() {
     for (body, axis, is_upper) in [0, 1, 17, 499]
         .into_iter()
         .flat_map(|body| [0, 1, 2].map(|axis| (body, axis)))
@@ -142,7 +144,7 @@ fn a_list_of_long_boxes_is_followed_until_an_end_leaves_its_grown_box() {
         } else {
             to.next_down()
         };
-        for (to, state) in [(to, State::Followed), (beyond, State::Made)] {
+        for (to, state) in [(to, ListState::Followed), (beyond, ListState::Made)] {
             needles.step();
             *end(&mut needles.boxes[body], axis, is_upper) = to;
             needles.step();
@@ -154,7 +156,7 @@ fn a_list_of_long_boxes_is_followed_until_an_end_leaves_its_grown_box() {
 /// A list of boxes serves while cubes decide, and one of cubes while they don't; the next one is
 /// made as the frame has it.
 #[test]
-fn lists_are_made_by_boxes_in_frames_of_long_ones_alone() {
+fn only_long_boxes_make_box_lists() {
     let mut needles = Needles::within(200.0); // or cubes had too many neighbours
     for (are_long, jumps, by_boxes) in [
         (true, false, true),
@@ -173,6 +175,10 @@ fn lists_are_made_by_boxes_in_frames_of_long_ones_alone() {
         }
         let finder = &needles.bodies.finder;
         let found = (finder.state, finder.policy.is_by_boxes());
-        assert_eq!(found, (State::Followed, by_boxes), "{are_long}, {jumps}");
+        assert_eq!(
+            found,
+            (ListState::Followed, by_boxes),
+            "{are_long}, {jumps}"
+        );
     }
 }

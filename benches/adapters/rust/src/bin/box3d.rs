@@ -1,5 +1,4 @@
-//! Box3D by boxddd-sys: the contacts of one step of a new world, for a box on the world's axes per
-//! body.
+//! Box3D by boxddd-sys: the contacts of one step of a new world, with an axis-aligned box per body.
 
 use adapters::{Frame, serve};
 use boxddd_sys::ffi::*;
@@ -11,7 +10,7 @@ fn main() {
     serve("boxddd-sys", || contacts);
 }
 
-/// The half side of the smallest box about a centre that holds both ends: more pairs are no
+/// The half side of the smallest box about a centre that contains both ends. More pairs are no
 /// failure.
 fn half(centre: f32, lower: f32, upper: f32) -> f32 {
     let mut half = (upper - centre).max(centre - lower);
@@ -32,8 +31,8 @@ fn contacts(frame: &Frame) -> Result<Vec<[usize; 2]>, &'static str> {
         }
         placed.push((centre, half));
     }
-    // SAFETY: the calls follow the header; ids are used while their world lives, which this
-    // function alone sees.
+    // SAFETY: the calls follow the header; ids are used only while their world exists, which is
+    // local to this function.
     unsafe {
         let mut def = b3DefaultWorldDef();
         def.gravity = b3Vec3 {

@@ -22,8 +22,8 @@ fn main() {
                 }
             }
             let mut events = Vec::new();
-            // Removals first: a new collider may have the index of one that is gone, and `set_aabb`
-            // takes effect at once.
+            // Removals come first: a new collider may have the index of a removed one, and
+            // `set_aabb` takes effect at once.
             phase.update(&params, &colliders, &bodies, &[], &removed, &mut events);
             for (&[a, b, c, d, e, f], &id) in frame.boxes.iter().zip(&frame.ids) {
                 let handle = *handles.entry(id).or_insert_with(|| {

@@ -6,12 +6,8 @@ use zelll::CellGrid;
 fn main() {
     serve("zelll", || {
         |frame: &Frame| {
-            let balls = frame
-                .bodies
-                .iter()
-                .map(|body| frame.shapes[body.shape].ball.map(f64::from));
-            // Where balls are off the origins, more pairs than needed are found: that is no
-            // failure.
+            let balls = frame.bodies.iter().map(|body| frame.shapes[body.shape].ball.map(f64::from));
+            // If balls are off the origins, more pairs than needed are found, which is no failure.
             let far = |[x, y, z, radius]: [f64; 4]| match (x * x + y * y + z * z).sqrt() {
                 0.0 => radius,
                 offset => (offset.next_up() + radius).next_up(),

@@ -6,14 +6,14 @@ use plotters::style::text_anchor::{HPos, VPos};
 use sdop_bench::cost::table::Cost;
 use sdop_bench::reproduce::paper_name;
 
-use super::style::{PARTS, Part, anchored, ends, label, legend, quiet, text, titled};
-use super::{Area, Drawn};
+use super::style::{CostPart, PARTS, anchored, ends, label, legend, quiet, text, titled};
+use super::{Area, DrawResult};
 use crate::commands::reproduce::rows::Drawings;
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// One panel a strategy, each with its own scale.
-pub fn draw(area: &Area<'_>, tables: &Drawings) -> Drawn {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let body = titled(
         area,
         "T without construction, warm, µs per frame: terms predicted from other scenes' prices, and measured (•, 95 %)",
@@ -30,7 +30,7 @@ pub fn draw(area: &Area<'_>, tables: &Drawings) -> Drawn {
 
 /// A column per strategy: what `sdop cost` draws of one scene. Where some take far longer than
 /// others, they have a panel of their own, so that the terms of all can be seen.
-pub fn draw_strategies(area: &Area<'_>, scene: &str, costs: &[&Cost]) -> Drawn {
+pub fn draw_strategies(area: &Area<'_>, scene: &str, costs: &[&Cost]) -> DrawResult {
     let title = format!(
         "{scene}: where a warm frame's time goes, µs: predicted terms, and measured (•, 95 %)"
     );
@@ -68,8 +68,8 @@ fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
 }
 
 /// The legend of the terms that there are; returns what is left of the area.
-fn keys<'a>(area: &Area<'a>, costs: &[&Cost]) -> Result<Area<'a>, super::Failure> {
-    let there = |part: &&Part| costs.iter().any(|cost| (part.of)(&cost.terms) > 0.0);
+fn keys<'a>(area: &Area<'a>, costs: &[&Cost]) -> Result<Area<'a>, super::DrawError> {
+    let there = |part: &&CostPart| costs.iter().any(|cost| (part.of)(&cost.terms) > 0.0);
     let parts: Vec<_> = PARTS
         .iter()
         .filter(there)
@@ -88,7 +88,12 @@ fn scene_name(cost: &Cost) -> String {
     name.replace("crowded-500", "crowded")
 }
 
-fn panel(area: &Area<'_>, title: &str, costs: &[&Cost], name: impl Fn(&Cost) -> String) -> Drawn {
+fn panel(
+    area: &Area<'_>,
+    title: &str,
+    costs: &[&Cost],
+    name: impl Fn(&Cost) -> String,
+) -> DrawResult {
     let highest = |cost: &&Cost| 1e6 * cost.frame.measured.mean.max(cost.frame.predicted.mean);
     let top = costs.iter().map(highest).fold(0.0, f64::max);
     let mut chart = ChartBuilder::on(area)
@@ -110,7 +115,7 @@ fn panel(area: &Area<'_>, title: &str, costs: &[&Cost], name: impl Fn(&Cost) -> 
 }
 
 /// One scene's stack with its mark, its value above and its name below.
-fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost, name: String) -> Drawn {
+fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost, name: String) -> DrawResult {
     let mut base = 0.0;
     for part in &PARTS {
         let height = 1e6 * (part.of)(&cost.terms);
@@ -233,8 +238,9 @@ mod tests {
         }
     }
 
+    /// Boxes have their own key and dear strategies their own panel.
     #[test]
-    fn boxes_have_their_own_key_and_dear_strategies_their_own_panel() {
+    fn expensive_strategies_get_a_panel() {
         let sphere = cost(Strategy::Sphere, Volume::Sphere, 40.0);
         let obb = cost(Strategy::Obb, Volume::Obb, 900.0);
         let draw = |costs: &[&Cost]| {

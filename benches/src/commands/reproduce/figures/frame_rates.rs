@@ -6,22 +6,23 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use sdop_bench::reproduce::paper_name;
-use sdop_bench::reproduce::rates::{ELSEWHERE, Rate};
+use sdop_bench::reproduce::rates::{OTHER_FRAME_SECONDS, Rate};
 
 use super::style::{anchored, colour, ends, label, quiet, text, titled};
-use super::{Area, Drawn};
+use super::{Area, DrawResult};
 use crate::commands::reproduce::rows::{Drawings, distinct};
 
 /// One panel a scene and F.
-pub fn draw(area: &Area<'_>, tables: &Drawings) -> Drawn {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let bodies = tables.rates.iter().map(|rate| rate.bodies);
     let most = bodies.max().unwrap_or(0);
     let of_most = || tables.rates.iter().filter(|rate| rate.bodies == most);
     let mut scenes = distinct(of_most().map(|rate| rate.scene.as_str()));
     scenes.sort_unstable();
     let title = format!("Frame rate of {most} objects, fps = 1/(F + t); whiskers: 95 % over seeds");
-    let panels = titled(area, &title)?.split_evenly((ELSEWHERE.len(), scenes.len().max(1)));
-    for (row, elsewhere) in ELSEWHERE.into_iter().enumerate() {
+    let panels =
+        titled(area, &title)?.split_evenly((OTHER_FRAME_SECONDS.len(), scenes.len().max(1)));
+    for (row, elsewhere) in OTHER_FRAME_SECONDS.into_iter().enumerate() {
         for (column, scene) in scenes.iter().enumerate() {
             let of = |rate: &&Rate| rate.scene == *scene && rate.elsewhere == elsewhere;
             let rates: Vec<&Rate> = of_most().filter(of).collect();
@@ -53,7 +54,7 @@ fn bars<X>(
     range: X,
     floor: f64,
     unit: &str,
-) -> Drawn
+) -> DrawResult
 where
     X: AsRangedCoord<Value = f64>,
     X::CoordDescType: ValueFormatter<f64>,
@@ -80,7 +81,7 @@ where
 }
 
 /// One strategy's rate, with its value to the right and its name to the left.
-fn bar<X>(chart: &mut Chart<'_, '_, X>, rate: &Rate, y: f64, floor: f64) -> Drawn
+fn bar<X>(chart: &mut Chart<'_, '_, X>, rate: &Rate, y: f64, floor: f64) -> DrawResult
 where
     X: Ranged<ValueType = f64>,
 {

@@ -17,12 +17,16 @@ use super::rows::Drawings;
 /// Where a figure is drawn.
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Why nothing could be drawn.
-type Failure = Box<dyn std::error::Error + Send + Sync>;
+type DrawError = Box<dyn std::error::Error + Send + Sync>;
 /// How drawing ends.
-type Drawn = Result<(), Failure>;
+type DrawResult = Result<(), DrawError>;
 
 /// A figure's file name, size, and what draws it.
-type Figure = (&'static str, (u32, u32), fn(&Area<'_>, &Drawings) -> Drawn);
+type Figure = (
+    &'static str,
+    (u32, u32),
+    fn(&Area<'_>, &Drawings) -> DrawResult,
+);
 
 const FIGURES: [Figure; 5] = [
     ("frame_rates", (1000, 620), frame_rates::draw),
@@ -56,7 +60,7 @@ pub fn draw_costs(scene: &str, costs: &[&Cost]) -> miette::Result<String> {
     .map_err(|error| miette::miette!("cannot draw the costs: {error}"))
 }
 
-fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Drawn) -> Result<String, Failure> {
+fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> DrawResult) -> Result<String, DrawError> {
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();

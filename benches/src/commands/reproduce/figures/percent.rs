@@ -4,10 +4,10 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use sdop::settings::Strategy;
-use sdop_bench::reproduce::readings::{Cell, Reading};
+use sdop_bench::reproduce::readings::{Reading, Table1Cell};
 
 use super::style::{ends, quiet};
-use super::{Area, Drawn, Failure};
+use super::{Area, DrawError, DrawResult};
 use crate::commands::reproduce::rows::Drawings;
 
 /// A chart of percentages over N.
@@ -19,7 +19,7 @@ pub fn chart<'a, 'b, Y>(
     tables: &Drawings,
     range: Y,
     unit: &str,
-) -> Result<Chart<'a, 'b, Y::CoordDescType>, Failure>
+) -> Result<Chart<'a, 'b, Y::CoordDescType>, DrawError>
 where
     Y: AsRangedCoord<Value = f64>,
     Y::CoordDescType: ValueFormatter<f64>,
@@ -45,15 +45,16 @@ pub fn right(tables: &Drawings) -> f64 {
 }
 
 /// A strategy's percentages in the paper's box.
-pub fn cells(tables: &Drawings, strategy: Strategy) -> Vec<&Cell> {
+pub fn cells(tables: &Drawings, strategy: Strategy) -> Vec<&Table1Cell> {
     let reading = Reading::shown(strategy);
-    let of =
-        |cell: &&Cell| cell.strategy == strategy && cell.reading == reading && cell.in_papers_box;
+    let of = |cell: &&Table1Cell| {
+        cell.strategy == strategy && cell.reading == reading && cell.in_papers_box
+    };
     tables.table_1.iter().filter(of).collect()
 }
 
 /// A cell's mean.
-pub fn point(cell: &&Cell) -> (f64, f64) {
+pub fn point(cell: &&Table1Cell) -> (f64, f64) {
     (cell.bodies as f64, cell.measured.mean)
 }
 
@@ -61,10 +62,10 @@ pub fn point(cell: &&Cell) -> (f64, f64) {
 /// dashed line.
 pub fn marks<Y>(
     chart: &mut Chart<'_, '_, Y>,
-    cells: &[&Cell],
+    cells: &[&Table1Cell],
     colour: RGBColor,
     [lo, hi]: [f64; 2],
-) -> Drawn
+) -> DrawResult
 where
     Y: Ranged<ValueType = f64>,
 {

@@ -7,12 +7,12 @@ use sdop_bench::cost::table::Cost;
 use sdop_bench::reproduce::paper_name;
 
 use super::style::{anchored, colour, ends, label, legend, quiet, titled};
-use super::{Area, Drawn};
+use super::{Area, DrawResult};
 use crate::commands::palette::GREY;
 use crate::commands::reproduce::rows::Drawings;
 
 /// One group a scene, one mark a strategy.
-pub fn draw(area: &Area<'_>, tables: &Drawings) -> Drawn {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let body = titled(
         area,
         "Residual of T = Nu·Cu + F + Nv·Cv: measured over predicted, less one, warm frames (whiskers: 95 %)",
@@ -62,7 +62,7 @@ pub fn draw(area: &Area<'_>, tables: &Drawings) -> Drawn {
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-fn mark(chart: &mut Chart<'_, '_>, cost: &Cost, x: f64) -> Drawn {
+fn mark(chart: &mut Chart<'_, '_>, cost: &Cost, x: f64) -> DrawResult {
     let colour = colour(cost.strategy);
     let ends = ends(&cost.frame.residual).map(|share| 100.0 * share);
     chart.draw_series([PathElement::new(

@@ -1,11 +1,12 @@
-//! The sphere percentage over N beside the closed form for its one box, and the paper's row.
+//! The sphere percentage over N, compared with the closed form for its one box, and with the
+//! paper's row.
 
 use plotters::prelude::*;
 use sdop::settings::Strategy;
 
 use super::percent::{cells, chart, marks, right};
 use super::style::{colour, legend, titled};
-use super::{Area, Drawn};
+use super::{Area, DrawResult};
 use crate::commands::palette::GREY;
 use crate::commands::reproduce::rows::Drawings;
 
@@ -13,7 +14,7 @@ use crate::commands::reproduce::rows::Drawings;
 const RANGE: [f64; 2] = [0.7, 1.3];
 
 /// Percent over N.
-pub fn draw(area: &Area<'_>, tables: &Drawings) -> Drawn {
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let body = titled(
         area,
         "Share of sphere tests that hit: a fixed box has one, whatever N",

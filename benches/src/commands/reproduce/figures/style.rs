@@ -28,45 +28,45 @@ pub fn colour(strategy: Strategy) -> RGBColor {
 }
 
 /// One part of a stacked cost.
-pub struct Part {
+pub struct CostPart {
     pub name: &'static str,
     pub colour: RGBColor,
     pub of: fn(&[Terms]) -> f64,
 }
 
 /// The formula's terms, from the bottom of the stack to its top.
-pub const PARTS: [Part; 7] = [
-    Part {
+pub const PARTS: [CostPart; 7] = [
+    CostPart {
         name: "Nu·Cu spheres",
         colour: UPDATES[0],
         of: |terms| of(terms, |t| t.update, is_sphere),
     },
-    Part {
+    CostPart {
         name: "Nu·Cu or-DOPs",
         colour: UPDATES[1],
         of: |terms| of(terms, |t| t.update, is_ordop),
     },
-    Part {
+    CostPart {
         name: "Nu·Cu aabb, k-dop, obb",
         colour: UPDATES[2],
         of: |terms| of(terms, |t| t.update, is_other),
     },
-    Part {
+    CostPart {
         name: "F pair finding",
         colour: FINDING,
         of: |terms| of(terms, |t| t.finding, |_| true),
     },
-    Part {
+    CostPart {
         name: "Nv·Cv spheres",
         colour: TESTS[0],
         of: |terms| of(terms, |t| t.test, is_sphere),
     },
-    Part {
+    CostPart {
         name: "Nv·Cv or-DOPs",
         colour: TESTS[1],
         of: |terms| of(terms, |t| t.test, is_ordop),
     },
-    Part {
+    CostPart {
         name: "Nv·Cv aabb, k-dop, obb",
         colour: TESTS[2],
         of: |terms| of(terms, |t| t.test, is_other),
@@ -102,7 +102,7 @@ pub fn anchored(size: i32, horizontal: HPos, vertical: VPos) -> TextStyle<'stati
     text(size).pos(Pos::new(horizontal, vertical))
 }
 
-/// Axes and lines that stay behind the data.
+/// Axes and lines in the background.
 pub fn quiet<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
     mesh: &'m mut MeshStyle<'a, 'b, X, Y, B>,
 ) -> &'m mut MeshStyle<'a, 'b, X, Y, B> {
@@ -123,7 +123,7 @@ pub fn ends(estimate: &Estimate) -> [f64; 2] {
 }
 
 /// A title over a figure; returns what is left of the area.
-pub fn titled<'a>(area: &Area<'a>, title: &str) -> Result<Area<'a>, super::Failure> {
+pub fn titled<'a>(area: &Area<'a>, title: &str) -> Result<Area<'a>, super::DrawError> {
     let (head, body) = area.split_vertically(34);
     head.draw(&Text::new(title.to_owned(), (14, 10), text(17)))?;
     Ok(body)
@@ -134,7 +134,7 @@ pub fn legend(
     area: &Area<'_>,
     mut at: (i32, i32),
     keys: &[(&str, RGBColor, bool)],
-) -> super::Drawn {
+) -> super::DrawResult {
     for (name, colour, hollow) in keys {
         let style = if *hollow {
             ShapeStyle::from(colour).stroke_width(2)
@@ -159,7 +159,7 @@ pub fn label<CT: CoordTranslate>(
     offset: (i32, i32),
     text: String,
     style: TextStyle<'_>,
-) -> super::Drawn {
+) -> super::DrawResult {
     let (at, origin) = (area.map_coordinate(at), area.get_base_pixel());
     let place = (at.0 - origin.0 + offset.0, at.1 - origin.1 + offset.1);
     area.strip_coord_spec()

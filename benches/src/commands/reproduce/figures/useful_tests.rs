@@ -6,15 +6,15 @@ use sdop_bench::reproduce::readings::TABLE_1_STRATEGIES;
 
 use super::percent::{cells, chart, marks, point};
 use super::style::{colour, legend, titled};
-use super::{Area, Drawn};
+use super::{Area, DrawResult};
 use crate::commands::palette::GREY;
 use crate::commands::reproduce::rows::Drawings;
 
 /// The percentages shown.
 const RANGE: [f64; 2] = [0.3, 100.0];
 
-/// Percent over N, logarithmic, a line a strategy.
-pub fn draw(area: &Area<'_>, tables: &Drawings) -> Drawn {
+/// Percent over N, logarithmic, one line per strategy.
+pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     let body = titled(
         area,
         "Collisions detected in percent of tests (ALL S-DOP: list entries count as tests)",
