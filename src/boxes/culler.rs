@@ -60,9 +60,9 @@ impl BoxCullerBuilder {
         Self { finder, ..self }
     }
 
-    /// Number of threads, the caller's included, at most 1,024, or the culler isn't built; 0 means
-    /// 1. Frames with little work stay on the caller's thread. Lists and counters don't depend on
-    /// it.
+    /// Number of threads, the caller's included; 0 means one, and the culler isn't built with more
+    /// than 1,024. Frames with little work stay on the caller's thread. Lists and counters don't
+    /// depend on it.
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }

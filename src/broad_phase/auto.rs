@@ -4,14 +4,14 @@
 //! that counters do not depend on the machine. Measured on one thread at 1.5 sphere partners per
 //! body:
 //!
-//! - The grid is faster than all pairs from 64 bodies of one size on (both take 1.2 µs there) and,
-//! with a level per size, from about 100 bodies with radii 1 : 1000 on.
+//! - The grid is faster than all pairs from 64 bodies of one size on (both take 1.2 µs there)
+//!   and, with a level per size, from about 100 bodies with radii 1 : 1000 on.
 //! - The sweep took 1.4 to 9 times as long as the grid for 16 to 10,000 bodies in cubes, planes,
-//! lines and clusters, with one giant and with radii 1 : 1000. It is never picked.
-//! - Neighbour lists took 0.42 to 0.66 of the grid's time for spheres of 10,000 bodies in a cube, a
-//! plane, clusters and with mixed radii, and up to 6 % more where bodies move too fast (Intel,
-//! AVX-512, runs in turns). They leave frames in which they don't pay to the grid, also decided by
-//! counts.
+//!   lines and clusters, with one giant and with radii 1 : 1000. It is never picked.
+//! - Neighbour lists took 0.42 to 0.66 of the grid's time for spheres of 10,000 bodies in a cube,
+//!   a plane, clusters and with mixed radii, and up to 6 % more where bodies move too fast
+//!   (Intel, AVX-512, runs in turns). They leave frames in which they don't pay to the grid, also
+//!   decided by counts.
 
 use super::Volume;
 use crate::settings::Finder;
