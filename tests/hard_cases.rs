@@ -11,11 +11,11 @@ use sdop::mesh::ReadOptions;
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
+use sdop_judge::every_way::rounds::{Ledger, Run, group};
 use sdop_judge::ours::compare::{culler, settings};
 use sdop_judge::ours::hard::{
     Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name,
 };
-use sdop_judge::ours::rounds::{Ledger, Run, group};
 use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
 use sdop_judge::ours::{Answers, Predicate};
 

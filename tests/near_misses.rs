@@ -13,11 +13,11 @@ use sdop::bodies::Bodies;
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
+use sdop_judge::every_way::rounds::{Ledger, Run};
 use sdop_judge::ours::arbitrary;
 use sdop_judge::ours::contact::{Contact, Placed};
 use sdop_judge::ours::draw::add;
 use sdop_judge::ours::forms::{self, Form};
-use sdop_judge::ours::rounds::{Ledger, Run};
 use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
 use sdop_judge::ours::{Answers, Predicate, Shapes, compare};
 

@@ -30,7 +30,7 @@ const LIBRARY: &[&str] = &[
     "query",
     "c",
 ];
-const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST];
+const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST, "every_way"];
 const BENCH: &[&str] = &[
     "number",
     "percentiles",

@@ -12,7 +12,7 @@ use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::ours::contact::{Contact, Kind, Placed};
 use sdop_judge::ours::draw::add;
-use sdop_judge::ours::rounds::{Ledger, Run};
+use sdop_judge::every_way::rounds::{Ledger, Run};
 use sdop_judge::ours::ways::Rotation;
 use sdop_judge::ours::{Answers, Predicate, Shapes};
 

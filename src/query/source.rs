@@ -18,9 +18,9 @@ pub trait QuerySource: sealed::Sealed {
 
 mod sealed {
     pub trait Sealed {}
-    impl Sealed for crate::BoxWorld {}
+    impl Sealed for crate::boxes::BoxWorld {}
     #[cfg(feature = "shapes")]
-    impl Sealed for crate::World {}
+    impl Sealed for crate::world::World {}
 }
 
 const FIXED_TREE: usize = 0;

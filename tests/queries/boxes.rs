@@ -24,8 +24,16 @@ fn ends(aabb: &Aabb) -> [[f64; 3]; 2] {
 }
 
 fn grown(aabb: &Aabb) -> [[f64; 3]; 2] {
+    grown_for(aabb, &[])
+}
+
+/// The box, grown by a small share of its coordinates and of those of some points.
+fn grown_for(aabb: &Aabb, points: &[[f64; 3]]) -> [[f64; 3]; 2] {
     let [lo, hi] = ends(aabb);
-    let size = |axis: usize| NEAR * (lo[axis].abs() + hi[axis].abs() + 1.0);
+    let size = |axis: usize| {
+        let points = points.iter().map(|point| point[axis].abs());
+        NEAR * (lo[axis].abs() + hi[axis].abs() + points.sum::<f64>() + 1.0)
+    };
     [
         std::array::from_fn(|axis| lo[axis] - size(axis)),
         std::array::from_fn(|axis| hi[axis] + size(axis)),
@@ -145,7 +153,8 @@ fn line_finds_boxes_in_order() {
                     (Some(at), Some(hit)) => assert!(is_no_later(hit.at, at)),
                     (Some(_), None) => panic!("{kind:?}: {line:?} misses {aabb:?}"),
                     (None, Some(_)) => {
-                        let is_near = line_meets_box(&exact, grown(aabb)).is_some();
+                        let near = grown_for(aabb, &[from, to]);
+                        let is_near = line_meets_box(&exact, near).is_some();
                         assert!(is_near, "{kind:?}: {line:?} {aabb:?}");
                     }
                     (None, None) => {}

@@ -14,7 +14,7 @@ use super::Outcome;
 use super::files;
 use super::output::{print, progress, rows};
 
-/// Judge other libraries with the adapters of benches/adapters, and write a page of their misses
+/// Judge other libraries by their adapters, and write a page of their misses
 ///
 /// Every adapter is judged on the published cases of its claim. `benches/adapters/install` installs
 /// the libraries that the adapters need. board.json has every number. board.html is one page that

@@ -15,9 +15,9 @@ use sdop_bench::sweep::Merged;
 use sdop_bench::verify::shrink::SmallestScene;
 pub use sdop_bench::verify::units::NAME;
 use sdop_bench::verify::units::{Settings, UnitOrigin, Verification};
+use sdop_judge::every_way::rounds::{Failure, Ledger};
+use sdop_judge::every_way::subject::EveryWay;
 use sdop_judge::ours::hard::{FILES, Group, page};
-use sdop_judge::ours::rounds::{Failure, Ledger};
-use sdop_judge::ours::subject::EveryWay;
 use sdop_judge::ours::ways::Rotation;
 use sdop_judge::{Claim, Options, examine};
 

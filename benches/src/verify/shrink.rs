@@ -9,8 +9,8 @@ use crate::scene::SceneFile;
 use sdop::files;
 use sdop::settings::CullSettings;
 use sdop_judge::Frame;
+use sdop_judge::every_way::rounds::Failure;
 use sdop_judge::ours::compare::settings;
-use sdop_judge::ours::rounds::Failure;
 use sdop_judge::report::{case_file, scene};
 use sdop_judge::shrink;
 

@@ -14,12 +14,12 @@ use crate::scene::Scene;
 use crate::sweep::{Header, Sweep, digest};
 use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
 use sdop::simd::Tier;
+use sdop_judge::every_way::rounds::{Judged, Ledger, Source, boxes, group, round};
 use sdop_judge::ours::answers::Predicate;
 use sdop_judge::ours::boxes::BoxCell;
 use sdop_judge::ours::compare::Count;
 use sdop_judge::ours::hard::{FILES, Group};
 use sdop_judge::ours::matrix::Cell;
-use sdop_judge::ours::rounds::{Judged, Ledger, Source, boxes, group, round};
 use sdop_judge::ours::ways::{Rotation, variants};
 
 /// The name in its files.

@@ -37,6 +37,7 @@ pub mod catalogue;
 pub mod claim;
 pub mod contestant;
 pub mod counter_example;
+pub mod every_way;
 #[cfg(feature = "programs")]
 pub mod json;
 pub mod ours;

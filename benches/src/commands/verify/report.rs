@@ -4,10 +4,10 @@
 mod coverage;
 
 use sdop_judge::Conclusion;
+use sdop_judge::every_way::rounds::{Judged, Ledger};
 use sdop_judge::ours::Predicate;
 use sdop_judge::ours::boxes::BoxLedger;
 use sdop_judge::ours::matrix::Matrix;
-use sdop_judge::ours::rounds::{Judged, Ledger};
 use sdop_judge::ours::ways::Rotation;
 use serde::Serialize;
 

@@ -19,8 +19,6 @@ pub mod hard;
 pub mod judged;
 pub mod matrix;
 pub mod naive;
-pub mod rounds;
-pub mod subject;
 pub mod ways;
 
 pub use answers::{Answers, Predicate};

@@ -1,12 +1,12 @@
 //! Our cullers as one more subject: in every way that they have, each in the mode whose turn it is.
 
-use super::boxes::BoxCell;
-use super::compare::{culler, settings};
-use super::ways::{Mode, Rotation, ways};
 use crate::answer::{Answer, Stop, Trouble};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::contestant::WorldBox;
+use crate::ours::boxes::BoxCell;
+use crate::ours::compare::{culler, settings};
+use crate::ours::ways::{Mode, Rotation, ways};
 use crate::subject::Subject;
 use sdop::bodies::Aabb;
 use sdop::boxes::BoxCuller;
