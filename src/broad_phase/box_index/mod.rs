@@ -178,16 +178,20 @@ impl BoxIndex {
         }
     }
 
-    /// Rebuilds the table without empty cells, so large that half of it is free.
+    /// Rebuilds the table without empty cells, so large that half of it is free, and the lists of
+    /// its cells without the rooms that nothing is in.
     fn make_room(&mut self) {
         let filled = self.cells.iter().filter(|cell| !cell.boxes.is_empty());
         let size = (2 * filled.clone().count() + 16).next_power_of_two();
         let filled: Vec<Cell> = filled.copied().collect();
         self.taken = filled.len();
         self.cells = vec![Cell::default(); size];
-        for cell in filled {
-            let at = self.find(cell.name);
-            self.cells[at] = cell;
+        let boxes = std::mem::take(&mut self.boxes);
+        for Cell { name, boxes: run } in filled {
+            let at = self.find(name);
+            let mut moved = Run::default();
+            self.boxes.replace(&mut moved, boxes.get(run));
+            self.cells[at] = Cell { name, boxes: moved };
         }
     }
 
