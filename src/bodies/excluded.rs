@@ -9,10 +9,12 @@ use std::hash::{BuildHasherDefault, Hasher};
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ExcludedPairs {
     /// The partners of each body that has any; each pair is at both of its bodies.
-    partners: HashMap<u32, Numbers, BuildHasherDefault<NumberHasher>>,
+    partners: HashMap<
+        u32,
+        HashSet<u32, BuildHasherDefault<NumberHasher>>,
+        BuildHasherDefault<NumberHasher>,
+    >,
 }
-
-type Numbers = HashSet<u32, BuildHasherDefault<NumberHasher>>;
 
 impl ExcludedPairs {
     /// Whether there is none.
@@ -59,7 +61,7 @@ impl ExcludedPairs {
 
     /// The pairs, the lower number first, sorted.
     pub fn sorted(&self) -> Vec<[u32; 2]> {
-        let of_body = |(&body, partners): (&u32, &Numbers)| {
+        let of_body = |(&body, partners): (&u32, &HashSet<u32, _>)| {
             let pairs = partners.iter().map(move |&partner| [body, partner]);
             pairs.filter(|[a, b]| a < b).collect::<Vec<_>>()
         };

@@ -66,14 +66,14 @@ typedef struct {
   bool on_model_axes;
 } SdopShapeSpec;
 
-// Bits of the groups that a body is in, and of those that it collides with.
+// Which groups a body is in, and which it collides with: one bit per group.
 typedef struct {
   // The groups that the body is in.
   uint32_t member;
   // The groups that it collides with.
   uint32_t mask;
 } SdopGroups;
-// In all groups, colliding with all.
+// In all groups, and collides with all: the default.
 #define SdopGroups_ALL (SdopGroups){ .member = UINT32_MAX, .mask = UINT32_MAX }
 
 // Bodies as columns of `count` entries.
@@ -110,8 +110,8 @@ typedef struct {
   uint32_t second;
 } SdopPair;
 
-// A closed box on the world's axes: boxes that touch meet. Its ends are finite, and no lower one
-// is above the upper one; sides of no length are fine.
+// A closed, world-aligned box: boxes that touch meet. Its ends are finite, and each lower end is
+// at most the upper one; sides may have no length.
 typedef struct {
   // The lower corner.
   float min[3];
