@@ -146,13 +146,13 @@ mod tests {
                 290..2000,
                 1900..4500,
                 4400..8100,
-                4403..8499, // as long as the ring, which has no room for the rest of its batches
                 8090..8100,
                 100..200,
                 19_000..19_900,
                 19_800..20_001,
                 9000..18_000,
                 17_900..20_001,
+                3..16_387, // as long as the ring, which has no room for the rest of its batches
                 20_000..20_001,
                 0..0,
                 77..80,
