@@ -3,8 +3,8 @@
 /// Columns of a line of prose. `.ci/prose` checks the same width.
 const WIDTH: usize = 100;
 
-/// A Markdown text whose paragraphs and list items are filled up to [`WIDTH`] columns. Tables, code,
-/// headings, rules, quotes and tags stay as they are.
+/// A Markdown text whose paragraphs and list items are filled up to [`WIDTH`] columns. Tables,
+/// code, headings, rules, quotes and tags stay as they are.
 pub(super) fn filled(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut block: Vec<&str> = Vec::new();
