@@ -43,8 +43,9 @@ function asked(found, bodies) {
 }
 
 /**
- * Answers cases on standard input until it ends: `find` returns the pairs of a frame, which has
- * `boxes` or `poses`, and `bodies` and `shapes`. With `--version`, prints the version of a package.
+ * Answers cases on standard input until it ends. `find` returns the pairs of a frame, which has
+ * `boxes` or `poses`, the other inputs of its claim, `bodies` and `shapes`, and `kept`, an object
+ * that stays for the whole case. With `--version`, prints the version of a package.
  */
 export async function serve(name, find) {
   if (process.argv.includes("--version")) {
@@ -63,7 +64,7 @@ export async function serve(name, find) {
   for await (const line of readline.createInterface({ input: process.stdin })) {
     const frame = JSON.parse(line);
     if (frame.format) {
-      head = frame;
+      head = { ...frame, kept: {} };
       continue;
     }
     if (head === null) continue; // the rest of a case that it has skipped
@@ -71,7 +72,7 @@ export async function serve(name, find) {
     let answer;
     const start = process.hrtime.bigint();
     try {
-      const found = await find({ shapes: head.shapes, bodies: head.bodies, boxes: frame.boxes, poses: frame.poses });
+      const found = await find({ ...frame, shapes: head.shapes, bodies: head.bodies, kept: head.kept });
       answer = { pairs: asked(found, head.bodies), ns: Number(process.hrtime.bigint() - start) };
     } catch (error) {
       if (!(error instanceof CaseSkipped)) throw error;
