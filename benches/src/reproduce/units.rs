@@ -9,7 +9,7 @@ use miette::{IntoDiagnostic as _, miette};
 use serde::{Deserialize, Serialize};
 
 use super::experiment::{Results, StrategyRun, run_pass, variants};
-use super::immediate::{self, Immediacy};
+use super::immediate::{self, HandingTimes};
 use super::plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES, SURVIVAL_SCENE};
 use super::sensitivity::{self, TestCounts};
 use super::survival::Survival;
@@ -86,7 +86,7 @@ pub enum UnitResult {
         /// The strategies as variants.
         variants: Vec<Variant>,
         /// The paper's algorithm to the letter.
-        immediacy: Option<Immediacy>,
+        immediacy: Option<HandingTimes>,
     },
     /// A share an or-DOP and test.
     Survival(Vec<f64>),

@@ -13,7 +13,7 @@ use super::result::{Tradeoff, VariantResult};
 use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
-use super::units::{Compared, Counts, Found, Settings};
+use super::units::{ComparedVariants, Counts, Settings, UnitResult};
 use super::variant::Variant;
 use super::vary::Variation;
 use crate::cost::pass::Pass;
@@ -25,7 +25,7 @@ use crate::measure::turns::Regime;
 /// The results of units so far.
 #[derive(Debug, Default)]
 pub struct Findings {
-    compared: Option<Compared>,
+    compared: Option<ComparedVariants>,
     seeds: Vec<Counts>,
     budgets: Vec<BudgetRow>,
     shapes: Vec<ShapeSurvival>,
@@ -40,19 +40,19 @@ pub struct Findings {
 
 impl Findings {
     /// Adds the results of a unit; units come in their order.
-    fn add(&mut self, found: Found) {
+    fn add(&mut self, found: UnitResult) {
         match found {
-            Found::Compared(compared) => self.compared = Some(compared),
-            Found::Seed(counts) => self.seeds.push(counts),
-            Found::Budgets(rows) => self.budgets = rows,
-            Found::Shape(shape) => self.shapes.push(shape),
-            Found::Pass(pass) => self.passes.push(pass),
-            Found::NarrowPhase(seconds) => self.narrow_phase = seconds,
-            Found::Clock(rows) => self.clock = rows,
-            Found::Interest(times) => self.interest = times,
-            Found::Density(density) => self.densities.extend(density),
-            Found::Variation(variation) => self.variations.extend(variation),
-            Found::Safety(rows) => self.safety = rows,
+            UnitResult::Compared(compared) => self.compared = Some(compared),
+            UnitResult::Seed(counts) => self.seeds.push(counts),
+            UnitResult::Budgets(rows) => self.budgets = rows,
+            UnitResult::Shape(shape) => self.shapes.push(shape),
+            UnitResult::Pass(pass) => self.passes.push(pass),
+            UnitResult::NarrowPhase(seconds) => self.narrow_phase = seconds,
+            UnitResult::Clock(rows) => self.clock = rows,
+            UnitResult::Interest(times) => self.interest = times,
+            UnitResult::Density(density) => self.densities.extend(density),
+            UnitResult::Variation(variation) => self.variations.extend(variation),
+            UnitResult::Safety(rows) => self.safety = rows,
         }
     }
 
@@ -69,7 +69,7 @@ impl Findings {
     /// machine's conditions at the start.
     #[must_use]
     pub fn finish(self, settings: &Settings, before: Conditions) -> Option<Tradeoff> {
-        let Compared {
+        let ComparedVariants {
             hits,
             variants,
             volumes,
@@ -86,7 +86,7 @@ impl Findings {
         if !fits {
             return None;
         }
-        let measured = Measured {
+        let measured = VariantMeasurements {
             scene: (settings.scene.as_str(), settings.bodies),
             seeds: &self.seeds,
             passes: self.passes.iter().collect(),
@@ -123,14 +123,14 @@ impl Findings {
 }
 
 /// Counts per seed and times per pass of every variant.
-struct Measured<'a> {
+struct VariantMeasurements<'a> {
     /// The scene's name and its number of bodies.
     scene: (&'a str, usize),
     seeds: &'a [Counts],
     passes: Vec<&'a Pass>,
 }
 
-impl Measured<'_> {
+impl VariantMeasurements<'_> {
     fn rows(&self, variants: &[Variant], volumes: &[Option<f64>]) -> Vec<VariantResult> {
         let mut rows: Vec<VariantResult> = variants
             .iter()

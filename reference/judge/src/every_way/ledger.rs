@@ -29,7 +29,7 @@ pub struct Judged {
 pub struct Ledger {
     /// Answers by predicate: pairs that overlap, and which stage decided.
     pub predicates: [(u64, Tally); Predicate::ALL.len()],
-    /// Lists against answers; a pair counts once a finder that reported on it.
+    /// Lists against answers; a pair counts once for each finder that listed it.
     pub rows: BTreeMap<Judged, Count>,
     /// Pairs missed or found by one finder alone, with all that is needed to see it again.
     pub failures: Vec<Failure>,

@@ -53,7 +53,7 @@ pub enum Source {
     Random,
 }
 
-/// The stream of draws of given boxes, behind those of sources.
+/// The random stream of given boxes; those of sources have lower numbers.
 const BOXES: u64 = 8;
 
 /// Given boxes of a seed, in every cell.
@@ -110,7 +110,7 @@ pub fn round(
     )
 }
 
-/// Every procedural shape with a size of its own, and two about origins that are not their balls'
+/// Every procedural shape, each with its own size, and two whose origins are not their balls'
 /// centres.
 fn pool() -> Vec<Form> {
     let mut forms: Vec<Form> = ProceduralShape::NAMES
