@@ -1,6 +1,6 @@
 //! Rooms import downward only, and no files import each other in a circle: read from the paths in
-//! the sources. Which crate may name which is in their manifests; within a crate no two rooms import
-//! each other, since all stand in one order.
+//! the sources. Which crate may name which is in their manifests; within a crate no two rooms
+//! import each other, since all are in one order.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::collections::{BTreeMap, BTreeSet};

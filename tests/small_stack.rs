@@ -1,8 +1,8 @@
 //! Everything that culls fits the stack of a thread, 2 MB. Without optimisation, each vector of an
 //! inlined function has a separate place there, which once took 10 MB.
 //!
-//! `.ci/run` runs this test also with a library that isn't optimised. It uses only `sdop` itself, so
-//! that nothing else has to be compiled for that.
+//! `.ci/run` also runs this test with a library that isn't optimised. It uses only `sdop` itself,
+//! so that nothing else has to be compiled for that.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::thread;

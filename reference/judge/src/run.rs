@@ -104,8 +104,8 @@ where
     }
 }
 
-/// Judges a culler that keeps nothing between frames: a function of the shapes and of a frame, which
-/// has the bodies' poses and boxes. Its pairs are i < j, each once.
+/// Judges a culler that keeps nothing between frames: a function of the shapes and of a frame. The
+/// frame has the bodies' poses and boxes. Pairs are i < j, each once.
 pub fn judge_function<F>(cull: F) -> Judge<Function<F>>
 where
     F: Fn(&[Shape], &Frame) -> Vec<[u32; 2]> + Sync,
