@@ -4,6 +4,7 @@
 
 mod bodies;
 mod boxes;
+mod corners;
 mod lives;
 #[allow(dead_code, reason = "the suite of boxes uses the rest")]
 #[path = "../boxes/scenes.rs"]
