@@ -40,8 +40,8 @@ function asked(found, bodies) {
   return [...seen.values()];
 }
 
-/** Answers cases on standard input until it ends: `find` returns the pairs of a frame, which has `boxes` or `poses`, and `bodies` and
- * `shapes`. Or says the version of a package. */
+/** Answers cases on standard input until it ends: `find` returns the pairs of a frame, which has `boxes` or `poses`, what else a claim
+ * gives, `bodies` and `shapes`, and `kept`, an object that stays for the whole case. Or says the version of a package. */
 export async function serve(name, find) {
   if (process.argv.includes("--version")) {
     const found = createRequire(import.meta.url).resolve.paths(name).map((folder) => `${folder}/${name}/package.json`);
@@ -59,7 +59,7 @@ export async function serve(name, find) {
   for await (const line of readline.createInterface({ input: process.stdin })) {
     const frame = JSON.parse(line);
     if (frame.format) {
-      head = frame;
+      head = { ...frame, kept: {} };
       continue;
     }
     if (head === null) continue; // the rest of a case that it has skipped
@@ -67,7 +67,7 @@ export async function serve(name, find) {
     let answer;
     const start = process.hrtime.bigint();
     try {
-      const found = await find({ shapes: head.shapes, bodies: head.bodies, boxes: frame.boxes, poses: frame.poses });
+      const found = await find({ ...frame, shapes: head.shapes, bodies: head.bodies, kept: head.kept });
       answer = { pairs: asked(found, head.bodies), ns: Number(process.hrtime.bigint() - start) };
     } catch (error) {
       if (!(error instanceof CaseSkipped)) throw error;

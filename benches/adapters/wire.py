@@ -12,6 +12,7 @@ import os
 import sys
 import time
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +30,9 @@ class Culler:
     def __init__(self, scene: SimpleNamespace):
         self.shapes = scene.shapes
         self.body_shapes, self.dynamic = np.asarray(scene.body_shapes), np.asarray(scene.dynamic)
+
+    given: dict[str, Any]
+    """The frame as the judge gives it, for what a claim adds: groups, excluded pairs, margins."""
 
     def change(self, body_shapes: Array, dynamic: Array, was: Array) -> None:
         self.body_shapes, self.dynamic = np.asarray(body_shapes), np.asarray(dynamic)
@@ -87,6 +91,7 @@ def serve(make: type[Culler], package: str) -> None:
                 culler = make(SimpleNamespace(shapes=shapes, body_shapes=numbers, dynamic=dynamic))
             elif "bodies" in frame:
                 culler.change(numbers, dynamic, np.array(was))
+            culler.given = frame
             found = culler.frame(*given)
             answer = {"pairs": found.tolist(), "ns": time.perf_counter_ns() - start}
         except CaseSkipped as reason:
