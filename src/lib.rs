@@ -45,8 +45,8 @@
 //! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of
 //! bodies; in a [`World`] they come and go, with stable ids, groups, contact margins, f64
 //! translations and events. If you have boxes already, use [`BoxCuller`] or [`BoxWorld`]: they
-//! report exactly the pairs of boxes that meet. A [`QueryIndex`] finds the bodies of a world that
-//! touch a volume or a line.
+//! report exactly the pairs of boxes that meet. Bodies of several shapes are [`compound`]s. A
+//! [`QueryIndex`] finds the bodies of a world that touch a volume or a line.
 //!
 //! # Conventions
 //!
@@ -110,6 +110,8 @@ pub mod bodies;
 pub mod boxes;
 #[cfg(feature = "c")]
 pub mod c;
+#[cfg(feature = "shapes")]
+pub mod compound;
 pub mod counters;
 pub mod culler;
 #[cfg(feature = "shapes")]
