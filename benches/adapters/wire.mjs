@@ -14,8 +14,10 @@ function above(x, round) {
   }
 }
 
-/** Boxes by their centres and half sides, rounded to float32 unless said otherwise. Where these can't hold a box, they are of one
- * around it: more pairs are no failure. */
+/**
+ * Centres and half sides of boxes, rounded to float32 by default. A box that they can't represent
+ * is replaced by a larger one around it: additional pairs are no failure.
+ */
 export function centresAndHalves(boxes, round = Math.fround) {
   return boxes.map(([x0, y0, z0, x1, y1, z1]) => {
     const [centre, half] = [[], []];
@@ -40,8 +42,11 @@ function asked(found, bodies) {
   return [...seen.values()];
 }
 
-/** Answers cases on standard input until it ends: `find` returns the pairs of a frame, which has `boxes` or `poses`, what else a claim
- * gives, `bodies` and `shapes`, and `kept`, an object that stays for the whole case. Or says the version of a package. */
+/**
+ * Answers cases on standard input until it ends. `find` returns the pairs of a frame, which has
+ * `boxes` or `poses`, the other inputs of its claim, `bodies` and `shapes`, and `kept`, an object
+ * that stays for the whole case. With `--version`, prints the version of a package.
+ */
 export async function serve(name, find) {
   if (process.argv.includes("--version")) {
     const found = createRequire(import.meta.url).resolve.paths(name).map((folder) => `${folder}/${name}/package.json`);

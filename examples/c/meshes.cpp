@@ -1,4 +1,5 @@
-// Meshes with poses of an engine: a fixed set, a world with margins that is saved and rolled back, single pairs. C++17.
+// Meshes with poses of an engine: a fixed set, a world with margins that is saved and rolled back,
+// single pairs. C++17.
 #include <array>
 #include <cassert>
 #include <cstdio>

@@ -81,9 +81,9 @@ pub fn box_pairs<'py>(
 /// threads : int
 ///     Number of threads.
 #[pyclass(frozen, module = "sdop")]
-pub struct BoxCuller(Mutex<Timed>);
+pub struct BoxCuller(Mutex<TimedCuller>);
 
-struct Timed {
+struct TimedCuller {
     culler: sdop::BoxCuller,
     seconds: f64,
 }
@@ -95,7 +95,7 @@ impl BoxCuller {
     fn new(finder: &str, threads: usize) -> PyResult<Self> {
         let finder: Finder = finder.parse().map_err(refused)?;
         let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
-        Ok(Self(Mutex::new(Timed {
+        Ok(Self(Mutex::new(TimedCuller {
             culler: builder.build().map_err(refused)?,
             seconds: 0.0,
         })))
@@ -114,7 +114,7 @@ impl BoxCuller {
         let given = self::boxes(boxes)?;
         let boxes = Aabb::from_rows(given.rows());
         let groups = self::groups(groups, boxes.len())?;
-        let found = locked(py, &self.0, |Timed { culler, seconds }| {
+        let found = locked(py, &self.0, |TimedCuller { culler, seconds }| {
             culler.set_groups(groups);
             let start = Instant::now();
             let found = culler.cull(boxes);

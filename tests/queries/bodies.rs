@@ -325,7 +325,7 @@ fn touching_to_the_bit_is_found() {
                     let found = index.touching(&ball(centre, radius)).unwrap();
                     assert_eq!(found.len(), 1, "{at:?} {off:?}");
                 }
-                // Of a ball that is large beside the cube, a corner touches no slab.
+                // No slab separates a corner from a ball that is much larger than the cube.
                 let apart = ball(away(off.map(|x| 1.01 * x)), radius);
                 if radius <= 2.0 {
                     assert_eq!(index.touching(&apart).unwrap(), [], "{at:?} {off:?}");

@@ -1,4 +1,5 @@
-"""ipctk: its broad phases. A box is an edge between two corners: the box about that edge is the one given."""
+"""ipctk: its broad phases. A box is an edge between two corners: the box about that edge is the one
+given."""
 
 import sys
 from pathlib import Path

@@ -33,7 +33,8 @@ class Adapter(Culler):
         return self.pairs(pairs.numpy()[: count.numpy()[0]])
 
     def excluded(self):
-        """Pairs that must not be reported, sorted. Its groups are numbers, not masks: what masks part is given as pairs too."""
+        """Pairs that must not be reported, sorted. Its groups are numbers, not masks: what masks
+        part is given as pairs too."""
         groups, pairs = self.given.get("groups", []), {tuple(pair) for pair in self.given.get("excluded", [])}
         for j, (in_b, meets_b) in enumerate(groups):
             pairs.update((i, j) for i, (in_a, meets_a) in enumerate(groups[:j]) if not (in_a & meets_b and in_b & meets_a))

@@ -1,5 +1,6 @@
-// rapier by its WebAssembly port: World.collidersWithAabbIntersectingAabb, for a cuboid per body. The world is new in each frame; with
-// the argument `snapshots` it stays for a case, its cuboids are moved, and it is saved and restored when the judge says so.
+// rapier by its WebAssembly port: World.collidersWithAabbIntersectingAabb, for a cuboid per body.
+// The world is new in each frame; with the argument `snapshots` it stays for a case, its cuboids
+// are moved, and it is saved and restored when the judge says so.
 
 import rapier from "@dimforge/rapier3d-compat";
 import { CaseSkipped, centresAndHalves, serve } from "../wire.mjs";

@@ -12,6 +12,7 @@ mod costs;
 pub mod digits;
 mod engines;
 mod experiment;
+mod fill;
 mod manifest;
 mod needs;
 pub mod pages;

@@ -6,12 +6,12 @@ use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::immediate::Immediacy;
+use super::immediate::HandingTimes;
 use super::sensitivity::Interpretation;
 use super::survival::Survival;
 use super::units::Experiments;
 use crate::cost::calibrate::{Calibration, Effort};
-use crate::cost::pass::{Culled, Observer, Pass, Simulated, pass};
+use crate::cost::pass::{Observer, Pass, SceneFrames, VariantRun, pass};
 use crate::cost::table::{self, Cost};
 use crate::hash::PairsHash;
 use crate::measure::culling::Culling;
@@ -126,7 +126,7 @@ pub struct Results {
     /// One pass a seed and scene, with its calibration: what the runs were taken from.
     pub passes: Vec<(PaperScene, Pass)>,
     /// The paper's sequential algorithm to the letter, a seed and scene of the most objects each.
-    pub immediacies: Vec<Immediacy>,
+    pub immediacies: Vec<HandingTimes>,
     /// The strategies as variants, scene by scene.
     pub variants: Vec<(PaperScene, Vec<Variant>)>,
     /// One an or-DOP and test.
@@ -238,7 +238,7 @@ pub(super) fn run_pass(
         hashes: vec![PairsHash::default(); variants.len()],
         reported: Vec::new(),
     };
-    let mut simulated = Simulated::new(scene, frames)?;
+    let mut simulated = SceneFrames::new(scene, frames)?;
     let pass = pass(
         scene,
         variants,
@@ -249,7 +249,7 @@ pub(super) fn run_pass(
     )?;
     let bodies = &scene.bodies;
     let radius = |&shape: &u32| f64::from(scene.shapes[shape as usize].ball.radius);
-    let run = |((variant, culled), hash): ((&Variant, &Culled), PairsHash)| {
+    let run = |((variant, culled), hash): ((&Variant, &VariantRun), PairsHash)| {
         let strategy = variant.settings.strategy;
         let warm = culled.times.medians(Regime::Warm);
         StrategyRun {

@@ -1,4 +1,4 @@
-//! What the paper doesn't state, swept: where bodies start, what a wall does, how many frames are
+//! Sweeps what the paper doesn't state: where bodies start, what a wall does, how many frames are
 //! counted, and which or-DOP is meant. Each combination is an interpretation of Table 1; its
 //! likelihood says how well it explains the table.
 //!

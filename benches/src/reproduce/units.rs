@@ -12,7 +12,7 @@ use super::experiment::{
     ExperimentPlan, PaperScene, ReproduceError, Results, STRATEGIES, SURVIVAL_SCENE, StrategyRun,
     run_pass, variants,
 };
-use super::immediate::{self, Immediacy};
+use super::immediate::{self, HandingTimes};
 use super::sensitivity::{self, TestCounts};
 use super::survival::Survival;
 use crate::cost::calibrate::{Calibration, Effort};
@@ -88,7 +88,7 @@ pub enum UnitResult {
         /// The strategies as variants.
         variants: Vec<Variant>,
         /// The paper's algorithm to the letter.
-        immediacy: Option<Immediacy>,
+        immediacy: Option<HandingTimes>,
     },
     /// A share an or-DOP and test.
     Survival(Vec<f64>),

@@ -13,7 +13,7 @@ use super::result::{Tradeoff, VariantResult};
 use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
-use super::units::{Compared, Counts, Found, Settings};
+use super::units::{ComparedVariants, Counts, Settings, UnitResult};
 use super::variant::Variant;
 use super::vary::Variation;
 use crate::cost::pass::Pass;
@@ -45,7 +45,7 @@ pub struct TradeoffPlan {
 /// The results of units so far.
 #[derive(Debug, Default)]
 pub struct Findings {
-    compared: Option<Compared>,
+    compared: Option<ComparedVariants>,
     seeds: Vec<Counts>,
     budgets: Vec<BudgetRow>,
     shapes: Vec<ShapeSurvival>,
@@ -60,19 +60,19 @@ pub struct Findings {
 
 impl Findings {
     /// Adds the results of a unit; units come in their order.
-    pub(super) fn add(&mut self, found: Found) {
+    pub(super) fn add(&mut self, found: UnitResult) {
         match found {
-            Found::Compared(compared) => self.compared = Some(compared),
-            Found::Seed(counts) => self.seeds.push(counts),
-            Found::Budgets(rows) => self.budgets = rows,
-            Found::Shape(shape) => self.shapes.push(shape),
-            Found::Pass(pass) => self.passes.push(pass),
-            Found::NarrowPhase(seconds) => self.narrow_phase = seconds,
-            Found::Clock(rows) => self.clock = rows,
-            Found::Interest(times) => self.interest = times,
-            Found::Density(density) => self.densities.extend(density),
-            Found::Variation(variation) => self.variations.extend(variation),
-            Found::Safety(rows) => self.safety = rows,
+            UnitResult::Compared(compared) => self.compared = Some(compared),
+            UnitResult::Seed(counts) => self.seeds.push(counts),
+            UnitResult::Budgets(rows) => self.budgets = rows,
+            UnitResult::Shape(shape) => self.shapes.push(shape),
+            UnitResult::Pass(pass) => self.passes.push(pass),
+            UnitResult::NarrowPhase(seconds) => self.narrow_phase = seconds,
+            UnitResult::Clock(rows) => self.clock = rows,
+            UnitResult::Interest(times) => self.interest = times,
+            UnitResult::Density(density) => self.densities.extend(density),
+            UnitResult::Variation(variation) => self.variations.extend(variation),
+            UnitResult::Safety(rows) => self.safety = rows,
         }
     }
 
@@ -80,7 +80,7 @@ impl Findings {
     /// machine's conditions at the start.
     #[must_use]
     pub fn finish(self, settings: &Settings, before: Conditions) -> Option<Tradeoff> {
-        let Compared {
+        let ComparedVariants {
             hits,
             variants,
             volumes,
@@ -97,7 +97,7 @@ impl Findings {
         if !fits {
             return None;
         }
-        let measured = Measured {
+        let measured = VariantMeasurements {
             scene: (settings.scene.as_str(), settings.bodies),
             seeds: &self.seeds,
             passes: self.passes.iter().collect(),
@@ -134,14 +134,14 @@ impl Findings {
 }
 
 /// Counts per seed and times per pass of every variant.
-struct Measured<'a> {
+struct VariantMeasurements<'a> {
     /// The scene's name and its number of bodies.
     scene: (&'a str, usize),
     seeds: &'a [Counts],
     passes: Vec<&'a Pass>,
 }
 
-impl Measured<'_> {
+impl VariantMeasurements<'_> {
     fn rows(&self, variants: &[Variant], volumes: &[Option<f64>]) -> Vec<VariantResult> {
         let mut rows: Vec<VariantResult> = variants
             .iter()

@@ -95,7 +95,7 @@ impl Verification {
                 .find(|tier| tier.name() == name)
                 .ok_or_else(|| {
                     miette!(
-                        help = "take its results on a CPU like those that gave them",
+                        help = "merge on a CPU that has it, as those had that made the shards",
                         "this CPU has no {name}"
                     )
                 })
@@ -216,7 +216,7 @@ impl Verification {
             VerifyUnit::Rounds(..) => vec![UnitOrigin::Near, UnitOrigin::Random, UnitOrigin::Boxes],
             VerifyUnit::Frames(n, _) => vec![UnitOrigin::Scene(n)],
         };
-        let wrong = || miette!("the result of unit {unit} is none of `sdop verify`");
+        let wrong = || miette!("the result of unit {unit} was not written by `sdop verify`");
         if texts.len() != origins.len() {
             return Err(wrong());
         }

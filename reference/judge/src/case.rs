@@ -144,7 +144,7 @@ impl Case {
         }
     }
 
-    /// Whether a frame takes up what those before have left: another set of bodies, or a state.
+    /// Whether a frame depends on earlier ones: its set of bodies changes, or it restores a state.
     #[must_use]
     pub fn has_history(&self) -> bool {
         let goes_on = |frame: &Frame| frame.was.is_some() || frame.restore;
@@ -165,7 +165,7 @@ impl Case {
     }
 }
 
-/// Whether a name matches a pattern in which `*` stands for any text, `/` included, and `?` for one
+/// Whether a name matches a pattern in which `*` matches any text, `/` included, and `?` one
 /// character.
 #[must_use]
 pub fn matches(pattern: &str, name: &str) -> bool {

@@ -2,7 +2,7 @@
 //!
 //! A culler states a [`Claim`]: what it never misses. The [`catalogue`] has the cases for it; a
 //! [`subject`] answers them, be it a Rust type ([`judge`]) or a program ([`process`], over a
-//! [`wire`]); a case's answers are held against the exact [`truth`], and a missed pair becomes the
+//! [`wire`]); a case's answers are compared with the exact [`truth`], and a missed pair becomes the
 //! smallest scene that shows it ([`shrink`]), with a certificate ([`witness`]).
 //!
 //! ```

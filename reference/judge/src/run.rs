@@ -176,7 +176,7 @@ impl<S: Subject> Judge<S> {
     }
 }
 
-/// Runs the cases of a claim; `progress` is told how many are done, and of how many.
+/// Runs the cases of a claim. `progress` receives how many cases are done, and their number.
 ///
 /// # Errors
 /// As [`Judge::run`].

@@ -1,5 +1,5 @@
-//! What a verification run says of itself: answers by stage and lists by strategy, one table each a
-//! source, and the matrix of what was judged.
+//! Prints the result of a verification run: answers by stage and lists by strategy, in one table
+//! per source, and the matrix of what was judged.
 
 mod coverage;
 

@@ -1,9 +1,9 @@
-//! What may change of a body between two frames, one by one and all at once: its place, its shape,
-//! its number, and the origin that all bodies are seen from.
+//! What can change about a body between two frames, one by one and all at once: its position, its
+//! shape, its number, and the origin of all positions.
 //!
-//! Rows of a static body and one that moves stand far from one another. In each frame a change
-//! brings some of the latter to their partners, from either side along one axis; whoever keeps what
-//! the change has made stale misses a pair.
+//! Each row has a static body and a moving one, far from each other. In each frame a change brings
+//! some of the moving bodies to their partners, from either side along one axis. A culler that
+//! keeps stale data misses a pair.
 
 use rand::{Rng, RngExt};
 

@@ -60,7 +60,7 @@ pub struct Judged {
 pub struct Ledger {
     /// Answers by predicate: pairs that overlap, and which stage decided.
     pub predicates: [(u64, Tally); Predicate::ALL.len()],
-    /// Lists against answers; a pair counts once a finder that reported on it.
+    /// Lists against answers; a pair counts once for each finder that listed it.
     pub rows: BTreeMap<Judged, Count>,
     /// Pairs missed or found by one finder alone, with all that is needed to see it again.
     pub failures: Vec<Failure>,
@@ -379,7 +379,7 @@ pub enum Source {
     Random,
 }
 
-/// The stream of draws of given boxes, behind those of sources.
+/// The random stream of given boxes; those of sources have lower numbers.
 const BOXES: u64 = 8;
 
 /// Given boxes of a seed, in every cell.
@@ -436,7 +436,7 @@ pub fn round(
     )
 }
 
-/// Every procedural shape with a size of its own, and two about origins that are not their balls'
+/// Every procedural shape, each with its own size, and two whose origins are not their balls'
 /// centres.
 fn pool() -> Vec<Form> {
     let mut forms: Vec<Form> = ProceduralShape::NAMES
