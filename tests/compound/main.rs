@@ -9,6 +9,7 @@ mod robots;
 #[allow(dead_code, reason = "the suite of boxes uses the rest")]
 #[path = "../boxes/scenes.rs"]
 mod scenes;
+mod volumes;
 
 use sdop::compound::{Compound, Part, PartCuller, PartPair};
 use sdop::volume::{DirectionSet, ShapeSpec};

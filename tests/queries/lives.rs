@@ -130,6 +130,8 @@ fn twin_in_a_slot_has_its_own_id() {
     of_boxes.update(&boxes);
     bodies.remove(gone.0).unwrap();
     boxes.remove(gone.1).unwrap();
+    bodies.cull().unwrap(); // frees the slots
+    boxes.cull().unwrap();
     let twin = bodies.insert(Body::default()).unwrap();
     assert_eq!(twin.slot(), gone.0.slot());
     of_bodies.update(&bodies);
