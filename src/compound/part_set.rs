@@ -103,18 +103,18 @@ impl Bounds {
 
     #[inline(always)]
     fn add_ball(&mut self, centre: [f64; 3], radius: f64) {
-        for axis in 0..3 {
-            self.lo[axis] = self.lo[axis].min(centre[axis] - radius);
-            self.hi[axis] = self.hi[axis].max(centre[axis] + radius);
+        for (axis, at) in centre.into_iter().enumerate() {
+            self.lo[axis] = self.lo[axis].min(at - radius);
+            self.hi[axis] = self.hi[axis].max(at + radius);
         }
     }
 
     #[inline(always)]
     fn has_ball(&self, centre: [f64; 3], radius: f64) -> bool {
         let mut meets = true;
-        for axis in 0..3 {
-            meets &= centre[axis] + radius >= self.lo[axis];
-            meets &= centre[axis] - radius <= self.hi[axis];
+        for (axis, at) in centre.into_iter().enumerate() {
+            meets &= at + radius >= self.lo[axis];
+            meets &= at - radius <= self.hi[axis];
         }
         meets
     }
