@@ -3,7 +3,8 @@
 //! Each list is a run of entries, with room for a power of two of them. A list that outgrows its
 //! room moves to a larger one, and the next list of that size reuses the old room. Lists are
 //! therefore created and changed without calls to the allocator, and changing a list costs time in
-//! proportion to its length.
+//! proportion to its length. When many rooms are free, the owner of the lists moves them next to
+//! each other ([`Runs::compact`]), so that memory follows the present lists.
 
 use super::bytes;
 use crate::simd::prefetch;
@@ -13,6 +14,13 @@ const LEAST_ROOM: u32 = 4;
 
 /// A list shrinks to half of its room when it fills at most one in this many entries of it.
 const SHRINK_DIVISOR: u32 = 4;
+
+/// Lists are moved next to each other when the free rooms exceed this share of the others and of
+/// the number of lists.
+const FREE_DIVISOR: usize = 4;
+
+/// The allocation grows by at least this share.
+const GROWTH_DIVISOR: usize = 4;
 
 /// Where a list's entries are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,6 +56,8 @@ pub(crate) struct Runs<T> {
     items: Vec<T>,
     /// Starts of the free rooms, indexed by the logarithm of their size.
     free: Vec<Vec<u32>>,
+    /// Entries in the rooms of lists.
+    taken: usize,
 }
 
 impl<T> Default for Runs<T> {
@@ -55,6 +65,7 @@ impl<T> Default for Runs<T> {
         Self {
             items: Vec::new(),
             free: Vec::new(),
+            taken: 0,
         }
     }
 }
@@ -82,9 +93,15 @@ impl<T: Copy + Default> Runs<T> {
         &mut self.items[first..first + run.len()]
     }
 
+    /// Allocates what lists of these lengths will take, none of them empty.
+    pub fn reserve_all(&mut self, lengths: impl Iterator<Item = u32>) {
+        let rooms = lengths.map(|len| room_for(len) as usize);
+        self.items.reserve_exact(rooms.sum());
+    }
+
     /// Makes room for at least `len` entries of an empty list.
     pub fn reserve(&mut self, run: &mut Run, len: usize) {
-        let needed = (len as u32).next_power_of_two().max(LEAST_ROOM);
+        let needed = room_for(len as u32);
         if needed > run.room {
             self.release(run);
             run.start = self.take_room(needed);
@@ -172,24 +189,54 @@ impl<T: Copy + Default> Runs<T> {
                 self.free.resize_with(size + 1, Vec::new);
             }
             self.free[size].push(run.start);
+            self.taken -= run.room as usize;
         }
         *run = Run::default();
     }
 
     fn take_room(&mut self, room: u32) -> u32 {
+        self.taken += room as usize;
         let freed = self.free.get_mut(room.ilog2() as usize);
         if let Some(start) = freed.and_then(Vec::pop) {
             return start;
         }
         let start = self.items.len();
-        self.items.resize(start + room as usize, T::default());
+        let end = start + room as usize;
+        if end > self.items.capacity() {
+            self.items
+                .reserve_exact((room as usize).max(start / GROWTH_DIVISOR));
+        }
+        self.items.resize(end, T::default());
         (start / LEAST_ROOM as usize) as u32
+    }
+
+    /// Whether so much room is free that [`Self::compact`] pays, for this number of lists.
+    pub fn is_sparse(&self, lists: usize) -> bool {
+        self.items.len() - self.taken > (self.taken + lists) / FREE_DIVISOR
+    }
+
+    /// Moves the lists next to each other, each with no more room than it needs. `lists` must have
+    /// all that aren't empty.
+    pub fn compact<'a>(&mut self, lists: impl Iterator<Item = &'a mut Run>) {
+        let mut compacted = Self::default();
+        compacted.items.reserve_exact(self.taken);
+        for list in lists.filter(|list| list.room > 0) {
+            let mut moved = Run::default();
+            compacted.replace(&mut moved, self.get(*list));
+            *list = moved;
+        }
+        compacted.items.shrink_to_fit();
+        *self = compacted;
     }
 
     /// Bytes that the lists hold, including free rooms.
     pub fn bytes(&self) -> usize {
         bytes(&self.items) + self.free.iter().map(bytes).sum::<usize>()
     }
+}
+
+fn room_for(len: u32) -> u32 {
+    len.next_power_of_two().max(LEAST_ROOM)
 }
 
 #[cfg(test)]
@@ -204,6 +251,7 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut runs = Runs::default();
         let mut lists: Vec<(Run, Vec<u32>)> = vec![Default::default(); 12];
+        let mut compacted = 0;
         for step in 0..20_000 {
             let mut below = |n: usize| random.next_u32() as usize % n;
             // Some lists are filled, then others, so that all grow long and short again.
@@ -232,11 +280,19 @@ mod tests {
                 }
             }
             assert_eq!((run.len(), run.is_empty()), (list.len(), list.is_empty()));
+            let entries: usize = lists.iter().map(|(_, list)| list.len()).sum();
+            if runs.is_sparse(12) {
+                runs.compact(lists.iter_mut().map(|(run, _)| run));
+                assert!(runs.items.capacity() <= 2 * entries + 12 * 3, "{step}");
+                compacted += 1;
+            }
+            assert!(runs.items.len() <= 5 * entries + 12 * 5, "{step}");
             assert!(
                 lists.iter().all(|(run, list)| runs.get(*run) == list),
                 "{step}"
             );
         }
+        assert!((20..2000).contains(&compacted), "{compacted}");
     }
 
     #[test]

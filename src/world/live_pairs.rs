@@ -109,6 +109,15 @@ impl LivePairs {
         }
     }
 
+    /// Frees the room that former pairs have left in lists, if it is much.
+    pub fn compact(&mut self) {
+        if let Some(live) = &mut self.live
+            && live.partners.is_sparse()
+        {
+            Arc::make_mut(&mut live.partners).compact();
+        }
+    }
+
     /// The pairs that began, persisted or ended between the last call of this method and the last
     /// cull.
     pub fn events(&mut self, ids: &Ids) -> Events {

@@ -177,6 +177,7 @@ impl Movers {
             }
             work += index.put(indexed);
         }
+        index.compact();
         self.found.clear();
         self.ends.clear();
         for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
@@ -236,6 +237,7 @@ impl Movers {
             }
             changes.done();
         }
+        log.compact();
         for slot in self.changed.drain(..) {
             self.is_changed[slot as usize] = false;
         }

@@ -183,15 +183,22 @@ impl BoxIndex {
     fn make_room(&mut self) {
         let filled = self.cells.iter().filter(|cell| !cell.boxes.is_empty());
         let size = (2 * filled.clone().count() + 16).next_power_of_two();
-        let filled: Vec<Cell> = filled.copied().collect();
+        let mut filled: Vec<Cell> = filled.copied().collect();
         self.taken = filled.len();
         self.cells = vec![Cell::default(); size];
-        let boxes = std::mem::take(&mut self.boxes);
-        for Cell { name, boxes: run } in filled {
-            let at = self.find(name);
-            let mut moved = Run::default();
-            self.boxes.replace(&mut moved, boxes.get(run));
-            self.cells[at] = Cell { name, boxes: moved };
+        self.boxes
+            .compact(filled.iter_mut().map(|cell| &mut cell.boxes));
+        for cell in filled {
+            let at = self.find(cell.name);
+            self.cells[at] = cell;
+        }
+    }
+
+    /// Frees the room that boxes have left in cells, if it is much.
+    pub fn compact(&mut self) {
+        if self.boxes.is_sparse(self.cells.len()) {
+            self.boxes
+                .compact(self.cells.iter_mut().map(|cell| &mut cell.boxes));
         }
     }
 
