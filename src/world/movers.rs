@@ -172,9 +172,8 @@ impl Movers {
         boxes.clear();
         boxes.extend(self.changed.iter().copied().map(box_of));
         for (number, indexed) in boxes.iter().enumerate() {
-            if let Some(next) = boxes.get(number + PREFETCH_DISTANCE) {
-                index.prefetch(next.slot);
-            }
+            let ahead = [3, 2, 1].map(|steps| boxes.get(number + steps * PREFETCH_DISTANCE));
+            index.prefetch(ahead);
             work += index.put(indexed);
         }
         index.compact();
