@@ -1,5 +1,5 @@
 //! A world that bodies enter and leave, posed with glam's types: a ball rolls along a row of boxes,
-//! which crumble behind it.
+//! which crumble after it has passed.
 use glam::{DVec3, Quat};
 use sdop::{Body, ProceduralShape, Shape, ShapeSpec, TriangleMesh, VolumeError, World};
 

@@ -67,7 +67,7 @@ pub fn read_line(source: &mut impl BufRead, most: u64, line: &mut Vec<u8>) -> io
 /// # Errors
 /// The system's error; the former file, if any, stays as it was.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
-    let mut file = Whole::create(path)?;
+    let mut file = WholeFile::create(path)?;
     file.write_all(bytes.as_ref())?;
     file.finish()
 }
@@ -75,13 +75,13 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
 /// A file that is being written. It gets its name when it is finished; if it is dropped before,
 /// nothing is left of it.
 #[derive(Debug)]
-pub struct Whole {
+pub struct WholeFile {
     file: BufWriter<File>,
     /// The temporary and the final path; `None` for devices and pipes, which can't be replaced.
     part: Option<[PathBuf; 2]>,
 }
 
-impl Whole {
+impl WholeFile {
     /// Starts a file. Symbolic links are followed: the file that they point to is replaced, not the
     /// link.
     ///
@@ -171,7 +171,7 @@ fn remove_abandoned(target: &Path, name: &OsStr) {
     }
 }
 
-impl Write for Whole {
+impl Write for WholeFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.file.write(bytes)
     }
@@ -181,7 +181,7 @@ impl Write for Whole {
     }
 }
 
-impl Drop for Whole {
+impl Drop for WholeFile {
     fn drop(&mut self) {
         if let Some([part, _]) = &self.part {
             // The failure was already reported.
@@ -210,7 +210,7 @@ mod tests {
     fn file_appears_when_finished() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.txt");
-        let mut file = Whole::create(&path).unwrap();
+        let mut file = WholeFile::create(&path).unwrap();
         file.write_all(b"half").unwrap();
         file.flush().unwrap();
         assert!(!path.exists());
@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(names(directory.path()), Vec::<String>::new());
 
         write(&path, "first").unwrap();
-        let mut file = Whole::create(&path).unwrap();
+        let mut file = WholeFile::create(&path).unwrap();
         file.write_all(b"half of the second").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "first");
         drop(file);

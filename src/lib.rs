@@ -6,6 +6,16 @@
 //! together are called S-DOP. It uses SSE2, AVX2, AVX-512 or NEON, whichever the CPU has, and
 //! reports the same pairs with each. Engines and simulators put it before their narrow phase.
 //!
+//! | you have | use |
+//! |---|---|
+//! | a fixed set of posed meshes | [`Culler`] |
+//! | posed meshes that come and go | [`World`]: ids, groups, margins, f64 translations, events |
+//! | bodies of several shapes, such as robots | [`compound`] in a [`World`]: pairs of parts |
+//! | boxes, all of them new in each frame | [`BoxCuller`]: exactly the boxes that meet |
+//! | boxes that come and go | [`BoxWorld`]: the same, with ids, groups and events |
+//! | a volume, a line or another set to compare with a world | [`QueryIndex`] |
+//! | single pairs from your own broad phase | [`world::PairTest`] |
+//!
 //! # The promise
 //!
 //! If two posed meshes intersect in exact real arithmetic, touching included, and at least one of
@@ -22,15 +32,19 @@
 //! ```
 //! use sdop::{Bodies, Culler, ProceduralShape, Shape, ShapeSpec};
 //!
-//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?; // or `TriangleMesh::from_f32`, or a file
-//! let shapes = [Shape::build(&mesh, &ShapeSpec::default())?]; // ball, hull and or-DOP, once
+//! // Once: a mesh (or `TriangleMesh::from_f32`, or a file) and its volumes.
+//! let mesh = ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 }.build()?;
+//! let shapes = [Shape::build(&mesh, &ShapeSpec::default())?];
 //!
 //! let mut bodies = Bodies::default();
 //! for x in [0.0, 1.5, 9.0] {
-//!     bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]); // shape, dynamic, quaternion, translation
+//!     let (shape, is_dynamic) = (0, true);
+//!     let (quaternion, position) = ([0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
+//!     bodies.push(shape, is_dynamic, quaternion, position);
 //! }
-//! let mut culler = Culler::new(&shapes, &bodies)?; // refuses what is not finite or out of range
-//! for _ in 0..10 {
+//! let mut culler = Culler::new(&shapes, &bodies)?; // rejects numbers that aren't finite
+//!
+//! for _frame in 0..10 {
 //!     for translation in &mut bodies.translation {
 //!         translation[0] *= 0.8; // your simulation moves the bodies …
 //!     }
@@ -42,11 +56,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Culler::builder`] chooses strategy, finder, threads and more. A [`Culler`] has a fixed set of
-//! bodies; in a [`World`] they come and go, with stable ids, groups, contact margins, f64
-//! translations and events. If you have boxes already, use [`BoxCuller`] or [`BoxWorld`]: they
-//! report exactly the pairs of boxes that meet. A [`QueryIndex`] finds the bodies of a world that
-//! touch a volume or a line.
+//! [`Culler::builder`] chooses strategy, finder, threads and more.
 //!
 //! # Conventions
 //!
@@ -58,14 +68,14 @@
 //!   enclosing ball; [`Shape::offset`] says by how much.
 //! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the
 //!   mesh's size, its vertices are kept about a point near it. A [`World`] adds that offset to the
-//!   pose in f64; a [`Culler`], whose poses are f32, refuses it.
+//!   pose in f64; a [`Culler`], whose poses are f32, rejects it.
 //! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and
 //!   at most 2⁶⁰.
 //! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair
 //!   once. Its order depends on the finder and on earlier frames, never on the CPU or the number of
 //!   threads; [`PairList::sorted`] sorts it.
-//! - **Poses** are taken as anything that turns into arrays: `[f32; 4]` and `[f32; 3]`, or glam's
-//!   `Quat` and `Vec3`.
+//! - **Poses** may be of any type that converts to `[f32; 4]` and `[f32; 3]`, such as glam's `Quat`
+//!   and `Vec3`.
 //!
 //! # Stages
 //!
@@ -83,12 +93,13 @@
 //!
 //! | feature | brings |
 //! |---|---|
-//! | none | boxes alone: [`BoxCuller`], [`BoxWorld`] |
-//! | `shapes` (default) | meshes, hulls and or-DOPs, and what culls them: all of the above |
-//! | `readers` | readers and writers of mesh files: OBJ, STL, PLY, OFF, `.tri` |
-//! | `serde` | settings, choices and counters as serde's data; snapshots of worlds that can be stored and sent |
+//! | none | boxes only: [`BoxCuller`], [`BoxWorld`], and queries about them |
+//! | `shapes` (default) | meshes, hulls, or-DOPs, and everything that culls them |
+//! | `readers` | reads and writes mesh files: OBJ, STL, PLY, OFF, `.tri` |
+//! | `serde` | serialises settings, counters, and snapshots of worlds |
+//! | `c` | the interface for C and C++, `src/c/sdop.h` |
 //!
-//! Every error has a method `help`, which says how to mend what it reports.
+//! Every error has a method `help`, which says how to mend the input.
 //!
 //! # Related crates
 //!
@@ -110,6 +121,8 @@ pub mod bodies;
 pub mod boxes;
 #[cfg(feature = "c")]
 pub mod c;
+#[cfg(feature = "shapes")]
+pub mod compound;
 pub mod counters;
 pub mod culler;
 #[cfg(feature = "shapes")]
@@ -130,6 +143,7 @@ pub mod broad_phase;
 #[doc(hidden)]
 pub mod choice;
 #[cfg(feature = "readers")]
+#[doc(hidden)]
 pub mod files;
 #[doc(hidden)]
 pub mod overlap;
@@ -143,28 +157,44 @@ pub mod threads;
 #[doc(hidden)]
 pub mod update;
 
+// Shown on the front page with their descriptions.
+#[doc(inline)]
 pub use bodies::contract::ContractError;
+#[doc(inline)]
 pub use bodies::{Aabb, Bodies, Groups, Motion};
+#[doc(inline)]
 pub use boxes::{BoxCuller, BoxWorld};
+#[doc(inline)]
 pub use culler::CullError;
 #[cfg(feature = "shapes")]
+#[doc(inline)]
 pub use culler::{Culler, CullerBuilder};
 #[cfg(feature = "shapes")]
+#[doc(inline)]
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
+#[doc(inline)]
 pub use pairs::PairList;
+#[doc(inline)]
 pub use query::{Line, QueryIndex, QueryVolume};
+#[doc(inline)]
 pub use settings::Finder;
 #[cfg(feature = "shapes")]
+#[doc(inline)]
 pub use settings::{
     Axes, Budget, CullSettings, DirectionSet, Interest, Order, Overlap, SettingsError, Strategy,
     Updates, ViewCone,
 };
+#[doc(inline)]
 pub use simd::{Tier, TierError};
+#[doc(inline)]
 pub use threads::ThreadsError;
 #[cfg(feature = "shapes")]
+#[doc(inline)]
 pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
 #[cfg(feature = "shapes")]
+#[doc(inline)]
 pub use world::{Body, World};
+#[doc(inline)]
 pub use world::{BodyId, Event, Events, WorldError};
 
 /// The README's example compiles and runs.

@@ -11,7 +11,7 @@ use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop_bench::cost::calibrate::{Calibration, Effort};
 use sdop_bench::cost::design::scenes;
-use sdop_bench::cost::pass::{Observer, Simulated, pass};
+use sdop_bench::cost::pass::{Observer, SceneFrames, pass};
 use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::table::cost;
 use sdop_bench::measure::counts::{Counts, Volume};
@@ -35,9 +35,9 @@ fn scene() -> Scene {
 }
 
 /// How many pairs each variant reports.
-struct Reported(Vec<u64>);
+struct ReportCounter(Vec<u64>);
 
-impl Observer for Reported {
+impl Observer for ReportCounter {
     fn frame(&mut self, number: usize, _: u32, culling: &Culling) {
         self.0[number] += culling.pairs().len() as u64;
     }
@@ -46,8 +46,8 @@ impl Observer for Reported {
 fn counters(scene: &Scene, tier: Tier) -> Vec<Counts> {
     let variant = |&strategy: &Strategy| Variant::strategy(&scene.cull, strategy);
     let variants: Vec<Variant> = STRATEGIES.iter().map(variant).collect();
-    let mut reported = Reported(vec![0; variants.len()]);
-    let mut frames = Simulated::new(scene, FRAMES).unwrap();
+    let mut reported = ReportCounter(vec![0; variants.len()]);
+    let mut frames = SceneFrames::new(scene, FRAMES).unwrap();
     let pass = pass(scene, &variants, tier, &mut frames, None, &mut reported).unwrap();
     let counted: Vec<Counts> = pass.culled.iter().map(|culled| culled.counts).collect();
     assert!(pass.culled.iter().all(|culled| culled.frames == FRAMES));
@@ -144,7 +144,7 @@ fn calibration_varies_one_count() {
     let mut by_size = std::collections::BTreeMap::new();
     for calibration in scenes(&scene) {
         let (tier, spheres) = (Tier::detect(), [Variant::spheres(&calibration.cull)]);
-        let mut frames = Simulated::new(&calibration, FRAMES).unwrap();
+        let mut frames = SceneFrames::new(&calibration, FRAMES).unwrap();
         let passed = pass(&calibration, &spheres, tier, &mut frames, None, &mut ()).unwrap();
         let sphere = passed.culled[0].counts.culler.sphere;
         let all = by_size
@@ -185,7 +185,7 @@ fn prices_and_terms_add_up() {
     variants.push(Variant::hulls(&scene.cull));
     let tier = Tier::detect();
     let mut calibration = Calibration::new(&scene, &variants, tier, effort).unwrap();
-    let mut frames = Simulated::new(&scene, 17).unwrap();
+    let mut frames = SceneFrames::new(&scene, 17).unwrap();
     let passed = pass(
         &scene,
         &variants,

@@ -18,12 +18,12 @@ const RENEW: &str = "SDOP_LEMMAS_READ";
 
 #[derive(Deserialize)]
 struct Table {
-    about: Vec<About>,
+    about: Vec<LemmaSources>,
 }
 
 /// What a lemma is about.
 #[derive(Deserialize)]
-struct About {
+struct LemmaSources {
     lemma: String,
     /// Its Gappa scripts.
     #[serde(default)]
@@ -119,7 +119,7 @@ fn digest(file: &str, name: &str) -> String {
 fn lemmas_were_read_with_this_code() {
     let mut changed = Vec::new();
     let mut renewed = fs::read_to_string(TABLE).unwrap();
-    for About {
+    for LemmaSources {
         lemma,
         scripts,
         code,

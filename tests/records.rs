@@ -151,7 +151,7 @@ fn other_files_are_told_from_records() {
     ] {
         let (message, help) = refusal(text);
         assert!(
-            message.starts_with("r.ndjson:1: this is no record: "),
+            message.starts_with("r.ndjson:1: not a record: "),
             "{message}"
         );
         assert!(message.contains(problem), "{message}");

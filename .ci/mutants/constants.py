@@ -1,7 +1,9 @@
-"""Constants that only running code reads: where they are computed as late as that, their mutants can sleep too.
+"""Constants that only running code reads: where they are computed as late as that, their mutants
+can sleep too.
 
-`const X: T = e;` becomes `static X: Late<T> = Late::new(|| e);`, and `X` becomes `(*X)` where it is read; a `const fn` of theirs
-becomes a plain one. What the compiler must know, such as an array's length or a pattern, keeps all constants that it is made of.
+`const X: T = e;` becomes `static X: Late<T> = Late::new(|| e);`, and `X` becomes `(*X)` where it is
+read; a `const fn` of theirs becomes a plain one. What the compiler must know, such as an array's
+length or a pattern, keeps all constants that it is made of.
 """
 
 import collections
@@ -36,7 +38,8 @@ def is_of_a_type(node):
 
 
 def enclosing(node):
-    """What reads a name here: the constant or `const fn` that it is part of, `running` code, or the compiler: none."""
+    """What reads a name here: the constant or `const fn` that it is part of, `running` code, or the
+    compiler: none."""
     start = node.start_byte
     while node := node.parent:
         length = node.child_by_field_name("length") if node.type == "array_expression" else None
@@ -82,7 +85,8 @@ def is_parameter(node):
 
 
 def is_named(node):
-    """Whether this is where a constant gets its name, or where it is imported; or a name of something else: a field, a variant."""
+    """Whether this is where a constant gets its name, or where it is imported; or a name of
+    something else: a field, a variant."""
     before, behind = node.prev_sibling, node.next_sibling
     if node.type == "field_identifier" or (node.parent.type == "token_tree" and (
             before.type == "." or (behind is not None and behind.type == "="))):
@@ -140,8 +144,9 @@ class Names:
 
 
 def late(files, mutants):
-    """What can be computed as late as this, of all that some of these mutants are in: by file, the names of its constants and of every
-    `const fn`; and where in it such constants are read, from and to."""
+    """What can be computed as late as this, of all that some of these mutants are in: by file, the
+    names of its constants and of every `const fn`; and where in it such constants are read, from
+    and to."""
     names = Names(files)
 
     @functools.cache

@@ -20,20 +20,20 @@ def digest(content):
 
 
 def digests():
-    """Of the code of each file of the library, as it is now."""
+    """The digest of the code of each file of the library, as it is now."""
     found = {}
     for path in TOP.glob("src/**/*.rs"):
-        # A test more takes nothing back, nor does a comment.
+        # Additional tests and comments leave outcomes valid, so they are not part of the digest.
         code = path.read_bytes().split(b"\n#[cfg(test)]\nmod tests")[0]
         found[str(path.relative_to(TOP))] = digest(re.sub(rb"(?m)^\s*//.*$", b"", code))
     return found
 
 
 class Outcomes:
-    """What is known of each mutant, as long as its file is as it was then."""
+    """The recorded outcome of each mutant whose file has not changed since."""
 
     def __init__(self, path):
-        # Read once: whoever edits the tree during a run has what was tried, not what is there by then.
+        # Read once: if the tree is edited during a run, the digests are of the code that was tried.
         self.path, self.lock, self.digests = path, threading.Lock(), digests()
         lines = path.read_text().splitlines() if path.exists() else []
         self.known = {outcome["name"]: outcome for outcome in map(json.loads, lines)}
@@ -65,7 +65,7 @@ def place(name):
 
 
 def by_room(mutants, outcomes, slowest):
-    """A row a room: its mutants, and how they ended."""
+    """One row per room: its mutants, and how they ended."""
     rooms = collections.defaultdict(collections.Counter)
     for mutant in mutants:
         rooms[mutant["file"].split("/")[1]][outcomes.how(mutant, slowest)] += 1
@@ -76,13 +76,14 @@ def by_room(mutants, outcomes, slowest):
 
 
 def by_reason(survivors, reasons):
-    """A row a reason, of survivors that have one."""
+    """One row per reason, for survivors that have one."""
     yield "why", "survivors"
     yield from collections.Counter(reasons[place(name)] for name in survivors if place(name) in reasons).most_common()
 
 
 def judge(mutants, outcomes, reasons, slowest):
-    """Says what has no reason to survive, and of which reasons nothing survives; how many have none."""
+    """Prints survivors without a reason, and reasons without survivors. Returns the number of
+    survivors without a reason."""
     survivors = [mutant["name"] for mutant in mutants if outcomes.how(mutant, slowest) == "survived"]
     unexplained = [name for name in survivors if place(name) not in reasons]
     for name in unexplained:

@@ -1,10 +1,14 @@
-"""Rewrites Rust sources so that cargo-mutants' mutants sleep in them, each to be woken by its number.
+"""Rewrites Rust sources so that cargo-mutants' mutants sleep in them, each to be woken by its
+number.
 
-`a + b` becomes `match (a, b) { (a, b) => match awake(7) { 7 => a - b, 8 => a * b, _ => a + b } }`; a function's body starts
-with `if awake(9) == 9 { return 0; }`; a match arm gets the guard `if awake(10) != 10`, and one that has a guard another; a field is
-that of its struct's base. Whoever asks says where, by the first mutant there: a process that is told to says when it ends which places
-it came by, and so which mutants it could notice at all. Constants can't ask before the program runs: those that constants.py finds to be
-read by running code alone are computed when they are first read, the mutants of others are left for a build of their own.
+`a + b` becomes `match (a, b) { (a, b) => match awake(7) { 7 => a - b, 8 => a * b, _ => a + b }
+}`; a function's body starts with `if awake(9) == 9 { return 0; }`; a match arm gets the guard `if
+awake(10) != 10`, and one that has a guard another; a field is that of its struct's base. Each
+call of `awake` names its place by the first mutant there. On request, a process lists at its end
+the places that it reached, and thereby the mutants that it could notice. Constants are evaluated
+before the program runs, so they can't call `awake`. Those that only running code reads (see
+constants.py) are computed when they are first read; each mutant of another constant needs a
+separate build.
 """
 
 import re
@@ -12,7 +16,7 @@ import re
 import tree_sitter
 import tree_sitter_rust
 
-# What a process that is told to writes to stderr when it ends, before the numbers.
+# What a process writes to stderr on request when it ends, before the numbers.
 SIGN = "its places:"
 COMPARISONS = {"==", "!=", "<", ">", "<=", ">="}
 CONSTANT = {"const_item", "static_item", "enum_variant", "array_type", "type_arguments", "const_parameter", "match_pattern",
@@ -20,7 +24,8 @@ CONSTANT = {"const_item", "static_item", "enum_variant", "array_type", "type_arg
 # `const fn` that no constant calls: as plain functions their mutants can sleep.
 CALLED_AT_RUN_TIME = {"members_of", "place_of", "inflate_radius", "reach", "up", "down", "widen", "collide"}
 
-# Read before `main` and never written again, so that asking costs a load and the optimiser may ask once for many.
+# Read before `main` and never written again, so that asking costs a load and the optimiser may ask
+# once for many.
 WAKER = f"""
 use std::sync::atomic::{{AtomicBool, Ordering::Relaxed}};
 
@@ -123,7 +128,7 @@ def applied(source, mutant):
 
 
 def awake(mutants):
-    """Asks who is awake, at the place of these mutants."""
+    """The call that asks which mutant is awake, at the place of these mutants."""
     return f"crate::mutant::awake({mutants[0]['n']})"
 
 
@@ -132,8 +137,9 @@ def parsed(source):
 
 
 class File:
-    """One file with its mutants asleep; `text` is the result and `asleep` the numbers that are in it, each with that of its place.
-    `late` are the names of its constants and `const fn` that are computed at run time, `reads` where such ones are read."""
+    """One file with its mutants asleep; `text` is the result and `asleep` the numbers that are in
+    it, each with that of its place. `late` are the names of its constants and `const fn` that are
+    computed at run time, `reads` where such ones are read."""
 
     def __init__(self, source, mutants, late=(), reads=()):
         self.source, self.asleep, self.at, self.late = source, {}, {}, set(late)
@@ -268,7 +274,8 @@ class File:
 
 
 def is_constant(node, late):
-    """Whether the compiler must know this node's value, though these constants and functions are computed late."""
+    """Whether the compiler must know this node's value, though these constants and functions are
+    computed late."""
     start = node.start_byte
     while node := node.parent:
         length = node.child_by_field_name("length") if node.type == "array_expression" else None
@@ -295,8 +302,9 @@ def numbers(text):
 
 
 def culprits(text, start, end):
-    """The mutants that an error between these bytes of a rewritten file points at: the last one before it or in it, or, where it is a
-    function's result that is wrong, the first one of its body."""
+    """The mutants that an error between these bytes of a rewritten file points at: the last one
+    before it or in it, or, where it is a function's result that is wrong, the first one of its
+    body."""
     before, own, behind = text[:start].decode()[-400:], text[start:end].decode(), text[end:].decode()[:400]
     found = re.findall(NUMBER, before)[-1:] or re.findall(NUMBER, own)[-1:] or re.findall(NUMBER, behind)[:1]
     return {int(next(filter(None, groups))) for groups in found}

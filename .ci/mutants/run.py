@@ -1,19 +1,25 @@
 #!/usr/bin/env python3
-"""Wakes every mutant that `cargo mutants` lists, one at a time, and asks the tests whether they notice.
+"""Wakes every mutant that `cargo mutants` lists, one at a time, and asks the tests whether they
+notice.
 
-A build a mutant would take a day. So all that can are compiled together, asleep (plant.py), in a copy of the tree, and a
-process wakes one by its number. What can't sleep is built by itself, `--alone` of them. A mutant is caught when a test fails, or
-takes five times its time and four seconds more. Two tiers run in the copy, scalar and AVX-512: a lane of every other tier is tested
-by itself, as a crate of the room `simd`. Constants (constants.py) sleep in a third copy, with all tiers.
+One build per mutant would take a day. Therefore all mutants that can sleep are compiled together
+(plant.py), in a copy of the tree, and a process wakes one by its number. Of the others, `--alone`
+are built one by one. A mutant is caught when a test fails, or takes more than four seconds longer
+than five times its usual time. Two tiers run in the copy, scalar and AVX-512: a lane of every other
+tier is tested by itself, as a crate of the room `simd`. Constants (constants.py) sleep in a third
+copy, with all tiers.
 
-    .ci/mutants/run.py [--only REGEX] [--alone N] [--slowest SECONDS] [--tests REGEX] [--again] [--as-built] [--threads N]
+    .ci/mutants/run.py [--only REGEX] [--alone N] [--slowest SECONDS] [--tests REGEX] [--again]
+                       [--as-built] [--threads N]
                        [--outcomes FILE] [--print TABLE]
 
-Each test runs once with all asleep, which tells what it takes and which mutants' places it comes by: others can't notice.
+Each test runs once with all asleep. This measures its time and lists the mutants whose places it
+reaches; it can't notice others.
 
-Goes on where FILE (target/mutants/outcomes.jsonl) ends: what survived there is asked by tests that it was not asked by yet, up to
-`--slowest`, so that quick tests may go first. A line an outcome: number, name, digest of its file, how (`caught`, `endless`,
-`survived`, `doesn't compile`), by which test, or which tests asked. The mutants of a file whose code has changed are tried anew.
+Continues where FILE (target/mutants/outcomes.jsonl) ends: survivors are tried with further tests,
+up to `--slowest`, so that quick tests can run first. Each line is an outcome: number, name, digest
+of its file, result (`caught`, `endless`, `survived`, `doesn't compile`), and the test that caught
+it, or the tests that were tried. If a file's code changes, its mutants are tried again.
 """
 
 import argparse
@@ -50,7 +56,7 @@ def limited(seconds):
 
 
 def threads(process):
-    """State and CPU time of each of its threads."""
+    """The state and CPU time of each thread of a process."""
     found = []
     for file in pathlib.Path(f"/proc/{process.pid}/task").glob("*/stat"):
         with contextlib.suppress(FileNotFoundError):  # it has just ended
@@ -60,8 +66,8 @@ def threads(process):
 
 
 def heard(process, patience=60):
-    """What it wrote; none, and its end, if all of its threads sleep from one look to the next. To be kept from running by others is
-    no sleep."""
+    """What a process wrote. If all of its threads sleep between two checks, it is ended and nothing
+    is returned. A thread that waits for a processor does not sleep."""
     before = None
     while True:
         try:
@@ -76,7 +82,7 @@ def heard(process, patience=60):
 
 
 def ask(tree, name, command, seconds, **environment):
-    """Runs tests: how it ended, and by which test or signal; and what they wrote to stderr."""
+    """Runs tests. Returns how they ended, by which test or signal, and their stderr."""
     environment = ENVIRONMENT | {"CARGO_MANIFEST_DIR": str(tree)} | environment
     done = subprocess.Popen([*command, "-q"], cwd=tree, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True, errors="replace", preexec_fn=functools.partial(limited, seconds))
@@ -93,8 +99,8 @@ def ask(tree, name, command, seconds, **environment):
 
 
 class Test:
-    """A test, or the library's own tests together; `cost` is its CPU time in seconds when nothing is awake,
-    `places` are those that it comes by."""
+    """A test, or the library's own tests together. `cost` is its CPU time in seconds with all
+    mutants asleep, `places` are those that it reaches."""
 
     def __init__(self, built, suite, test=None):
         self.name = f"{suite}::{test}" if test else suite
@@ -149,7 +155,8 @@ class Together:
 
 
 def together(tests, seen):
-    """These tests by process, quick ones of a suite in one; those first of which a second has caught the most."""
+    """These tests by process, with the quick ones of a suite in one process. Tests that caught the
+    most mutants per second come first."""
     quick = collections.defaultdict(list)
     for test in tests:
         quick[test.suite if test.cost < QUICK else test.name].append(test)
@@ -167,13 +174,13 @@ def catches(mutants, outcomes, tests):
     caught = collections.defaultdict(collections.Counter)
     for mutant in mutants:
         by = (outcomes.of(mutant) or {}).get("by") or ""
-        # What failed among the library's own has no other name.
+        # A failure among the library's own tests has no other name.
         caught[mutant["file"]].update(name for part in by.split(", ") for name in names.get(part, ["lib"]))
     return caught
 
 
 def wake(mutants, built, tests, outcomes, options):
-    """Asks of each the tests that come by it and were not asked yet."""
+    """Tries each mutant with the tests that reach it and have not been tried."""
     caught = catches(mutants, outcomes, tests)
 
     def one(mutant):

@@ -21,7 +21,8 @@ ENVIRONMENT = os.environ | {
     "RUST_BACKTRACE": "0",
     "RUST_TEST_THREADS": "1",
 }
-# The room of the lanes as a crate, so that each of its functions may ask who is awake and still compile in seconds.
+# The room of the lanes as a crate, so that each of its functions may ask who is awake and still
+# compile in seconds.
 LANES_ALONE = """[workspace]
 [package]
 name = "sdop"
@@ -39,7 +40,8 @@ ALLOWED = "#![allow(warnings, unsafe_code, arithmetic_overflow, unconditional_pa
 def cargo(tree, *arguments):
     """The messages of a cargo command, and its exit code."""
     command = ["cargo", *arguments, "--message-format=json", "--quiet"]
-    # Not shared: cargo names what it builds by paths within a tree, and one tree's binaries would replace another's.
+    # Not shared: cargo names what it builds by paths within a tree, and one tree's binaries would
+    # replace another's.
     environment = ENVIRONMENT | {"CARGO_TARGET_DIR": str(WORK / "target" / tree.name)}
     done = subprocess.run(command, cwd=tree, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")], done
@@ -47,13 +49,15 @@ def cargo(tree, *arguments):
 
 @functools.cache
 def tracked():
-    """The files of the tree, by name, as they are when first asked for: all that a run builds is of one state."""
+    """The files of the tree, by name, as they are when first asked for: all that a run builds is of
+    one state."""
     names = subprocess.run(["git", "ls-files", "-z"], cwd=TOP, stdout=subprocess.PIPE, check=True).stdout.decode()
     return {name: (TOP / name).read_bytes() for name in names.split("\0") if name and (TOP / name).is_file()}
 
 
 def write_tree(tree, files):
-    """Makes `tree` have these files. Those that are as they were keep their times, and cargo what it built of them."""
+    """Makes `tree` have these files. Those that are as they were keep their times, and cargo what
+    it built of them."""
     for path in [path for path in tree.rglob("*") if path.is_file() and str(path.relative_to(tree)) not in files]:
         path.unlink()
     for name, text in files.items():
@@ -79,7 +83,8 @@ def plant_all(files, mutants, bad, with_constants=False):
 
 
 def two_tiers(files):
-    """Kernels full of sleepers compile slowly: the middle tiers of x86 aren't there, and nothing must be inlined."""
+    """The files without the middle tiers of x86 and without forced inlining, because kernels with
+    many sleeping mutants compile slowly."""
     module = "src/simd/mod.rs"
     text, times = re.subn(rb"(sse2|avx2)::run\(token, kernel\)", b"kernel.run(scalar::Scalar::<false>::new())", files[module])
     assert times == 2, "the dispatch of tiers has moved"
@@ -94,14 +99,16 @@ def two_tiers(files):
 
 
 class Built:
-    """A tree in which mutants sleep, and what is known of it, which stays in a file for a run that goes on."""
+    """A tree in which mutants sleep, and the facts about it, which are stored in a file for later
+    runs."""
 
     def __init__(self, name, mutants):
         self.tree, self.file = WORK / name, WORK / f"{name}.json"
         self.mutants = [mutant["name"] for mutant in mutants]
         known = json.loads(self.file.read_text()) if self.file.exists() else {}
         self.is_current = known.get("mutants") == self.mutants
-        # What doesn't compile beside the original; the place of each mutant that sleeps; test binaries; cost and places of tests.
+        # Mutants that don't compile together with the original; the place of each mutant that
+        # sleeps; test binaries; cost and places of tests.
         self.refused = set(known.get("refused", []))
         self.asleep = {int(n): place for n, place in known.get("asleep", {}).items()}
         self.binaries, self.digests = known.get("binaries", {}), known.get("digests", {})
@@ -112,7 +119,7 @@ class Built:
                                          "binaries": self.binaries, "digests": self.digests, "tests": self.tests}))
 
     def replace(self, binaries):
-        """Takes new test binaries. Of a suite that has changed, costs stay as a guess."""
+        """Uses new test binaries. Costs of a changed suite stay as estimates."""
         digests = {suite: digest(pathlib.Path(path).read_bytes()) for suite, path in binaries.items()}
         changed = {suite for suite in digests if digests[suite] != self.digests.get(suite)}
         self.tests = {name: (cost, None) if name.split("::")[0] in changed else (cost, places)

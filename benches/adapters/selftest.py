@@ -1,7 +1,9 @@
-"""Does an adapter speak the wire? `python selftest.py COMMAND [CLAIM] [--cases DIR]`; the claim is aabb unless given.
+"""Does an adapter speak the wire? `python selftest.py COMMAND [CLAIM] [--cases DIR]`; the claim is
+aabb unless given.
 
-Two cases in one process: three cubes of which two overlap, then a second frame in which one goes and another comes. Every line is
-checked by wire.schema.json, and every case in DIR with it. Exit code 1 where an answer is wrong.
+Two cases in one process: three cubes of which two overlap, then a second frame in which one goes
+and another comes. Every line is checked by wire.schema.json, and every case in DIR with it. Exit
+code 1 where an answer is wrong.
 """
 
 import argparse

@@ -14,8 +14,10 @@ function above(x, round) {
   }
 }
 
-/** Boxes by their centres and half sides, rounded to float32 unless said otherwise. Where these can't hold a box, they are of one
- * around it: more pairs are no failure. */
+/**
+ * Centres and half sides of boxes, rounded to float32 by default. A box that they can't represent
+ * is replaced by a larger one around it: additional pairs are no failure.
+ */
 export function centresAndHalves(boxes, round = Math.fround) {
   return boxes.map(([x0, y0, z0, x1, y1, z1]) => {
     const [centre, half] = [[], []];
@@ -40,8 +42,11 @@ function asked(found, bodies) {
   return [...seen.values()];
 }
 
-/** Answers cases on standard input until it ends: `find` returns the pairs of a frame, which has `boxes` or `poses`, and `bodies` and
- * `shapes`. Or says the version of a package. */
+/**
+ * Answers cases on standard input until it ends. `find` returns the pairs of a frame, which has
+ * `boxes` or `poses`, the other inputs of its claim, `bodies` and `shapes`, and `kept`, an object
+ * that stays for the whole case. With `--version`, prints the version of a package.
+ */
 export async function serve(name, find) {
   if (process.argv.includes("--version")) {
     const found = createRequire(import.meta.url).resolve.paths(name).map((folder) => `${folder}/${name}/package.json`);
@@ -59,7 +64,7 @@ export async function serve(name, find) {
   for await (const line of readline.createInterface({ input: process.stdin })) {
     const frame = JSON.parse(line);
     if (frame.format) {
-      head = frame;
+      head = { ...frame, kept: {} };
       continue;
     }
     if (head === null) continue; // the rest of a case that it has skipped
@@ -67,7 +72,7 @@ export async function serve(name, find) {
     let answer;
     const start = process.hrtime.bigint();
     try {
-      const found = await find({ shapes: head.shapes, bodies: head.bodies, boxes: frame.boxes, poses: frame.poses });
+      const found = await find({ ...frame, shapes: head.shapes, bodies: head.bodies, kept: head.kept });
       answer = { pairs: asked(found, head.bodies), ns: Number(process.hrtime.bigint() - start) };
     } catch (error) {
       if (!(error instanceof CaseSkipped)) throw error;

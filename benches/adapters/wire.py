@@ -1,7 +1,7 @@
 """What the adapters in Python share: a culler's bodies, and the judge's wire.
 
-An adapter is a class: it is made of a case's first frame, and its ``frame`` returns the pairs of a frame. ``serve`` makes a program
-of it that ``sdop judge --keep`` and ``sdop board`` run.
+An adapter is a class: it is made of a case's first frame, and its ``frame`` returns the pairs of a
+frame. ``serve`` makes a program of it that ``sdop judge --keep`` and ``sdop board`` run.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import os
 import sys
 import time
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +31,9 @@ class Culler:
         self.shapes = scene.shapes
         self.body_shapes, self.dynamic = np.asarray(scene.body_shapes), np.asarray(scene.dynamic)
 
+    given: dict[str, Any]
+    """The frame as the judge gives it, for what a claim adds: groups, excluded pairs, margins."""
+
     def change(self, body_shapes: Array, dynamic: Array, was: Array) -> None:
         self.body_shapes, self.dynamic = np.asarray(body_shapes), np.asarray(dynamic)
 
@@ -40,8 +44,9 @@ class Culler:
         return rows[self.dynamic[rows].any(axis=1)]
 
     def reach(self) -> float:
-        """The distance of two bodies' origins within which balls may meet, for libraries that take points and one distance: twice
-        the radius where all balls are equal and about the origin. More pairs are no failure."""
+        """The distance of two bodies' origins within which balls may meet, for libraries that take
+        points and one distance: twice the radius where all balls are equal and about the origin.
+        More pairs are no failure."""
         balls = [self.shapes[number]["ball"] for number in set(self.body_shapes.tolist())]
         far = [float(np.nextafter(np.linalg.norm(np.asarray(c, np.float64)), np.inf)) if np.any(c) else 0.0 for c, _ in balls]
         sums = [offset + float(np.float32(radius)) for offset, (_, radius) in zip(far, balls, strict=True)]
@@ -49,7 +54,8 @@ class Culler:
 
 
 def centres_and_halves(boxes: Array, dtype: type = np.float64) -> tuple[Array, Array]:
-    """Boxes by their centres and half sides. Where these can't hold a box, they are of one around it: more pairs are no failure."""
+    """Centres and half sides of boxes. A box that they can't represent is replaced by a larger one
+    around it: additional pairs are no failure."""
     lower, upper = boxes.astype(dtype)[:, :3], boxes.astype(dtype)[:, 3:]
     centres = lower / 2 + upper / 2
     halves = np.maximum(upper - centres, centres - lower)
@@ -59,7 +65,8 @@ def centres_and_halves(boxes: Array, dtype: type = np.float64) -> tuple[Array, A
 
 
 def serve(make: type[Culler], package: str) -> None:
-    """Answers cases on standard input, in the encoding ndjson, until it ends; or says the version of a package."""
+    """Answers cases on standard input, in the encoding ndjson, until it ends. With `--version`,
+    prints the version of a package."""
     if "--version" in sys.argv:
         print(importlib.metadata.version(package))
         return
@@ -87,6 +94,7 @@ def serve(make: type[Culler], package: str) -> None:
                 culler = make(SimpleNamespace(shapes=shapes, body_shapes=numbers, dynamic=dynamic))
             elif "bodies" in frame:
                 culler.change(numbers, dynamic, np.array(was))
+            culler.given = frame
             found = culler.frame(*given)
             answer = {"pairs": found.tolist(), "ns": time.perf_counter_ns() - start}
         except CaseSkipped as reason:

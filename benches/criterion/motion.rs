@@ -46,13 +46,13 @@ fn main() {
 }
 
 /// A culler with its frames' seconds.
-struct Entrant {
+struct TimedFinder {
     finder: Finder,
     culler: Culler,
     seconds: Vec<f64>,
 }
 
-impl Contestant for Entrant {
+impl Contestant for TimedFinder {
     fn frame(&mut self, bodies: &Bodies) {
         // A swarm stays within the contract.
         let _ = self.culler.cull(bodies);
@@ -69,8 +69,8 @@ fn compare(bodies: usize, most: f32, strategy: Strategy) {
         .iter()
         .copied()
         .filter(|&finder| takes_part(finder));
-    let mut entrants: Vec<Entrant> = finders
-        .map(|finder| Entrant {
+    let mut entrants: Vec<TimedFinder> = finders
+        .map(|finder| TimedFinder {
             finder,
             culler: swarm.culler_by(strategy, finder, 1),
             seconds: Vec::new(),
@@ -92,7 +92,7 @@ fn compare(bodies: usize, most: f32, strategy: Strategy) {
             }
         });
     }
-    let statistics = |entrant: &Entrant| {
+    let statistics = |entrant: &TimedFinder| {
         let mean = entrant.seconds.iter().sum::<f64>() / entrant.seconds.len() as f64;
         let Percentiles { p50, p99, most } = Percentiles::of(entrant.seconds.clone());
         [mean, p50, p99, most].map(|seconds| seconds * 1e9 / bodies as f64)

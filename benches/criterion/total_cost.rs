@@ -12,7 +12,7 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
 use sdop::simd::Tier;
 use sdop_bench::cost::calibrate::{Calibration, Effort};
-use sdop_bench::cost::pass::{Pass, Simulated, pass};
+use sdop_bench::cost::pass::{Pass, SceneFrames, pass};
 use sdop_bench::cost::study::possible;
 use sdop_bench::cost::table::{Cost, PriceRow, cost, prices};
 use sdop_bench::measure::estimate::Estimate;
@@ -90,7 +90,7 @@ fn total_cost(criterion: &mut Criterion) {
 fn another_pass(file: &SceneFile, variants: &[Variant], calibration: &mut Calibration) -> Pass {
     let made = || -> miette::Result<Pass> {
         let scene = file.build()?;
-        let mut frames = Simulated::new(&scene, FRAMES)?;
+        let mut frames = SceneFrames::new(&scene, FRAMES)?;
         let calibration = Some(calibration);
         Ok(pass(
             &scene,

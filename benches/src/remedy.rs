@@ -46,9 +46,9 @@ impl Remedy for sdop_judge::record::RecordError {
 /// help.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(transparent)]
-pub struct Explained<E: Remedy>(#[from] pub E);
+pub struct WithRemedy<E: Remedy>(#[from] pub E);
 
-impl<E: Remedy> Diagnostic for Explained<E> {
+impl<E: Remedy> Diagnostic for WithRemedy<E> {
     fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
         let help = self.0.remedy()?;
         Some(Box::new(help))
@@ -66,7 +66,7 @@ pub trait OrReport<T> {
 
 impl<T, E: Remedy> OrReport<T> for Result<T, E> {
     fn or_report(self) -> Result<T> {
-        self.map_err(|error| Explained(error).into())
+        self.map_err(|error| WithRemedy(error).into())
     }
 }
 

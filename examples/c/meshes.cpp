@@ -1,4 +1,5 @@
-// Meshes with poses of an engine: a fixed set, a world with margins that is saved and rolled back, single pairs. C++17.
+// Meshes with poses of an engine: a fixed set, a world with margins that is saved and rolled back,
+// single pairs. C++17.
 #include <array>
 #include <cassert>
 #include <cstdio>
@@ -69,7 +70,7 @@ void a_world(const SdopShape *shape) {
     const World world(made);
     std::array<std::uint64_t, 2> ids{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        const SdopBody body{0, false, {0, 0, 0, 1}, {1000000031.5 + 0.7 * static_cast<double>(i), 0, 0}, 0, {~0U, ~0U}};
+        const SdopBody body{0, false, false, {0, 0, 0, 1}, {1000000031.5 + 0.7 * static_cast<double>(i), 0, 0}, 0, {~0U, ~0U}};
         check(sdop_world_insert(world.get(), &body, &ids[i]));
     }
     assert(pairs_of(world.get()).size() == 1); // they overlap by 0.3, a billion units from the origin
@@ -85,6 +86,15 @@ void a_world(const SdopShape *shape) {
     assert(pairs_of(world.get()).empty());
     check(sdop_world_restore(world.get(), saved.data(), saved.size()));
     assert(pairs_of(world.get()).size() == 1);
+
+    check(sdop_world_exclude(world.get(), ids[0], ids[1])); // a joint connects them
+    assert(pairs_of(world.get()).empty());
+    check(sdop_world_include(world.get(), ids[1], ids[0]));
+    assert(pairs_of(world.get()).size() == 1);
+    const SdopBody asleep{0, false, true, {0, 0, 0, 1}, {1000000031.5, 0, 0}, 0, {~0U, ~0U}};
+    check(sdop_world_set(world.get(), ids[0], &asleep));
+    assert(pairs_of(world.get()).size() == 1);
+    assert(sdop_world_exclude(world.get(), ids[0], ids[0] + 1000) == SDOP_STATUS_REFUSED);
 }
 
 void single_pairs(const SdopShape *shape) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-// --- what reads the words -------------------------------------------------------------------------------------------
+// --- reading words ------------------------------------------------------------------------------
 static std::string word() { char w[4096]; return std::scanf("%4095s", w) == 1 ? w : ""; }
 static int count() { return std::atoi(word().c_str()); }
 static float real() {
@@ -24,7 +24,7 @@ static float real() {
 }
 static void skip(int words) { while (words-- > 0) word(); }
 
-// --- the culler -----------------------------------------------------------------------------------------------------
+// --- the culler --------------------------------------------------------------------------------
 struct Ball { float x[3], r; };
 struct Body { int shape; bool fixed; };
 

@@ -1,7 +1,9 @@
-"""Pairs of boxes by other libraries: each class is made once for a number of boxes and called once per frame.
+"""Pairs of boxes by other libraries: each class is made once for a number of boxes and called once
+per frame.
 
-Making it is not timed. A call takes boxes of shape (n, 6), float32, and returns the pairs i < j as rows of two, in any order, or
-what can be asked whether it has them. ``most`` is the largest number of boxes that is timed in reasonable time.
+Making it is not timed. A call takes boxes of shape (n, 6), float32, and returns the pairs i < j as
+rows of two, in any order, or what can be asked whether it has them. ``most`` is the largest number
+of boxes that is timed in reasonable time.
 """
 
 from __future__ import annotations
@@ -106,8 +108,8 @@ def centres_and_sides(boxes: Array) -> tuple[Array, Array]:
 
 
 class PythonFcl:
-    """A tree of objects, moved in each frame, and its call for all pairs. It calls Python once per candidate, with an object that
-    can be known by its centre alone.
+    """A tree of objects, moved in each frame, and its call for all pairs. It calls Python once per
+    candidate, with an object that can be known by its centre alone.
     """
 
     name, package = "python-fcl, broad phase", "python-fcl"
@@ -139,8 +141,9 @@ class PythonFcl:
 
 
 class Coal:
-    """The same by coal, whose Python can't be called back, nor read the pairs that were collected: it says how many there are, and
-    whether two objects are one. So its time is without handing them out.
+    """The same by coal, whose Python can't be called back, nor read the pairs that were collected:
+    it says how many there are, and whether two objects are one. So its time is without handing them
+    out.
     """
 
     name, package = "coal, broad phase", "coal"

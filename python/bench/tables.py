@@ -1,11 +1,13 @@
-"""Two tables as JSON: what a call costs beyond Rust, and pairs of boxes by `sdop` and by other libraries.
+"""Two tables as JSON: what a call costs beyond Rust, and pairs of boxes by `sdop` and by other
+libraries.
 
     python python/bench/tables.py > python.json
     python python/bench/tables.py --quick      # small sizes and few rounds: a trial
 
-Every answer is checked before anything is timed. Then all take turns, each round in another order, on the same frames; a
-figure is the median over the rounds, with a 95 per cent interval from order statistics, which assumes nothing about the
-distribution. `python/bench/run` makes an environment with the pinned libraries and a wheel of release quality.
+Every answer is checked before anything is timed. Then all take turns, each round in another order,
+on the same frames; a figure is the median over the rounds, with a 95 per cent interval from order
+statistics, which assumes nothing about the distribution. `python/bench/run` makes an environment
+with the pinned libraries and a wheel of release quality.
 """
 
 from __future__ import annotations
@@ -32,7 +34,8 @@ SEED = 44
 
 
 def median(values: list[float]) -> dict[str, float]:
-    """The median, and the order statistics that cover it with 95 per cent; below six rounds the least and the largest."""
+    """The median, and the order statistics that cover it with 95 per cent; below six rounds the
+    least and the largest."""
     ordered, n = sorted(values), len(values)
     below = [sum(comb(n, k) for k in range(cut + 1)) / 2**n for cut in range(n)]
     cut = max((cut for cut in range(n // 2) if below[cut] <= 0.025), default=-1) + 1
@@ -42,7 +45,8 @@ def median(values: list[float]) -> dict[str, float]:
 def frames_of_boxes(n: int) -> list[Array]:
     """Boxes of sides 0.5 to 2 that drift, in a space that gives about `PAIRS_PER_BOX`.
 
-    All numbers are multiples of 2⁻¹⁰, so that sides stay the same in float32 and centres are exact: some libraries take those.
+    All numbers are multiples of 2⁻¹⁰, so that sides stay the same in float32 and centres are exact:
+    some libraries take those.
     """
     draws = np.random.default_rng(SEED)
 

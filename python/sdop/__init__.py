@@ -5,12 +5,13 @@
 >>> sdop.box_pairs(boxes)
 array([[0, 1]], dtype=uint32)
 
-Lengths have any one unit. Axes are right-handed; rotations are quaternions x, y, z, w of any non-zero norm that turn a body's
-frame into the world's. Columns are float32: arrays of float64 are accepted if float32 holds each number exactly, and rejected
-otherwise, because the answer would be about other numbers. `World` keeps float64 translations.
+Lengths have any one unit. Axes are right-handed; rotations are quaternions x, y, z, w of any
+non-zero norm that turn a body's frame into the world's. Columns are float32: arrays of float64 are
+accepted if float32 holds each number exactly, and rejected otherwise, because the answer would be
+about other numbers. `World` keeps float64 translations.
 
-Classes may be used from several threads; calls on one object take turns, and other threads of Python run meanwhile. Arrays are
-read in place: don't write to one while a call reads it.
+Classes may be used from several threads; calls on one object take turns, and other threads of
+Python run meanwhile. Arrays are read in place: don't write to one while a call reads it.
 """
 
 from __future__ import annotations

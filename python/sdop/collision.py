@@ -16,11 +16,12 @@ _Vector = NDArray[np.float64]
 class CollisionManager:
     """A set of named meshes that finds which of them collide.
 
-    Method names and meanings are those of ``trimesh.collision.CollisionManager``; a pair collides when its posed meshes share a
-    point, or one lies inside of a closed part of the other, in exact arithmetic. Transforms are rigid: 4 × 4, a rotation and a
-    translation. The rotation is rounded to a quaternion of float32, the translation stays in float64. A mesh far from its
-    origin is placed by a point near it, whose position is computed in float64. Distances and contact points are
-    not computed.
+    Method names and meanings are those of ``trimesh.collision.CollisionManager``; a pair collides
+    when its posed meshes share a point, or one lies inside of a closed part of the other, in exact
+    arithmetic. Transforms are rigid: 4 × 4, a rotation and a translation. The rotation is rounded
+    to a quaternion of float32, the translation stays in float64. A mesh far from its origin is
+    placed by a point near it, whose position is computed in float64. Distances and contact points
+    are not computed.
     """
 
     def __init__(self) -> None:
@@ -56,7 +57,8 @@ class CollisionManager:
         self._world.set_pose(moved.id, moved.rotation, moved.translation)
 
     def in_collision_internal(self, return_names: bool = False) -> bool | tuple[bool, _Names]:
-        """Whether any two objects collide; on request with the names of all pairs that do, each sorted."""
+        """Whether any two objects collide; on request with the names of all pairs that do, each
+        sorted."""
         names: _Names = set()
         for pair in self._world.cull().tolist():
             a, b = sorted(self._names[id] for id in pair)
@@ -69,7 +71,8 @@ class CollisionManager:
     def in_collision_single(
         self, mesh: Any, transform: ArrayLike | None = None, return_names: bool = False
     ) -> bool | tuple[bool, set[str]]:
-        """Whether a mesh that is not in the manager collides with any object; on request with their names."""
+        """Whether a mesh that is not in the manager collides with any object; on request with their
+        names."""
         one = CollisionManager()
         one.add_object("", mesh, transform)
         found = self._colliding(one)
@@ -79,12 +82,13 @@ class CollisionManager:
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False
     ) -> bool | tuple[bool, _Names]:
-        """Whether any object collides with one of another manager; on request with the names of the pairs, ours first."""
+        """Whether any object collides with one of another manager; on request with the names of the
+        pairs, ours first."""
         names = self._colliding(other_manager)
         return (bool(names), names) if return_names else bool(names)
 
     def _colliding(self, other: CollisionManager) -> _Names:
-        # A world of both: theirs and ours collide, but neither with its own.
+        # A world of both: theirs and ours collide, but neither collides with its own.
         world = World([])
         sides: dict[int, tuple[bool, str]] = {}
         for is_ours, manager, groups in ((True, self, (1, 2)), (False, other, (2, 1))):
@@ -117,7 +121,8 @@ class _Object:
 
 
 def _pose(transform: ArrayLike | None, offset: _Vector) -> tuple[NDArray[np.float32], _Vector]:
-    """A rigid transform as a quaternion x, y, z, w, rounded to float32, and the place of a point of the mesh."""
+    """A rigid transform as a quaternion x, y, z, w, rounded to float32, and the place of a point of
+    the mesh."""
     matrix = np.eye(4) if transform is None else np.asarray(transform, dtype=np.float64)
     if matrix.shape != (4, 4) or not np.array_equal(matrix[3], [0, 0, 0, 1]):
         raise ValueError(f"a transform has shape (4, 4) and the last row 0, 0, 0, 1; this one is\n{matrix}")
@@ -131,7 +136,8 @@ def _pose(transform: ArrayLike | None, offset: _Vector) -> tuple[NDArray[np.floa
 
 
 def _quaternion(turn: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The unit quaternion x, y, z, w of a rotation matrix: the eigenvector of Bar-Itzhack's matrix."""
+    """The unit quaternion x, y, z, w of a rotation matrix: the eigenvector of Bar-Itzhack's
+    matrix."""
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = turn
     symmetric = np.array(
         [

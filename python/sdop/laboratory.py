@@ -30,7 +30,8 @@ class MissedPair:
     point: tuple[float, float, float] | None
     """A point that both bodies share, rounded to float64."""
     depth_ulps: int | None
-    """The least shift that separates them, in float32 steps at the pair; None if all tried shifts were too short."""
+    """The least shift that separates them, in float32 steps at the pair; None if all tried shifts
+    were too short."""
     boxes: NDArray[np.float32] = field(repr=False)
     """The boxes of that frame, shape (n, 6)."""
     files: dict[str, bytes] = field(repr=False)
@@ -81,14 +82,15 @@ def judge(
     Parameters
     ----------
     make : a class, or anything else that makes a culler of a `Scene`
-        The culler has ``frame(rotations, translations)``, which returns the pairs i < j as an array of shape (m, 2); with the
-        claim "aabb" it has ``frame(boxes)``. If its set of bodies can change, it has ``change(body_shapes, dynamic, was)``,
-        where ``was`` holds each body's former number, or -1; otherwise cases with such a change are skipped. A culler that can't
-        answer a case raises `CaseSkipped` with the reason.
+        The culler has ``frame(rotations, translations)``, which returns the pairs i < j as an array
+        of shape (m, 2); with the claim "aabb" it has ``frame(boxes)``. If its set of bodies can
+        change, it has ``change(body_shapes, dynamic, was)``, where ``was`` holds each body's former
+        number, or -1; otherwise cases with such a change are skipped. A culler that can't answer a
+        case raises `CaseSkipped` with the reason.
     claims : {"mesh", "hull", "or-dop", "sphere", "aabb"}
         What it never misses.
     cases : str
-        Names of cases; ``*`` stands for any text.
+        Names of cases; ``*`` matches any text.
     seed : int, optional
         Adds fresh cases.
     extra_limit : float, optional

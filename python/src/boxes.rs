@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use sdop::bodies::Motion;
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, Finder, Groups, PairList};
 
@@ -82,9 +81,9 @@ pub fn box_pairs<'py>(
 /// threads : int
 ///     Number of threads.
 #[pyclass(frozen, module = "sdop")]
-pub struct BoxCuller(Mutex<Timed>);
+pub struct BoxCuller(Mutex<TimedCuller>);
 
-struct Timed {
+struct TimedCuller {
     culler: sdop::BoxCuller,
     seconds: f64,
 }
@@ -96,7 +95,7 @@ impl BoxCuller {
     fn new(finder: &str, threads: usize) -> PyResult<Self> {
         let finder: Finder = finder.parse().map_err(refused)?;
         let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
-        Ok(Self(Mutex::new(Timed {
+        Ok(Self(Mutex::new(TimedCuller {
             culler: builder.build().map_err(refused)?,
             seconds: 0.0,
         })))
@@ -115,7 +114,7 @@ impl BoxCuller {
         let given = self::boxes(boxes)?;
         let boxes = Aabb::from_rows(given.rows());
         let groups = self::groups(groups, boxes.len())?;
-        let found = locked(py, &self.0, |Timed { culler, seconds }| {
+        let found = locked(py, &self.0, |TimedCuller { culler, seconds }| {
             culler.set_groups(groups);
             let start = Instant::now();
             let found = culler.cull(boxes);
@@ -161,7 +160,7 @@ impl BoxWorld {
         let (member, mask) = groups;
         let body = BoxBody {
             bounds: one(bounds)?,
-            motion: self::motion(motion)?,
+            motion: super::world::motion(motion)?,
             groups: Groups { member, mask },
         };
         locked(py, &self.0, |world| world.insert(body))
@@ -186,11 +185,24 @@ impl BoxWorld {
     /// Puts a box to rest, wakes it, or fixes it: "resting", "dynamic" or "fixed". Putting a box
     /// to rest begins and ends no pair.
     fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
-        let motion = self::motion(motion)?;
+        let motion = super::world::motion(motion)?;
         locked(py, &self.0, |world| {
             world.set_motion(BodyId::from_bits(id), motion)
         })
         .map_err(refused)
+    }
+
+    /// Never reports the pair of two boxes again until `include` or until one of them is removed.
+    /// Returns whether it wasn't excluded yet.
+    fn exclude(&self, py: Python<'_>, a: u64, b: u64) -> PyResult<bool> {
+        let [a, b] = [a, b].map(BodyId::from_bits);
+        locked(py, &self.0, |world| world.exclude(a, b)).map_err(refused)
+    }
+
+    /// Reports the pair of two boxes again when it meets. Returns whether it was excluded.
+    fn include(&self, py: Python<'_>, a: u64, b: u64) -> PyResult<bool> {
+        let [a, b] = [a, b].map(BodyId::from_bits);
+        locked(py, &self.0, |world| world.include(a, b)).map_err(refused)
     }
 
     /// Moves many boxes: ids of shape (n,), boxes in the form of `box_pairs`. If one is rejected,
@@ -248,19 +260,6 @@ impl BoxWorld {
 
     fn __contains__(&self, py: Python<'_>, id: u64) -> bool {
         locked(py, &self.0, |world| world.contains(BodyId::from_bits(id)))
-    }
-}
-
-/// "dynamic", "resting" or "fixed".
-fn motion(name: &str) -> PyResult<Motion> {
-    match name {
-        "dynamic" => Ok(Motion::Dynamic),
-        "resting" => Ok(Motion::Resting),
-        "fixed" => Ok(Motion::Fixed),
-        _ => Err(with_help(
-            format!("unknown motion `{name}`"),
-            "one of: dynamic, resting, fixed",
-        )),
     }
 }
 

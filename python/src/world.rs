@@ -158,7 +158,30 @@ impl World {
         .map_err(refused)
     }
 
-    /// The present body, with the names of `insert`'s parameters.
+    /// Puts a body to rest, wakes it, or fixes it: "resting", "dynamic" or "fixed". Putting a body
+    /// to rest begins and ends no pair.
+    fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
+        let motion = self::motion(motion)?;
+        locked(py, &self.0, |world| {
+            world.set_motion(BodyId::from_bits(id), motion)
+        })
+        .map_err(refused)
+    }
+
+    /// Never reports the pair of two bodies again, such as two links that share a joint, until
+    /// `include` or until one of them is removed. Returns whether it wasn't excluded yet.
+    fn exclude(&self, py: Python<'_>, a: u64, b: u64) -> PyResult<bool> {
+        let [a, b] = [a, b].map(BodyId::from_bits);
+        locked(py, &self.0, |world| world.exclude(a, b)).map_err(refused)
+    }
+
+    /// Reports the pair of two bodies again when it meets. Returns whether it was excluded.
+    fn include(&self, py: Python<'_>, a: u64, b: u64) -> PyResult<bool> {
+        let [a, b] = [a, b].map(BodyId::from_bits);
+        locked(py, &self.0, |world| world.include(a, b)).map_err(refused)
+    }
+
+    /// The present body, with the names of `insert`'s parameters, and whether it is "resting".
     fn body<'py>(&self, py: Python<'py>, id: u64) -> PyResult<Bound<'py, PyDict>> {
         let body =
             locked(py, &self.0, |world| world.body(BodyId::from_bits(id))).map_err(refused)?;
@@ -168,6 +191,7 @@ impl World {
         named.set_item("translation", body.translation)?;
         named.set_item("margin", body.margin)?;
         named.set_item("dynamic", body.motion.is_dynamic())?;
+        named.set_item("resting", body.motion == Motion::Resting)?;
         named.set_item("groups", (body.groups.member, body.groups.mask))?;
         Ok(named)
     }
@@ -211,6 +235,19 @@ impl World {
 
     fn __contains__(&self, py: Python<'_>, id: u64) -> bool {
         locked(py, &self.0, |world| world.contains(BodyId::from_bits(id)))
+    }
+}
+
+/// "dynamic", "resting" or "fixed".
+pub(super) fn motion(name: &str) -> PyResult<Motion> {
+    match name {
+        "dynamic" => Ok(Motion::Dynamic),
+        "resting" => Ok(Motion::Resting),
+        "fixed" => Ok(Motion::Fixed),
+        _ => Err(with_help(
+            format!("unknown motion `{name}`"),
+            "one of: dynamic, resting, fixed",
+        )),
     }
 }
 

@@ -112,6 +112,51 @@ def test_a_world_is_saved_and_restored():
     assert world.body(ids[3])["margin"] == pytest.approx(0.1) and world.snapshot() == other.snapshot()
 
 
+def two_that_touch():
+    world = sdop.World([tetrahedron()])
+    ids = [world.insert(0, [0, 0, 0, 1], [x, 0, 0]) for x in (0, 0.5)]
+    assert world.cull().tolist() == [ids]
+    world.events()
+    return world, ids
+
+
+def two_boxes_that_touch():
+    world = sdop.BoxWorld()
+    ids = [world.insert([x, 0, 0, x + 1, 1, 1]) for x in (0, 0.5)]
+    assert world.cull().tolist() == [ids]
+    world.events()
+    return world, ids
+
+
+@pytest.mark.parametrize("made", [two_that_touch, two_boxes_that_touch])
+def test_excluded_pairs_end_and_begin_again(made):
+    world, (a, b) = made()
+    assert world.exclude(b, a) and not world.exclude(a, b) and not world.exclude(a, a)
+    assert len(world.cull()) == 0 and world.events().ended.tolist() == [[a, b]]
+    assert world.include(a, b) and not world.include(a, b)
+    assert world.cull().tolist() == [[a, b]] and world.events().begun.tolist() == [[a, b]]
+    with pytest.raises(sdop.SdopError, match="no longer"):
+        world.exclude(a, 12345678901)
+
+
+@pytest.mark.parametrize("made", [two_that_touch, two_boxes_that_touch])
+def test_resting_bodies_keep_their_pairs_and_fixed_ones_lose_them(made):
+    world, ids = made()
+    for motion, remain in [("resting", 1), ("dynamic", 1), ("fixed", 0)]:
+        [world.set_motion(id, motion) for id in ids]
+        assert len(world.cull()) == remain, motion
+    assert world.events().ended.tolist() == [ids]
+    with pytest.raises(sdop.SdopError, match="unknown motion `asleep`"):
+        world.set_motion(ids[0], "asleep")
+
+
+def test_a_body_says_that_it_rests():
+    world, (a, b) = two_that_touch()
+    world.set_motion(a, "resting")
+    assert [world.body(id)["resting"] for id in (a, b)] == [True, False]
+    assert world.body(a)["dynamic"]
+
+
 @pytest.mark.parametrize(
     ("call", "text"),
     [

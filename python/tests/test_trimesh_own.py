@@ -1,8 +1,8 @@
 """trimesh's own collision tests, asked of our manager.
 
-``TRIMESH_TESTS`` names the folder of trimesh's tests, from its source distribution (``.ci/python`` fetches it); without it
-these tests are skipped. The file runs as it is. It imports a module ``generic``, which the distribution lacks: the few names
-that it takes from there are given here.
+``TRIMESH_TESTS`` names the folder of trimesh's tests, from its source distribution (``.ci/python``
+fetches it); without it these tests are skipped. The file runs as it is. It imports a module
+``generic``, which the distribution lacks: the few names that it takes from there are given here.
 """
 
 import importlib.util
@@ -22,8 +22,9 @@ NOT_OURS = {
     "test_distance": "distances and penetration depths are not computed",
     "test_scene": "its model cycloidal.3DXML is not in the source distribution",
 }
-"""Questions that our manager does not answer, with the reason. In those that it does, contact points (``return_data``) are
-not computed either: it returns none, and their checks, which are made for each contact, do not run."""
+"""Questions that our manager does not answer, with the reason. In those that it does, contact
+points (``return_data``) are not computed either: it returns none, and their checks, which are made
+for each contact, do not run."""
 
 QUESTIONS = ["test_collision", "test_collision_batch", "test_random_spheres"]
 TESTS = os.environ.get("TRIMESH_TESTS")

@@ -55,7 +55,7 @@ pub trait OverlapTests {
 /// The pairs i < j that the strategy reports, sorted, judged in plain f64.
 pub fn pairs(bodies: &[Body], strategy: Strategy, overlap: Overlap) -> Vec<(u32, u32)> {
     let dynamic: Vec<bool> = bodies.iter().map(|body| body.dynamic).collect();
-    run(&Plain::new(bodies, overlap), &dynamic, strategy).0
+    run(&PlainPredicates::new(bodies, overlap), &dynamic, strategy).0
 }
 
 /// The pairs i < j that the strategy reports, sorted, with what was counted.
@@ -127,7 +127,7 @@ fn volumes(hit: bool, counters: &mut Counters) -> bool {
 
 /// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once per body,
 /// when first asked for.
-pub struct Plain<'a> {
+pub struct PlainPredicates<'a> {
     bodies: &'a [Body<'a>],
     overlap: Overlap,
     ordops: Vec<OnceCell<TurnedPolytope>>,
@@ -135,7 +135,7 @@ pub struct Plain<'a> {
     extents: [Vec<OnceCell<Vec<[f64; 2]>>>; 4],
 }
 
-impl<'a> Plain<'a> {
+impl<'a> PlainPredicates<'a> {
     /// A judge of these bodies whose or-DOPs are compared by `overlap`.
     pub fn new(bodies: &'a [Body<'a>], overlap: Overlap) -> Self {
         let none = || vec![OnceCell::new(); bodies.len()];
@@ -171,7 +171,7 @@ impl<'a> Plain<'a> {
     }
 }
 
-impl OverlapTests for Plain<'_> {
+impl OverlapTests for PlainPredicates<'_> {
     fn spheres(&self, i: u32, j: u32) -> bool {
         sphere::overlap(&self.bodies[i as usize], &self.bodies[j as usize])
     }

@@ -71,8 +71,8 @@ pub fn check_column(name: &'static str, length: usize, bodies: usize) -> Result<
     if length == bodies {
         return Ok(());
     }
-    let value = format!("is missing or too much: {length} entries for {bodies} bodies");
-    let hint = "give every column one entry a body";
+    let value = format!("has {length} entries for {bodies} bodies");
+    let hint = "give every column one entry per body";
     refuse(length.min(bodies), name, value, hint)
 }
 

@@ -113,7 +113,7 @@ impl Hasher for NumberHasher {
 /// What decides, next to their volumes, whether two bodies are reported.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairRules<'a> {
-    /// One entry a body.
+    /// One entry per body.
     pub groups: &'a [super::Groups],
     pub excluded: &'a ExcludedPairs,
 }

@@ -1,4 +1,4 @@
-//! Meshes made ready, and a fixed set of bodies culled frame after frame.
+//! Prepared meshes, and a fixed set of bodies that is culled frame after frame.
 
 use std::ffi::c_char;
 

@@ -140,6 +140,42 @@ pub unsafe extern "C" fn sdop_box_world_set_bounds(
     })
 }
 
+/// Never reports the pair of two boxes again until it is included or one of them is removed.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_exclude(
+    world: *mut SdopBoxWorld,
+    a: u64,
+    b: u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        it.0.exclude(BodyId::from_bits(a), BodyId::from_bits(b))?;
+        Ok(())
+    })
+}
+
+/// Reports the pair of two boxes again when it meets.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_include(
+    world: *mut SdopBoxWorld,
+    a: u64,
+    b: u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        it.0.include(BodyId::from_bits(a), BodyId::from_bits(b))?;
+        Ok(())
+    })
+}
+
 /// Finds the boxes that meet now. `pairs` gets their number; read them with `sdop_box_world_pairs`.
 ///
 /// # Safety

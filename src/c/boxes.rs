@@ -1,4 +1,4 @@
-//! All boxes anew in each frame.
+//! A culler that gets all boxes anew in each frame.
 
 use std::ffi::{c_char, c_void};
 

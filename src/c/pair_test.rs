@@ -1,4 +1,4 @@
-//! One pair at a time, for engines whose own broad phase has found it.
+//! Tests one pair at a time, for engines with their own broad phase.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -160,6 +160,8 @@ typedef struct {
   uint32_t shape;
   // Whether it is scenery; pairs of two such bodies are never reported.
   bool fixed;
+  // Whether it lies still for the time being; its pairs stay.
+  bool resting;
   // Quaternion x, y, z, w of any non-zero norm.
   float rotation[4];
   // Translation of its origin, world frame.
@@ -272,6 +274,18 @@ SdopStatus sdop_box_world_set_bounds(SdopBoxWorld *world,
                                      const uint64_t *ids,
                                      const SdopBox *boxes,
                                      size_t count);
+
+// Never reports the pair of two boxes again until it is included or one of them is removed.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_box_world_exclude(SdopBoxWorld *world, uint64_t a, uint64_t b);
+
+// Reports the pair of two boxes again when it meets.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_box_world_include(SdopBoxWorld *world, uint64_t a, uint64_t b);
 
 // Finds the boxes that meet now. `pairs` gets their number; read them with `sdop_box_world_pairs`.
 //
@@ -446,6 +460,19 @@ SdopStatus sdop_world_set_poses(SdopWorld *world,
                                 const float (*rotation)[4],
                                 const double (*translation)[3],
                                 size_t count);
+
+// Never reports the pair of two bodies again, such as two links that share a joint, until it is
+// included or one of them is removed.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_world_exclude(SdopWorld *world, uint64_t a, uint64_t b);
+
+// Reports the pair of two bodies again when it meets.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_world_include(SdopWorld *world, uint64_t a, uint64_t b);
 
 // Finds the pairs that might touch now. `pairs` gets their number; read them with
 // `sdop_world_pairs`.

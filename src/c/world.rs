@@ -23,6 +23,8 @@ pub struct SdopBody {
     pub shape: u32,
     /// Whether it is scenery; pairs of two such bodies are never reported.
     pub fixed: bool,
+    /// Whether it lies still for the time being; its pairs stay.
+    pub resting: bool,
     /// Quaternion x, y, z, w of any non-zero norm.
     pub rotation: [f32; 4],
     /// Translation of its origin, world frame.
@@ -37,7 +39,7 @@ impl From<SdopBody> for Body {
     fn from(body: SdopBody) -> Self {
         Self {
             shape: body.shape,
-            motion: Motion::of(!body.fixed, false),
+            motion: Motion::of(!body.fixed, body.resting),
             rotation: body.rotation,
             translation: body.translation,
             groups: body.groups,
@@ -183,6 +185,35 @@ pub unsafe extern "C" fn sdop_world_set_poses(
         for ((&id, &q), &t) in ids.iter().zip(rotations).zip(translations) {
             it.0.set_pose(BodyId::from_bits(id), q, t)?;
         }
+        Ok(())
+    })
+}
+
+/// Never reports the pair of two bodies again, such as two links that share a joint, until it is
+/// included or one of them is removed.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_exclude(world: *mut SdopWorld, a: u64, b: u64) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        it.0.exclude(BodyId::from_bits(a), BodyId::from_bits(b))?;
+        Ok(())
+    })
+}
+
+/// Reports the pair of two bodies again when it meets.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_include(world: *mut SdopWorld, a: u64, b: u64) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        it.0.include(BodyId::from_bits(a), BodyId::from_bits(b))?;
         Ok(())
     })
 }

@@ -31,7 +31,7 @@ pub enum CullError {
     #[error(transparent)]
     Threads(#[from] ThreadsError),
     /// More pairs than the caller allows.
-    #[error("{pairs} pairs, and at most {limit} are allowed")]
+    #[error("the frame has {pairs} pairs, but at most {limit} are allowed")]
     TooManyPairs {
         /// How many pairs the frame has.
         pairs: u64,

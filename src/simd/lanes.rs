@@ -196,7 +196,7 @@ pub(super) fn clamp_codes<'a>(codes: &[u32], limit: u32, to: &'a mut [u32]) -> &
     to
 }
 
-/// The quad that a code leads to: sixteen bytes a quad are sixteen codes, so no shift is needed.
+/// The quad that a code leads to: a quad of sixteen bytes has sixteen codes, so no shift is needed.
 ///
 /// # Safety
 /// The code is not above [`last_code`].

@@ -4,7 +4,7 @@
 //! A kernel is written once, generic over [`Lanes`], with plain `+ − ×`, comparisons and table
 //! look-ups and never a fused multiply-add, so that every tier computes the same bits. [`Tier`]
 //! lists the tiers of this CPU; a value of it proves that the CPU has it. [`dispatch`] compiles the
-//! kernel once a tier, inside a function with that tier's target features, and calls the one that
+//! kernel once per tier, inside a function with that tier's target features, and calls the one that
 //! the level names.
 //!
 //! Why `std::arch` with tokens and not a portable vector crate: a sphere test measured .060 ns this

@@ -202,7 +202,10 @@ fn portions_keep_list_order() {
             );
         }
         let told = culler.cull_up_to(&now, 1000).unwrap_err().to_string();
-        assert_eq!(told, format!("{pairs} pairs, and at most 1000 are allowed"));
+        assert_eq!(
+            told,
+            format!("the frame has {pairs} pairs, but at most 1000 are allowed")
+        );
         assert!(culler.pairs().is_empty());
         assert_eq!(
             culler.cull_up_to(&now, pairs as usize).unwrap().len(),

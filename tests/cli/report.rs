@@ -414,7 +414,7 @@ fn record_names_the_tier() {
         ),
         (
             &["reproduce", "--", "--simd", "scalar"],
-            "--simd behind the --",
+            "--simd after the --",
         ),
     ];
     for (arguments, told) in wrong {

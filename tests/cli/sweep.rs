@@ -160,7 +160,10 @@ fn different_work_is_not_merged() {
     let one = place.shard(1, 2, &[]);
     let told = |other: &Path, told: &str| {
         let message = merge_refused(&[&one, other]);
-        assert!(message.contains("are not of one work"), "{message}");
+        assert!(
+            message.contains("are shards of different runs"),
+            "{message}"
+        );
         assert!(message.contains(told), "{message}");
     };
     let other = place.shard(2, 2, &["--first-seed", "7"]);
@@ -178,7 +181,7 @@ fn different_work_is_not_merged() {
     fs::write(&other, format!("{header}\n{rest}")).unwrap();
     let message = merge_refused(&[&one, &other]);
     assert!(
-        message.contains("the digest at its end is not that of its lines"),
+        message.contains("the digest at its end does not match its lines"),
         "{message}"
     );
     reseal(&other);
@@ -210,14 +213,14 @@ fn empty_shard_is_rejected() {
     let cut_off = place.path("cut.units");
     fs::write(&cut_off, lines[..9].concat() + &lines[9][..20]).unwrap();
     let message = merge_refused(&[&cut_off]);
-    assert!(message.contains("is no finished shard"), "{message}");
+    assert!(message.contains("is not a finished shard"), "{message}");
     let lost = lines.remove(5);
     fs::write(&one, lines.concat()).unwrap();
     reseal(&one);
     let message = merge_refused(&[&one]);
     assert!(lost.starts_with("done 4 "), "{lost}");
     assert!(
-        message.contains("has not the units of shard 1/1; unit 4 is the first"),
+        message.contains("does not hold the units of shard 1/1: unit 4 is the first"),
         "{message}"
     );
 }

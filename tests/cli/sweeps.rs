@@ -243,7 +243,7 @@ fn shards_of_other_scenes_are_rejected() {
         let shards = shards.iter().map(|path| text(path));
         let message = refusal(&["merge"].into_iter().chain(shards).collect::<Vec<_>>());
         assert!(
-            message.contains("are not of one work: the input scene"),
+            message.contains("are shards of different runs: the input scene"),
             "{message}"
         );
     }
@@ -319,7 +319,7 @@ fn work_without_units_is_rejected() {
         ),
         (
             &["record", "verify", "--", "--shard", "1/2"],
-            "--shard behind the --",
+            "--shard after the --",
         ),
         (
             &["tradeoff", "earlier.json", "--shard", "1/2"],

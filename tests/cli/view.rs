@@ -249,7 +249,7 @@ fn broken_record_makes_a_page() {
 
     let other = directory.path().join("other.ndjson");
     std::fs::write(&other, "{\"format\":\"glTF\",\"version\":2}\n").unwrap();
-    assert!(broken(&other).0.contains("this is no record"));
+    assert!(broken(&other).0.contains("not a record"));
 }
 
 /// An older record lacks counters and shows the rest.
@@ -308,7 +308,7 @@ fn hard_cases_show_single_runs() {
     );
     for (flags, said) in [
         (["--run", "100000"], "runs are counted from 0"),
-        (["--seed", "4"], "a seed of its own"),
+        (["--seed", "4"], "has its own seed"),
     ] {
         let message = refusal(&[&["view", case], flags.as_slice()].concat());
         assert!(message.contains(said), "{message}");

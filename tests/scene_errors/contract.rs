@@ -105,11 +105,11 @@ fn caller_bodies_are_checked() {
     );
     assert_eq!(
         refused(|v| v.angular.truncate(1)),
-        "body 1: spin is missing or too much: 1 entries for 3 bodies"
+        "body 1: spin has 1 entries for 3 bodies"
     );
     assert_eq!(
         refusal(|b| b.dynamic.truncate(1)),
-        "body 1: dynamic is missing or too much: 1 entries for 3 bodies"
+        "body 1: dynamic has 1 entries for 3 bodies"
     );
     // Zeroed memory that nobody reads takes no room.
     let crowd = Bodies {

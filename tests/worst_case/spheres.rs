@@ -37,8 +37,8 @@ pub fn decision(seed: u64, evaluations: u64) -> f64 {
     })
 }
 
-/// √D/(R_A + R_B) − 1 in u, for d² = t: how far beyond the stored radii a pair may be and still be
-/// reported.
+/// √D/(R_A + R_B) − 1 in u, for d² = t: how far beyond the stored radii bodies that are still
+/// reported can be.
 pub fn reported(seed: u64, evaluations: u64) -> f64 {
     worst(seed, evaluations, |[d2, exact, t, s2]| {
         (exact / d2 * (t / s2)).sqrt() - 1.0

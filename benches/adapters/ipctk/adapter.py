@@ -1,4 +1,5 @@
-"""ipctk: its broad phases. A box is an edge between two corners: the box about that edge is the one given."""
+"""ipctk: its broad phases. A box is an edge between two corners: the box about that edge is the one
+given."""
 
 import sys
 from pathlib import Path
@@ -23,8 +24,14 @@ class Adapter(Culler):
         vertices = np.asfortranarray(boxes.astype(np.float64).reshape(-1, 3))
         edges = np.asfortranarray(np.arange(2 * n, dtype=np.int32).reshape(-1, 2))
         phase = PHASES[sys.argv[1]]()
-        phase.build(vertices, edges, np.asfortranarray(np.empty((0, 3), np.int32)), 0.0)
+        phase.build(vertices, edges, np.asfortranarray(np.empty((0, 3), np.int32)), self.inflation())
         return self.pairs([(it.edge0_id, it.edge1_id) for it in phase.detect_edge_edge_candidates()])
+
+    def inflation(self):
+        margins = set(self.given.get("margins", [0.0]))
+        if len(margins) > 1:
+            raise CaseSkipped("its inflation is one number for all boxes")
+        return margins.pop()
 
 
 def check_cells(boxes):

@@ -1,4 +1,5 @@
-"""MuJoCo: contacts of box geoms on the world's axes, a free body each, with the default margin of zero."""
+"""MuJoCo: contacts of box geoms on the world's axes, a free body each, with the default margin of
+zero."""
 
 import sys
 from pathlib import Path

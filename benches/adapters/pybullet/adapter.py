@@ -1,4 +1,5 @@
-"""Bullet by pybullet: getOverlappingObjects, which asks the broad phase, for a box shape per body."""
+"""Bullet by pybullet: getOverlappingObjects, which asks the broad phase, for a box shape per
+body."""
 
 import sys
 from pathlib import Path

@@ -13,7 +13,7 @@ from wire import CaseSkipped, Culler, centres_and_halves, serve
 class Adapter(Culler):
     def frame(self, boxes):
         centres, halves = centres_and_halves(boxes)
-        # What it calls back with is known by its place alone.
+        # An object in a callback can only be identified by its position.
         numbers = {tuple(centre): number for number, centre in enumerate((centres + 0.0).tolist())}
         if len(numbers) < len(boxes):
             raise CaseSkipped("two boxes have one centre, and python-fcl's callback does not tell them apart")

@@ -1,4 +1,5 @@
-"""scipy: cKDTree.query_pairs, of the bodies' origins, by the distance within which balls may meet."""
+"""scipy: cKDTree.query_pairs, of the bodies' origins, by the distance within which balls may
+meet."""
 
 import sys
 from pathlib import Path

@@ -27,7 +27,8 @@ class Adapter(Culler):
 
 
 def check_nesting(corners):
-    """It tests surfaces. A mesh within another is not its claim, and none is where no box is within another."""
+    """trimesh tests surfaces and makes no claim about a mesh inside another. No mesh is inside
+    another if no box is."""
     if not corners:
         return
     lower, upper = np.min(corners, axis=1), np.max(corners, axis=1)
@@ -37,7 +38,7 @@ def check_nesting(corners):
 
 
 def transform(turn, place):
-    """The matrix of a quaternion, if float64 holds it: the case is about no other."""
+    """The matrix of a quaternion, if float64 can represent it; other cases are skipped."""
     x, y, z, w = (Fraction(float(c)) for c in turn)
     norm = x * x + y * y + z * z + w * w
     exact = [

@@ -1,4 +1,5 @@
-"""vesin: NeighborList without periodic directions, of the bodies' origins, by the distance within which balls may meet."""
+"""vesin: NeighborList without periodic directions, of the bodies' origins, by the distance within
+which balls may meet."""
 
 import sys
 from pathlib import Path

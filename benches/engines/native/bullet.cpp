@@ -1,8 +1,8 @@
 // Bullet's btDbvtBroadphase: two trees that are updated body by body, and a cache of pairs.
 //
-// No margin, no velocity prediction. The tree meets itself once a frame and not once a moved body, which is faster
-// where all move; the whole cache is cleaned up then, so that it holds the pairs that are there now and not those
-// that were.
+// No margin, no velocity prediction. The tree is tested against itself once per frame, not once per
+// moved body, which is faster if all bodies move. The whole cache is cleaned up then, so that it
+// holds only the present pairs.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
 #include <memory>

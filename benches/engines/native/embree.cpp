@@ -1,7 +1,7 @@
 // Embree: a tree over user geometry, built anew for speed each frame and collided with itself.
 //
-// Embree hands out pairs of primitives whose boxes overlap, in both orders and each with itself, in batches and from
-// several threads.
+// Embree hands out pairs of primitives whose boxes overlap, in both orders and each with itself, in
+// batches and from several threads.
 #include <embree3/rtcore.h>
 
 #include <mutex>

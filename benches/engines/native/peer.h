@@ -1,4 +1,5 @@
-// What an engine in C++ offers to the comparison. A box is six floats: the lower and the upper end on x, y and z.
+// What an engine in C++ offers to the comparison. A box is six floats: the lower and the upper end
+// on x, y and z.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +12,8 @@ struct Box {
     float ends[3][2];
 };
 
-// The four functions of an engine: made from the first frame's boxes; a frame; the pairs of the last one; gone.
+// The four functions of an engine: made from the first frame's boxes; a frame; the pairs of the
+// last one; gone.
 #define PEER(name)                                                                  \
     extern "C" void* name##_new(const Box* boxes, size_t count, unsigned threads);  \
     extern "C" void name##_frame(void* peer, const Box* boxes);                     \

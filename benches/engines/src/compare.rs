@@ -17,7 +17,7 @@ use crate::check::ExpectedPairs;
 use crate::entry::{Engine, Entry, OURS, Setup};
 use crate::memory::{self, Memory};
 use crate::scenes::{Course, EXPECTED, Order, Schedule, Spread};
-use crate::turns::{Timed, take_turns};
+use crate::turns::{TimedEngine, take_turns};
 
 /// A scene and a number of threads.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -50,7 +50,7 @@ pub struct LeftOut {
 }
 
 /// A case with its answers.
-pub struct Compared {
+pub struct CaseTimings {
     /// In the order of engines.
     pub rows: Vec<EngineTiming>,
     /// Those without a row.
@@ -96,7 +96,7 @@ pub struct EngineTiming {
 ///
 /// # Errors
 /// An engine whose pairs are not the scene's, an engine that can't be built.
-pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compared> {
+pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<CaseTimings> {
     let able = |entry: &&Entry| entry.threads >= case.threads && case.spread.has(entry.work);
     let able = entries.iter().filter(able);
     let (checked, left_out) = check(case, &able.collect::<Vec<_>>(), limit_ms)?;
@@ -127,15 +127,19 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<Compa
             peak_bytes_a_body: memory.peak as f64 / bodies,
         });
     }
-    Ok(Compared { rows, left_out })
+    Ok(CaseTimings { rows, left_out })
 }
 
 /// Who has passed, and who has not been asked.
-type Checked<'a> = (Vec<(&'a Entry, Memory)>, Vec<LeftOut>);
+type CheckedEngines<'a> = (Vec<(&'a Entry, Memory)>, Vec<LeftOut>);
 
 /// Runs every engine alone over the first frames and judges its pairs; counts its memory on the
 /// way.
-fn check<'a>(case: Case, entries: &[&'a Entry], limit_ms: f64) -> miette::Result<Checked<'a>> {
+fn check<'a>(
+    case: Case,
+    entries: &[&'a Entry],
+    limit_ms: f64,
+) -> miette::Result<CheckedEngines<'a>> {
     let mut course = course(case)?;
     let count = case.schedule.checked;
     let mut frames = vec![Frame::default(); count];
@@ -211,7 +215,7 @@ fn definition_holds(case: Case, first: &ExpectedPairs<'_>) -> miette::Result<()>
         .find(|(spread, bodies, _)| (*spread, *bodies) == (case.spread, case.bodies));
     match known {
         Some(&(_, _, pairs)) if pairs != first.boxes() => Err(miette!(
-            help = "either the scene code changed, or the definition in `scenes.rs` must",
+            help = "if the scene code was meant to change, update the definition in `scenes.rs`",
             "{:?} of {} has {} pairs in its first frame, its definition says {pairs}",
             case.spread,
             case.bodies,
@@ -222,7 +226,7 @@ fn definition_holds(case: Case, first: &ExpectedPairs<'_>) -> miette::Result<()>
 }
 
 /// Times everyone in turns, and judges their last pairs: how many each has.
-fn timed(case: Case, entries: &[&Entry]) -> miette::Result<(Vec<Timed>, Vec<usize>)> {
+fn timed(case: Case, entries: &[&Entry]) -> miette::Result<(Vec<TimedEngine>, Vec<usize>)> {
     let schedule = case.schedule;
     let (timed, last) = take_turns(course(case)?, schedule, |course, first| {
         let setup = Setup {
@@ -230,7 +234,13 @@ fn timed(case: Case, entries: &[&Entry]) -> miette::Result<(Vec<Timed>, Vec<usiz
             first,
             threads: case.threads,
         };
-        let timed = |entry: &&Entry| Ok(Timed::new((entry.new)(&setup)?, entry.ages, case.threads));
+        let timed = |entry: &&Entry| {
+            Ok(TimedEngine::new(
+                (entry.new)(&setup)?,
+                entry.ages,
+                case.threads,
+            ))
+        };
         entries.iter().map(timed).collect()
     })?;
     let truth = ExpectedPairs::of(&last, schedule.warm_up + schedule.timed - 1);

@@ -25,7 +25,7 @@ use crate::facts::{self, Facts};
 use crate::ours;
 use crate::record::digits;
 use crate::scenes::{Course, Order, Schedule, Spread};
-use crate::turns::{Timed, take_turns};
+use crate::turns::{TimedEngine, take_turns};
 
 /// Measure the gain of more threads, compared with loops that parallelise perfectly
 #[derive(clap::Args)]
@@ -71,7 +71,7 @@ struct SpeedUp {
 }
 
 #[derive(Serialize)]
-struct Measured {
+struct ControlResults {
     #[serde(flatten)]
     facts: Facts,
     rows: Vec<SpeedUp>,
@@ -79,7 +79,7 @@ struct Measured {
 
 /// Measures, prints the table, and writes it if asked to.
 pub fn run(args: &Args) -> miette::Result<()> {
-    let mut measured = Measured {
+    let mut measured = ControlResults {
         facts: Facts::new(args.note.clone()),
         rows: Vec::new(),
     };
@@ -105,7 +105,7 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
         let mut timed = Vec::new();
         let mut enter = |name, engine, threads| {
             names.push(name);
-            timed.push(Timed::new(engine, true, threads));
+            timed.push(TimedEngine::new(engine, true, threads));
         };
         for threads in [1, threads] {
             let setup = Setup {
@@ -132,10 +132,10 @@ fn rows(
     bodies: usize,
     (threads, turn): (usize, usize),
     names: &[&'static str],
-    timed: &[Timed],
+    timed: &[TimedEngine],
 ) -> miette::Result<Vec<SpeedUp>> {
     let (alone, together) = timed.split_at(timed.len() / 2);
-    let sorted = |timed: &Timed| {
+    let sorted = |timed: &TimedEngine| {
         let mut pairs = timed.engine.pairs();
         pairs.iter_mut().for_each(|pair| pair.sort_unstable());
         pairs.sort_unstable();
@@ -215,7 +215,7 @@ fn touch(numbers: &mut [f32]) {
     }
 }
 
-fn page(measured: &Measured, threads: usize) -> String {
+fn page(measured: &ControlResults, threads: usize) -> String {
     let mut out = format!("# What {threads} threads are worth\n\n{}", measured.facts);
     let _ = write!(
         out,

@@ -73,7 +73,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
     if rows.is_empty() {
         return Err(miette!(
             help = "run the benches first: `cargo bench --bench ordop`",
-            "no estimates of criterion's in {}",
+            "no results of criterion in {}",
             args.from.display()
         ));
     }

@@ -50,7 +50,7 @@ use scenes::{Order, Schedule, Spread};
 #[command(args_conflicts_with_subcommands = true)]
 struct Cli {
     #[command(subcommand)]
-    other: Option<Other>,
+    other: Option<OtherCommand>,
     /// Numbers of bodies
     #[arg(
         long,
@@ -88,7 +88,7 @@ struct Cli {
 }
 
 #[derive(Subcommand)]
-enum Other {
+enum OtherCommand {
     Narrow(narrow::Args),
     Control(control::Args),
     Kernels(kernels::Args),
@@ -100,11 +100,13 @@ fn main() -> miette::Result<()> {
     let cli = Cli::parse();
     threads::claim_caller()?;
     match &cli.other {
-        Some(Other::Narrow(args)) => return narrow::run(args),
-        Some(Other::Control(args)) => return threads::outside_of_pools(|| control::run(args)),
-        Some(Other::Kernels(args)) => return kernels::run(args),
-        Some(Other::Verdicts(args)) => return verdicts::run(args),
-        Some(Other::Answer(args)) => return verdicts::answer(args),
+        Some(OtherCommand::Narrow(args)) => return narrow::run(args),
+        Some(OtherCommand::Control(args)) => {
+            return threads::outside_of_pools(|| control::run(args));
+        }
+        Some(OtherCommand::Kernels(args)) => return kernels::run(args),
+        Some(OtherCommand::Verdicts(args)) => return verdicts::run(args),
+        Some(OtherCommand::Answer(args)) => return verdicts::answer(args),
         None => {}
     }
     let entries = chosen(cli.peers.as_deref())?;

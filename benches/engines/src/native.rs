@@ -51,7 +51,7 @@ macro_rules! shim {
 pub(crate) use shim;
 
 /// An engine in C++ with the bodies of one scene.
-struct Native {
+struct NativeEngine {
     shim: Shim,
     peer: *mut c_void,
     bodies: usize,
@@ -65,14 +65,14 @@ pub fn new(setup: &Setup<'_>, shim: Shim) -> miette::Result<Engine> {
     if peer.is_null() {
         return Err(miette!("the engine can't be made"));
     }
-    Ok(Box::new(Native {
+    Ok(Box::new(NativeEngine {
         shim,
         peer,
         bodies: boxes.len(),
     }))
 }
 
-impl Contestant<Frame> for Native {
+impl Contestant<Frame> for NativeEngine {
     fn frame(&mut self, frame: &Frame) {
         assert_eq!(frame.boxes.len(), self.bodies, "a scene keeps its bodies");
         // SAFETY: as many boxes as the engine was made for; it looks at them during the call alone.
@@ -92,7 +92,7 @@ impl Contestant<Frame> for Native {
     }
 }
 
-impl Drop for Native {
+impl Drop for NativeEngine {
     fn drop(&mut self) {
         // SAFETY: made by the shim, ended once.
         unsafe { (self.shim.free)(self.peer) };

@@ -6,7 +6,7 @@ use std::path::Path;
 use miette::IntoDiagnostic as _;
 use serde::Serialize;
 
-use crate::compare::{Case, Compared, EngineTiming, LeftOut};
+use crate::compare::{Case, CaseTimings, EngineTiming, LeftOut};
 use crate::facts::{self, Facts};
 use crate::scenes::{Order, Spread};
 
@@ -30,7 +30,7 @@ impl Record {
     }
 
     /// Adds a case.
-    pub fn add(&mut self, compared: Compared) {
+    pub fn add(&mut self, compared: CaseTimings) {
         self.facts.look_again();
         self.rows.extend(compared.rows);
         self.left_out.extend(compared.left_out);

@@ -193,7 +193,7 @@ fn definition(spread: Spread, bodies: usize) -> String {
     )
 }
 
-/// Bodies by the Morton code of their cell, 1024 cells a side.
+/// Bodies by the Morton code of their cell, 1024 cells per side.
 fn along_curve(places: &[[f32; 3]]) -> Vec<usize> {
     let reach = places.iter().flatten().fold(0.0_f32, |m, x| m.max(x.abs()));
     let code = |place: &[f32; 3]| {

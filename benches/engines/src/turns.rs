@@ -7,7 +7,7 @@ use crate::entry::Engine;
 use crate::scenes::{Course, Schedule};
 
 /// An engine with the times of its frames.
-pub struct Timed {
+pub struct TimedEngine {
     /// The engine.
     pub engine: Engine,
     /// Whether it keeps anything but buffers from frame to frame; if not, it joins for the last
@@ -19,7 +19,7 @@ pub struct Timed {
     pub ms: Vec<f64>,
 }
 
-impl Timed {
+impl TimedEngine {
     /// An engine without times yet.
     pub fn new(engine: Engine, ages: bool, threads: usize) -> Self {
         Self {
@@ -48,8 +48,8 @@ fn means(ms: &[f64], turn: usize) -> Vec<f64> {
 pub fn take_turns(
     mut course: Course,
     schedule: Schedule,
-    build: impl FnOnce(&Course, &Frame) -> miette::Result<Vec<Timed>>,
-) -> miette::Result<(Vec<Timed>, Frame)> {
+    build: impl FnOnce(&Course, &Frame) -> miette::Result<Vec<TimedEngine>>,
+) -> miette::Result<(Vec<TimedEngine>, Frame)> {
     let Schedule {
         warm_up,
         timed,

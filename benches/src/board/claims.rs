@@ -48,7 +48,7 @@ pub struct Adapter {
     pub touching: bool,
     /// Cases outside of its claim.
     #[serde(default)]
-    pub unclaimed: Vec<Unclaimed>,
+    pub unclaimed: Vec<UnclaimedCases>,
     /// Its known verdict.
     pub verdict: String,
     /// Whether it is part of the short run.
@@ -59,7 +59,7 @@ pub struct Adapter {
 /// Cases for which a library makes no claim.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct Unclaimed {
+pub struct UnclaimedCases {
     /// A pattern of their names.
     pub cases: String,
     /// The library's statement.
@@ -111,7 +111,7 @@ impl Adapter {
     /// The reason why a case is outside of the library's claim, if it is.
     #[must_use]
     pub fn disclaims(&self, case: &str) -> Option<&str> {
-        let is_about = |unclaimed: &&Unclaimed| matches(&unclaimed.cases, case);
+        let is_about = |unclaimed: &&UnclaimedCases| matches(&unclaimed.cases, case);
         self.unclaimed
             .iter()
             .find(is_about)

@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use super::claims::Adapter;
 use super::speed::Speed;
-use crate::view::{Page, Show};
+use crate::view::{Page, ShownRun};
 
 /// Time limit of a case; libraries that compile at their first call need it.
 const TIMEOUT: Duration = Duration::from_secs(120);
@@ -372,7 +372,7 @@ impl Counter {
 fn picture(smallest: &Smallest, adapter: &Adapter) -> String {
     let pairs = Some(smallest.pairs.clone());
     let source = Path::new("missed-pair.ndjson");
-    let Ok(mut show) = Show::case(&smallest.case, pairs, source) else {
+    let Ok(mut show) = ShownRun::case(&smallest.case, pairs, source) else {
         return String::new();
     };
     show.header.program = Some(adapter.name.clone());

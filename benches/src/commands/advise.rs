@@ -2,7 +2,7 @@
 
 use miette::miette;
 use sdop::settings::{CullSettings, Strategy};
-use sdop_bench::tradeoff::advise::{Advice, Candidate, FRAMES, Tried, advise};
+use sdop_bench::tradeoff::advise::{Advice, Candidate, CandidateFilter, FRAMES, advise};
 
 use super::Outcome;
 use super::output::{Format, emit, rows};
@@ -38,7 +38,7 @@ pub struct Args {
 /// An invalid scene.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let file = args.scene.read()?;
-    let tried = Tried {
+    let tried = CandidateFilter {
         finder: args.scene.finder(),
         axes: args.scene.axes(),
     };

@@ -12,7 +12,7 @@ use sdop_bench::cost::design;
 use sdop_bench::cost::level::CacheLevel;
 use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::study::{CostPlan, CostReport, possible, study};
-use sdop_bench::cost::table::{Compared, Cost, MOST_RIGHT_RESIDUAL, PriceRow};
+use sdop_bench::cost::table::{CheckedPrediction, Cost, MOST_RIGHT_RESIDUAL, PriceRow};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::Estimate;
 
@@ -223,7 +223,7 @@ fn strategy_rows(report: &CostReport, regime: Regime) -> Table {
     ]);
     for cost in of(report, regime) {
         let us = |seconds: f64| hundredths(1e6 * seconds);
-        let Compared {
+        let CheckedPrediction {
             measured, residual, ..
         } = cost.frame;
         let mut row = vec![cost.variant.clone()];

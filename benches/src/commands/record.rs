@@ -15,10 +15,10 @@ use sdop_bench::report::{
 };
 
 use super::Outcome;
-use super::files::{COMMAND, write};
+use super::files::{COMMAND, SHARING, write};
 use super::output::{print, rows};
 use super::scene_args::MachineArgs;
-use super::sweep::{SHARING, SweepArgs};
+use super::sweep::SweepArgs;
 
 /// Run an experiment and store its measurements under data/record
 ///
@@ -246,8 +246,8 @@ fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> 
     };
     if let Some(flag) = SHARING.iter().chain(&["--simd"]).find(behind) {
         return Err(miette!(
-            help = "put it before the --: the record is of what it asks for",
-            "{flag} behind the --"
+            help = "put it before the --: it decides what is recorded",
+            "{flag} after the --"
         ));
     }
     let mut more = args.more.clone();
@@ -260,7 +260,7 @@ fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> 
         };
         if !experiment.steps.iter().all(ours) {
             return Err(miette!(
-                help = "only what sdop runs itself takes a level",
+                help = "leave the level out: only experiments that sdop runs itself can be limited to one",
                 "{} chooses its SIMD levels",
                 experiment.name
             ));

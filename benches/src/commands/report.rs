@@ -150,7 +150,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     if problems.is_empty() {
         print(&format!(
-            "{} records whole, {} pages agree with them; {} numbers stand on more than one page, each the same",
+            "{} records are intact, {} pages agree with them, and {} numbers look the same on several pages",
             names.len(),
             pages.len(),
             quantities.on_several_pages().len()

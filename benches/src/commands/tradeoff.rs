@@ -10,7 +10,7 @@ use etcetera::BaseStrategy as _;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::measure::machine::Machine;
-use sdop_bench::sweep::Merged;
+use sdop_bench::sweep::MergedUnits;
 pub use sdop_bench::tradeoff::units::NAME;
 use sdop_bench::tradeoff::units::{Comparison, Settings};
 use sdop_bench::tradeoff::{Findings, Tradeoff, TradeoffPlan};
@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 ///
 /// # Errors
 /// Results of another command, files that can't be written.
-pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
+pub fn merged(merged: &MergedUnits, out: &Path, format: Format) -> miette::Result<Outcome> {
     let settings: Settings = merged.header.settings().into_diagnostic()?;
     let mut findings = Findings::default();
     for result in merged.done.values() {

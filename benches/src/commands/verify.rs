@@ -11,12 +11,12 @@ use clap::builder::PossibleValuesParser;
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::Tier;
 use sdop_bench::scene::{Scene, SceneFile};
-use sdop_bench::sweep::Merged;
+use sdop_bench::sweep::MergedUnits;
 use sdop_bench::verify::shrink::SmallestScene;
 pub use sdop_bench::verify::units::NAME;
 use sdop_bench::verify::units::{Settings, UnitOrigin, Verification};
-use sdop_judge::every_way::rounds::{Failure, Ledger};
 use sdop_judge::every_way::subject::EveryWay;
+use sdop_judge::every_way::{Failure, Ledger};
 use sdop_judge::ours::hard::{FILES, Group, page};
 use sdop_judge::ours::ways::Rotation;
 use sdop_judge::{Claim, Options, examine};
@@ -138,7 +138,7 @@ fn tiers(args: &Args) -> Vec<Tier> {
 ///
 /// # Errors
 /// Results of another command, a CPU that lacks a tier, a directory that can't be written.
-pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
+pub fn merged(merged: &MergedUnits, out: &Path, format: Format) -> miette::Result<Outcome> {
     let settings = merged.header.settings().into_diagnostic()?;
     let run = Verification::new(settings)?;
     let mut taken = UnitTotals::default();

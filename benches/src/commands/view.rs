@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop::files::Whole;
+use sdop::files::WholeFile;
 use sdop::settings::{CullSettings, Strategy};
 use sdop_bench::remedy::OrReport as _;
-use sdop_bench::view::{Culled, Page, Show, decide_truth};
+use sdop_bench::view::{Page, ShownRun, ShownStrategy, decide_truth};
 
 use super::Outcome;
 use super::output::{print, progress};
@@ -67,7 +67,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let tier = args.machine.tier();
     let (page, name, broken) =
         match input::read(&args.scene, args.run, args.answers.as_deref(), tier)? {
-            ViewInput::Show(mut show, broken) => {
+            ViewInput::Run(mut show, broken) => {
                 let culled = culled(args, &show)?;
                 if !args.no_truth {
                     let bar = progress(show.frames.len() as u64, "which meshes meet");
@@ -98,7 +98,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 }
 
 /// What is shown: the pairs as recorded, and a second strategy's or record's.
-fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
+fn culled(args: &Args, show: &ShownRun) -> miette::Result<Vec<ShownStrategy>> {
     let mut culled = vec![show.recorded()];
     let Some(beside) = &args.beside else {
         return Ok(culled);
@@ -118,7 +118,7 @@ fn culled(args: &Args, show: &Show) -> miette::Result<Vec<Culled>> {
             ));
         }
         Err(_) => {
-            let (other, broken) = Show::record(Path::new(beside), None).or_report()?;
+            let (other, broken) = ShownRun::record(Path::new(beside), None).or_report()?;
             if let Some(error) = broken {
                 return Err(error).or_report();
             }
@@ -169,7 +169,7 @@ fn open(path: &Path) -> miette::Result<()> {
 
 fn write_page(page: &Page, path: &Path) -> miette::Result<u64> {
     let cannot = || format!("cannot write {}", path.display());
-    let mut file = Whole::create(path)
+    let mut file = WholeFile::create(path)
         .into_diagnostic()
         .wrap_err_with(cannot)?;
     page.write(&mut file)

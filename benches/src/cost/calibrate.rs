@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use super::design::{self, DENSITIES, SCENES};
 use super::expected;
-use super::explain::{self, Calibrated, Observed, Round, Split};
+use super::explain::{self, HitPremium, Round, TurnObservation, VariantTurns};
 use super::level::CacheLevel;
 use super::predict::Prices;
 use crate::measure::counts::{Counts, Volume};
@@ -41,16 +41,16 @@ pub struct Effort {
 }
 
 /// A variant, its constant data, and its observations in a round.
-struct Prepared {
+struct PreparedVariant {
     variant: Variant,
     shapes: Vec<Shape>,
     /// Seconds that each of its volumes takes for all shapes, in some turns.
     volumes: Vec<Vec<f64>>,
-    observed: [Vec<Observed>; 2],
-    splits: Vec<Split>,
+    observed: [Vec<TurnObservation>; 2],
+    splits: Vec<HitPremium>,
 }
 
-impl Prepared {
+impl PreparedVariant {
     fn new(variant: &Variant, scene: &Scene) -> Self {
         Self {
             shapes: variant.shapes(scene),
@@ -61,10 +61,10 @@ impl Prepared {
         }
     }
 
-    fn calibrated(&self, regime: usize) -> Calibrated<'_> {
+    fn calibrated(&self, regime: usize) -> VariantTurns<'_> {
         let volumes = self.variant.volumes().len();
         let built = |volume| median(self.volumes.iter().map(|turn| turn[volume]).collect());
-        Calibrated {
+        VariantTurns {
             variant: &self.variant,
             turns: &self.observed[regime],
             built: (0..volumes).map(built).collect(),
@@ -76,7 +76,7 @@ impl Prepared {
 /// The calibration of some variants for scenes of one kind.
 pub struct Calibration {
     /// The variants, followed by those whose prices they share.
-    prepared: Vec<Prepared>,
+    prepared: Vec<PreparedVariant>,
     variants: usize,
     spheres: usize,
     subjects: Vec<(Scene, Trajectory)>,
@@ -114,7 +114,7 @@ impl Calibration {
         Ok(Self {
             prepared: all
                 .iter()
-                .map(|variant| Prepared::new(variant, scene))
+                .map(|variant| PreparedVariant::new(variant, scene))
                 .collect(),
             variants: variants.len(),
             spheres: all
@@ -192,7 +192,7 @@ impl Calibration {
         });
         let listed = cullers[self.spheres].pairs();
         for (at, prepared) in self.prepared.iter_mut().enumerate() {
-            let observed = Observed {
+            let observed = TurnObservation {
                 bodies: scene.bodies.len(),
                 frames: poses.len(),
                 counts: cullers[at].counts().since(&before[at]),
@@ -201,11 +201,11 @@ impl Calibration {
             };
             for (&regime, all) in Regime::ALL.iter().zip(&mut prepared.observed) {
                 let stages = times[at].medians(regime);
-                all.push(Observed { stages, ..observed });
+                all.push(TurnObservation { stages, ..observed });
             }
             if subject == MOST_PAIRS {
                 let kept = cullers[at].pairs();
-                let split = Split::of(
+                let split = HitPremium::of(
                     &prepared.variant,
                     &prepared.shapes,
                     &poses[poses.len() - 1],

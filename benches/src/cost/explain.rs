@@ -6,8 +6,8 @@
 //! alone: spheres with the strategy of spheres, or-DOPs with the sequential S-DOP of the same
 //! settings. What another strategy costs in addition is priced per frame, and per pair that it
 //! lists. The share of hits in a second test is always about the same, so that no choice of scenes
-//! could separate the price of a hit from that of a miss: lists with known shares do ([`Split`]),
-//! and the frames determine the level.
+//! could separate the price of a hit from that of a miss: lists with known shares do
+//! ([`HitPremium`]), and the frames determine the level.
 
 use super::VolumeCosts;
 use super::expected;
@@ -36,7 +36,7 @@ const FEWEST_PAIRS: usize = 32;
 
 /// One turn of one calibration scene.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Observed {
+pub(super) struct TurnObservation {
     pub bodies: usize,
     pub frames: usize,
     /// Over all frames of the turn.
@@ -47,7 +47,7 @@ pub(super) struct Observed {
     pub construct: f64,
 }
 
-impl Observed {
+impl TurnObservation {
     fn per_frame(&self, count: u64) -> f64 {
         count as f64 / self.frames as f64
     }
@@ -55,9 +55,9 @@ impl Observed {
 
 /// The price of a hit of a second test minus that of a miss, in seconds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Split(f64);
+pub(super) struct HitPremium(f64);
 
-impl Split {
+impl HitPremium {
     /// Times lists of which a quarter and three quarters hit. `None` if there is no second test, or
     /// too few pairs.
     pub fn of(
@@ -117,12 +117,12 @@ fn mixture(listed: &[[u32; 2]], kept: &[[u32; 2]], quarters: usize) -> Option<Pa
 }
 
 /// A variant's turns in a round.
-pub(super) struct Calibrated<'a> {
+pub(super) struct VariantTurns<'a> {
     pub variant: &'a Variant,
-    pub turns: &'a [Observed],
+    pub turns: &'a [TurnObservation],
     /// Seconds of building each of its volumes of all shapes.
     pub built: Vec<f64>,
-    pub splits: &'a [Split],
+    pub splits: &'a [HitPremium],
 }
 
 /// The facts that hold for all variants of a round.
@@ -133,22 +133,22 @@ pub(super) struct Round {
 }
 
 /// The prices of every variant. They include spheres alone, and for each that refines its [anchor].
-pub(super) fn prices(all: &[Calibrated<'_>], round: Round) -> Vec<Prices> {
+pub(super) fn prices(all: &[VariantTurns<'_>], round: Round) -> Vec<Prices> {
     let spheres = all
         .iter()
         .find(|one| one.variant.volumes() == [Volume::Sphere]);
     let spheres = spheres.map_or_else(VolumeCosts::default, |one| {
         alone(Volume::Sphere, one.turns, round.lanes)
     });
-    let refined = |one: &Calibrated<'_>| {
+    let refined = |one: &VariantTurns<'_>| {
         let wanted = anchor(one.variant)?;
-        let is_anchor = |other: &&Calibrated<'_>| {
+        let is_anchor = |other: &&VariantTurns<'_>| {
             (&other.variant.settings, other.variant.hulls) == (&wanted.settings, false)
         };
         let anchor = all.iter().find(is_anchor)?;
         Some(refining(anchor, &spheres, round.lanes))
     };
-    let of = |one: &Calibrated<'_>| {
+    let of = |one: &VariantTurns<'_>| {
         let costs = match *one.variant.volumes().as_slice() {
             [] => Vec::new(),
             [Volume::Sphere] => vec![spheres],
@@ -179,8 +179,8 @@ pub(super) fn anchor(variant: &Variant) -> Option<Variant> {
 }
 
 /// Adds the price of building: each volume's own, and to the last one the culler's.
-fn constructed(one: &Calibrated<'_>, mut costs: Vec<VolumeCosts>) -> Vec<Price> {
-    let row = |turn: &Observed| Measurement::of([1.0, turn.bodies as f64], turn.construct);
+fn constructed(one: &VariantTurns<'_>, mut costs: Vec<VolumeCosts>) -> Vec<Price> {
+    let row = |turn: &TurnObservation| Measurement::of([1.0, turn.bodies as f64], turn.construct);
     let [empty, body] = fit::prices(&one.turns.iter().map(row).collect::<Vec<_>>());
     for (costs, built) in costs.iter_mut().zip(&one.built) {
         costs.construct = *built;
@@ -196,9 +196,9 @@ fn constructed(one: &Calibrated<'_>, mut costs: Vec<VolumeCosts>) -> Vec<Price> 
 }
 
 /// The prices of a volume that is tested alone.
-fn alone(volume: Volume, turns: &[Observed], lanes: usize) -> VolumeCosts {
+fn alone(volume: Volume, turns: &[TurnObservation], lanes: usize) -> VolumeCosts {
     let [per_frame, update] = update(volume, turns, (volume, 0.0));
-    let row = |turn: &Observed| {
+    let row = |turn: &TurnObservation| {
         let first = FirstTest::of(volume, &turn.counts, turn.frames as f64, turn.bodies as f64);
         // Oriented volumes have no first test; they are tested when others refine.
         let seconds = turn.stages.finding + turn.stages.refining;
@@ -219,8 +219,8 @@ fn alone(volume: Volume, turns: &[Observed], lanes: usize) -> VolumeCosts {
 }
 
 /// Updates: seconds per frame and per update of `volume`, given the price of `other`'s.
-fn update(volume: Volume, turns: &[Observed], (other, price): (Volume, f64)) -> [f64; 2] {
-    let row = |turn: &Observed| Measurement {
+fn update(volume: Volume, turns: &[TurnObservation], (other, price): (Volume, f64)) -> [f64; 2] {
+    let row = |turn: &TurnObservation| Measurement {
         counts: [1.0, turn.per_frame(turn.counts.of(volume).updates)],
         seconds: turn.stages.update - price * turn.per_frame(turn.counts.of(other).updates),
         whole: turn.stages.update,
@@ -229,10 +229,10 @@ fn update(volume: Volume, turns: &[Observed], (other, price): (Volume, f64)) -> 
 }
 
 /// Cu and Cv of or-DOPs after spheres, from the variant that only refines.
-fn refining(anchor: &Calibrated<'_>, spheres: &VolumeCosts, lanes: usize) -> VolumeCosts {
+fn refining(anchor: &VariantTurns<'_>, spheres: &VolumeCosts, lanes: usize) -> VolumeCosts {
     let known = (Volume::Sphere, spheres.update);
     let [_, update] = update(Volume::OrDop, anchor.turns, known);
-    let stage = |turn: &Observed| (Volume::OrDop, turn.stages.refining);
+    let stage = |turn: &TurnObservation| (Volume::OrDop, turn.stages.refining);
     let [_, _, hit, miss] = second_test(anchor, lanes, stage);
     VolumeCosts {
         update,
@@ -243,7 +243,7 @@ fn refining(anchor: &Calibrated<'_>, spheres: &VolumeCosts, lanes: usize) -> Vol
 }
 
 /// The prices of hulls after spheres, whose poses are computed in their tests.
-fn hulls(one: &Calibrated<'_>) -> VolumeCosts {
+fn hulls(one: &VariantTurns<'_>) -> VolumeCosts {
     let [frame, update, hit, miss] = second_test(one, 1, |turn| (Volume::Hull, turn.stages.hulls));
     VolumeCosts {
         update,
@@ -257,13 +257,13 @@ fn hulls(one: &Calibrated<'_>) -> VolumeCosts {
 /// The prices of a second test: per frame, per update (of hulls), per hit, and per miss or idle
 /// lane. The level comes from the frames, the difference of hit and miss from the splits.
 fn second_test(
-    one: &Calibrated<'_>,
+    one: &VariantTurns<'_>,
     lanes: usize,
-    stage: impl Fn(&Observed) -> (Volume, f64),
+    stage: impl Fn(&TurnObservation) -> (Volume, f64),
 ) -> [f64; 4] {
     let split = one.splits.iter().map(|split| split.0).sum::<f64>();
     let split = split / one.splits.len().max(1) as f64;
-    let row = |turn: &Observed| {
+    let row = |turn: &TurnObservation| {
         let (volume, seconds) = stage(turn);
         let counters = turn.counts.of(volume);
         let updates = if volume == Volume::Hull {
@@ -288,7 +288,7 @@ fn second_test(
 
 /// A second volume's prices with the strategy's additional ones: per frame, and per pair that
 /// passes the first test.
-fn beyond(one: &Calibrated<'_>, [first, second]: [VolumeCosts; 2], round: Round) -> VolumeCosts {
+fn beyond(one: &VariantTurns<'_>, [first, second]: [VolumeCosts; 2], round: Round) -> VolumeCosts {
     let volumes = one.variant.volumes().into_iter().zip([first, second]);
     let known = Prices {
         variant: String::new(),
@@ -298,7 +298,7 @@ fn beyond(one: &Calibrated<'_>, [first, second]: [VolumeCosts; 2], round: Round)
             .map(|(volume, costs)| Price { volume, costs })
             .collect(),
     };
-    let row = |turn: &Observed| {
+    let row = |turn: &TurnObservation| {
         let terms = known.predict(&turn.counts, turn.frames as u32, turn.bodies);
         let explained: f64 = terms.iter().map(Terms::recurring).sum();
         let whole = turn.stages.total();
@@ -349,7 +349,7 @@ mod tests {
     /// Turns of the design's sizes and shares, with the counts of all pairs and the times of known
     /// prices, which scatter by 1 %. The seconds are summed here term by term, not by the tested
     /// code.
-    fn turns(first: Volume, refines: bool, handle: f64) -> Vec<Observed> {
+    fn turns(first: Volume, refines: bool, handle: f64) -> Vec<TurnObservation> {
         let mut all = Vec::new();
         for (number, (bodies, share)) in design::grid(CacheLevel::L2).into_iter().enumerate() {
             let (n, moving) = (bodies as f64, (0.8 * bodies as f64).round());
@@ -397,7 +397,7 @@ mod tests {
             stages.update *= scatter;
             stages.finding *= scatter;
             stages.refining *= scatter;
-            all.push(Observed {
+            all.push(TurnObservation {
                 bodies,
                 frames: 1,
                 counts,
@@ -415,7 +415,7 @@ mod tests {
             .map(|(strategy, handle)| (Variant::strategy(&settings, *strategy), *handle))
             .collect();
         let second = known(Volume::OrDop);
-        let splits = [Split(second.hit - second.miss)];
+        let splits = [HitPremium(second.hit - second.miss)];
         let observed: Vec<_> = variants
             .iter()
             .map(|(variant, handle)| match *variant.volumes().as_slice() {
@@ -426,7 +426,7 @@ mod tests {
         let all: Vec<_> = variants
             .iter()
             .zip(&observed)
-            .map(|((variant, _), turns)| Calibrated {
+            .map(|((variant, _), turns)| VariantTurns {
                 variant,
                 turns,
                 built: vec![1e-3; variant.volumes().len()],

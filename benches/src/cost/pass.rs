@@ -17,7 +17,7 @@ use sdop::volume::Shape;
 
 /// The results of one variant in a run.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
-pub struct Culled {
+pub struct VariantRun {
     /// Its frames' times.
     pub times: FrameTimes,
     /// Its counters.
@@ -32,7 +32,7 @@ pub struct Culled {
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Pass {
     /// The results of each variant.
-    pub culled: Vec<Culled>,
+    pub culled: Vec<VariantRun>,
     /// The prices of each variant for warm and for cold frames, from the round before the run;
     /// empty without a calibration.
     pub prices: [Vec<Prices>; 2],
@@ -58,14 +58,14 @@ pub trait Frames {
 }
 
 /// The frames of a scene's run, from the first on.
-pub struct Simulated {
+pub struct SceneFrames {
     trajectory: Trajectory,
     bodies: usize,
     frames: u32,
     steps: Vec<f64>,
 }
 
-impl Simulated {
+impl SceneFrames {
     /// The first `frames` frames.
     ///
     /// # Errors
@@ -80,7 +80,7 @@ impl Simulated {
     }
 }
 
-impl Frames for Simulated {
+impl Frames for SceneFrames {
     fn turns(&self) -> usize {
         (self.frames as usize).div_ceil(turn_frames(self.bodies))
     }
@@ -124,7 +124,7 @@ pub fn pass(
     calibration: Option<&mut Calibration>,
     observer: &mut dyn Observer,
 ) -> Result<Pass, SimulationError> {
-    let mut culled = vec![Culled::default(); variants.len()];
+    let mut culled = vec![VariantRun::default(); variants.len()];
     let shapes: Vec<Vec<Shape>> = variants
         .iter()
         .map(|variant| variant.shapes(scene))

@@ -6,7 +6,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::calibrate::{Calibration, Effort};
-use super::pass::{Pass, Simulated, pass};
+use super::pass::{Pass, SceneFrames, pass};
 use super::table::{self, Cost, PriceRow};
 use crate::measure::conditions::Conditions;
 use crate::measure::machine::Machine;
@@ -106,7 +106,7 @@ pub fn study(
     for &seed in &seeds {
         file.spec.seed = seed;
         let scene = file.build()?;
-        let mut frames = Simulated::new(&scene, plan.frames)?;
+        let mut frames = SceneFrames::new(&scene, plan.frames)?;
         let calibration = Some(&mut calibration);
         passes.push(pass(
             &scene,

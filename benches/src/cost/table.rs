@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::VolumeCosts;
 use super::level::CacheLevel;
-use super::pass::{Culled, Pass};
+use super::pass::{Pass, VariantRun};
 use super::predict::{Prices, TermWidths, Terms};
 use crate::measure::counts::Volume;
 use crate::measure::culling::StageSeconds;
@@ -17,7 +17,7 @@ use sdop::settings::Strategy;
 
 /// A number as predicted and as measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Compared {
+pub struct CheckedPrediction {
     /// The value from prices and counts.
     pub predicted: Estimate,
     /// The value by the clock.
@@ -26,7 +26,7 @@ pub struct Compared {
     pub residual: Estimate,
 }
 
-impl Compared {
+impl CheckedPrediction {
     /// Compares predicted and measured values, pass by pass in the order of time, given also the
     /// prediction with each round's own prices.
     #[must_use]
@@ -91,13 +91,13 @@ pub struct Cost {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub widths: Vec<TermWidths>,
     /// Seconds per frame without construction: the terms' sum, and the median over frames.
-    pub frame: Compared,
+    pub frame: CheckedPrediction,
     /// The frames' quartiles, means over passes.
     pub quartiles: Quartiles,
     /// Co, seconds.
-    pub construct: Compared,
+    pub construct: CheckedPrediction,
     /// T = Co + all frames, seconds.
-    pub total: Compared,
+    pub total: CheckedPrediction,
     /// The assumption that fails, if the residual of a frame is above [`MOST_RIGHT_RESIDUAL`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fails: Option<Assumption>,
@@ -131,17 +131,18 @@ pub fn cost(
 ) -> Option<Cost> {
     let rounds = rounds(priced, at, regime);
     let prices = Prices::mean(rounds.iter().copied())?;
-    let culled: Vec<&Culled> = passes
+    let culled: Vec<&VariantRun> = passes
         .iter()
         .map(|pass| pass.culled.get(at))
         .collect::<Option<_>>()?;
-    let terms_at =
-        |prices: &Prices, culled: &Culled| prices.predict(&culled.counts, culled.frames, bodies);
+    let terms_at = |prices: &Prices, culled: &VariantRun| {
+        prices.predict(&culled.counts, culled.frames, bodies)
+    };
     let parts: Vec<Vec<Terms>> = culled
         .iter()
         .map(|culled| terms_at(&prices, culled))
         .collect();
-    let is_timed = |culled: &&&Culled| !culled.times.of(regime).is_empty();
+    let is_timed = |culled: &&&VariantRun| !culled.times.of(regime).is_empty();
     let (first, last) = (
         parts.first().filter(|terms| !terms.is_empty())?,
         culled.last()?,
@@ -159,7 +160,7 @@ pub fn cost(
         let pass = |(number, terms): (usize, &Vec<Terms>)| [predicted(terms), measured(number)];
         let passes: Vec<_> = parts.iter().enumerate().map(pass).collect();
         let rounds: Vec<_> = by_round.iter().map(|terms| predicted(terms)).collect();
-        Compared::of(&passes, &rounds)
+        CheckedPrediction::of(&passes, &rounds)
     };
     let per_frame = |terms: &[Terms]| terms.iter().map(Terms::recurring).sum::<f64>();
     let once = |terms: &[Terms]| terms.iter().map(|terms| terms.construct).sum::<f64>();
@@ -196,7 +197,12 @@ pub fn cost(
 
 /// The assumption that fails: a steady machine if the residual is within its own interval,
 /// otherwise that of the stage with the largest error.
-fn failing(frame: &Compared, terms: &[Terms], culled: &[&Culled], regime: Regime) -> Assumption {
+fn failing(
+    frame: &CheckedPrediction,
+    terms: &[Terms],
+    culled: &[&VariantRun],
+    regime: Regime,
+) -> Assumption {
     if frame.residual.half_width.is_finite() && frame.residual.covers(0.0) {
         return Assumption::Steady;
     }

@@ -4,9 +4,9 @@
 //! Hulls A and B meet iff their difference A ⊖ B contains the origin. GJK walks towards the origin
 //! over simplices of that set. A pair is culled only on a direction d along which *every* vertex of
 //! A lies below every vertex of B by more than the rounding, so that the hull keeps the culler's
-//! promise; a walk that ends undecided reports. No kept crate certifies: their f32 tolerances cull
-//! touching pairs. Supports climb over the hull's edges from the last vertex found; rounding can
-//! strand a climb, so the certificate scans all vertices.
+//! promise; if the walk is undecided, the pair is reported. No maintained crate certifies its
+//! rejections: their f32 tolerances cull touching pairs. Supports climb over the hull's edges from
+//! the last vertex found; rounding can strand a climb, so the certificate scans all vertices.
 
 use glam::{DMat3, DVec3};
 

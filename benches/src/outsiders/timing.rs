@@ -122,9 +122,9 @@ pub fn compare(
     rounds: u32,
 ) -> Result<Vec<ContestantTiming>, TimingError> {
     let strategy = strategy(case.claim);
-    let mut theirs = Timed::new(name.to_owned(), "self-reported");
-    let mut own =
-        strategy.map(|strategy| Timed::new(format!("sdop {strategy}"), "wall, around the call"));
+    let mut theirs = TimedContestant::new(name.to_owned(), "self-reported");
+    let mut own = strategy
+        .map(|strategy| TimedContestant::new(format!("sdop {strategy}"), "wall, around the call"));
     for round in 0..rounds {
         if let (Some(own), Some(strategy)) = (&mut own, strategy) {
             own.add(case, Ok(ours(strategy, case)?), round == 0)?;
@@ -133,11 +133,15 @@ pub fn compare(
             theirs.add(case, subject.answer(case), true)?;
         }
     }
-    Ok(own.into_iter().chain([theirs]).map(Timed::timing).collect())
+    Ok(own
+        .into_iter()
+        .chain([theirs])
+        .map(TimedContestant::timing)
+        .collect())
 }
 
 /// A contestant between its turns.
-struct Timed {
+struct TimedContestant {
     name: String,
     clock: &'static str,
     outcome: Outcome,
@@ -145,7 +149,7 @@ struct Timed {
     times: Vec<u64>,
 }
 
-impl Timed {
+impl TimedContestant {
     fn new(name: String, clock: &'static str) -> Self {
         Self {
             name,

@@ -4,7 +4,7 @@
 //! `pages/benches/README.md` gives `benches/README.md`. A page that people write carries whole
 //! blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a separate line, from the
 //! template `paper/templates/NAME.md`. Templates are Jinja's; macros that they share are in one
-//! file, `q` in expressions.
+//! file, `q` in expressions. Paragraphs are filled ([`super::fill`]).
 //!
 //! | function or filter | gives |
 //! |---|---|
@@ -22,6 +22,7 @@
 //! that of any.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use miette::Diagnostic;
@@ -31,6 +32,7 @@ use minijinja::{Environment, Error, ErrorKind, Output, State, Value, context, es
 use serde_json::Value as Json;
 
 use super::digits::{self, Quantities, markdown_table, significant, thousands};
+use super::fill::filled;
 use super::store::Store;
 use crate::measure::estimate::Estimate;
 
@@ -66,11 +68,13 @@ pub struct PageError {
 /// An expression that has no value, a record that was changed.
 pub fn whole(page: &str, template: &str, sources: &PageSources) -> Result<String, PageError> {
     let environment = environment(page, sources)?;
-    evaluate(&environment, template).map_err(|error| PageError {
+    let text = evaluate(&environment, template).map_err(|error| PageError {
         page: format!("{WHOLE}/{page}"),
         line: error.line().unwrap_or(0),
         problem: said(&error),
-    })
+    })?;
+    let is_markdown = Path::new(page).extension().is_some_and(|e| e == "md");
+    Ok(if is_markdown { filled(&text) } else { text })
 }
 
 /// A page that people write, with its blocks as its records have them. Nothing outside of blocks
@@ -98,8 +102,7 @@ pub fn blocks(page: &str, text: &str, sources: &PageSources) -> Result<String, P
             .get(name)
             .ok_or_else(|| failed(format!("no template `paper/templates/{name}.md`")))?;
         let value = evaluate(&environment, template).map_err(|error| failed(said(&error)))?;
-        out.push_str(value.trim_matches('\n'));
-        out.push('\n');
+        out.push_str(&filled(&format!("{}\n", value.trim_matches('\n'))));
         let (_, end) = lines
             .find(|(_, line)| marked(line, "END") == Some(name) || marked(line, "BEGIN").is_some())
             .filter(|(_, line)| marked(line, "END").is_some())
@@ -349,7 +352,7 @@ mod tests {
         let template = "a 1\n{% set t = csv(\"box/kernels/t.csv\") %}\n\
                         It is {{ (t | one(tier=\"avx2\")).us.mean | fixed(1) }} µs, {{ q.us(t[0]) }}\n";
         let page = whole("page.md", template, &sources).unwrap();
-        assert_eq!(page, "a 1\nIt is 62.1 µs, 300.9 µs\n");
+        assert_eq!(page, "a 1 It is 62.1 µs, 300.9 µs\n");
         assert_eq!(sources.store.used().len(), 1);
     }
 

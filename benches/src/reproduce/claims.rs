@@ -4,8 +4,9 @@
 //! usual box and for both F.
 
 use super::check::{ClaimCheck, PaperClaim};
-use super::experiment::{PaperScene, Results, STRATEGIES};
-use super::immediate::{Handing, Immediacy};
+use super::experiment::Results;
+use super::immediate::{Handing, HandingTimes};
+use super::plan::{PaperScene, STRATEGIES};
 use super::rates::{OTHER_FRAME_SECONDS, ratio};
 use super::readings::{Reading, TABLE_1_STRATEGIES};
 use super::{Estimate, paper_name};
@@ -94,7 +95,7 @@ fn at_once(results: &Results) -> Vec<ClaimCheck> {
             [Handing::ScalarList, Handing::EachPair],
             [Handing::List, Handing::Sixteen],
         ] {
-            let of = |run: &Immediacy| {
+            let of = |run: &HandingTimes| {
                 let [list, once] = [list, once].map(|way| {
                     let place = Handing::ALL.iter().position(|&other| other == way);
                     place.map_or(f64::NAN, |place| run.seconds[place])

@@ -6,7 +6,7 @@
 //! first. Here a pair loop in scalar code hands on after every pair, after sixteen, or at the end;
 //! nothing else differs.
 
-use super::experiment::PaperScene;
+use super::plan::PaperScene;
 use crate::measure::turns::{Regime, Turns, median, next_turn};
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
@@ -58,7 +58,7 @@ impl Handing {
 
 /// What each way takes in one scene with one seed.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Immediacy {
+pub struct HandingTimes {
     /// The scene.
     pub scene: PaperScene,
     /// The seed.
@@ -144,7 +144,7 @@ pub fn measure(
     scene: &Scene,
     name: PaperScene,
     widest: Tier,
-) -> Result<Immediacy, SimulationError> {
+) -> Result<HandingTimes, SimulationError> {
     let way = |&handing: &Handing| PairLoop::new(scene, handing, widest);
     let mut loops: Vec<PairLoop<'_>> = Handing::ALL.iter().map(way).collect();
     let mut seconds = vec![Vec::new(); loops.len()];
@@ -161,7 +161,7 @@ pub fn measure(
             }
         });
     }
-    Ok(Immediacy {
+    Ok(HandingTimes {
         scene: name,
         seed: scene.seed,
         seconds: seconds.into_iter().map(median).collect(),

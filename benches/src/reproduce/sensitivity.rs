@@ -1,4 +1,4 @@
-//! What the paper doesn't state, swept: where bodies start, what a wall does, how many frames are
+//! Sweeps what the paper doesn't state: where bodies start, what a wall does, how many frames are
 //! counted, and which or-DOP is meant. Each combination is an interpretation of Table 1; its
 //! likelihood says how well it explains the table.
 //!
@@ -12,8 +12,8 @@ use std::num::NonZeroU32;
 use serde::Serialize;
 use toml::Spanned;
 
-use super::experiment::{ExperimentPlan, ReproduceError};
 use super::paper::{TABLE_1, TABLE_1_BODIES};
+use super::plan::{ExperimentPlan, ReproduceError};
 use crate::effects::walls;
 use crate::measure::culling::Culling;
 use crate::measure::variant::Variant;

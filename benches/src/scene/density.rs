@@ -1,4 +1,4 @@
-//! The box side that a wished density needs.
+//! The side of the box that gives a requested density.
 //!
 //! Spheres of radii r, uniform in a volume V, edges ignored: body i overlaps Σ_{j≠i} (4/3)π(rᵢ +
 //! rⱼ)³/V others in the mean. The mean over bodies is `partners`, so V =

@@ -15,7 +15,7 @@ use crate::effects::{EffectError, EffectReport, Effects};
 use crate::hash::volumes_sha256;
 use crate::hash::{PairsDigest, PairsHash};
 use crate::percentiles::Percentiles;
-use crate::remedy::Explained;
+use crate::remedy::WithRemedy;
 use crate::scene::{FineTranslations, Scene};
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::ContractError;
@@ -174,14 +174,14 @@ pub enum SimulationError {
         frame: u32,
         /// The body and what is wrong with it.
         #[diagnostic_source]
-        error: Explained<ContractError>,
+        error: WithRemedy<ContractError>,
     },
 }
 
 impl SimulationError {
     /// A body that left the contract in the step to `frame`.
     pub(crate) fn contract(frame: u32, error: ContractError) -> Self {
-        let error = Explained(error);
+        let error = WithRemedy(error);
         Self::Contract { frame, error }
     }
 }

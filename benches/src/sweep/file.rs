@@ -19,7 +19,7 @@ use sha2::{Digest as _, Sha256};
 
 use super::Header;
 use crate::hash::hex;
-use sdop::files::{self, MAX_BYTES, Whole};
+use sdop::files::{self, MAX_BYTES, WholeFile};
 
 /// Finished units, as a file has them.
 #[derive(Clone, Debug)]
@@ -44,7 +44,7 @@ pub enum UnitsError {
         source: io::Error,
     },
     /// A line that doesn't belong to a file of units.
-    #[error("{}:{line}: this is no line of a shard", path.display())]
+    #[error("{}:{line}: not a line of a shard", path.display())]
     #[diagnostic(help("the file was written by something else, or has been damaged"))]
     Line {
         /// The file.
@@ -53,7 +53,7 @@ pub enum UnitsError {
         line: usize,
     },
     /// Bytes that have changed.
-    #[error("{}: the digest at its end is not that of its lines", path.display())]
+    #[error("{}: the digest at its end does not match its lines", path.display())]
     #[diagnostic(help("the file has been damaged: run this shard again"))]
     Digest {
         /// The file.
@@ -142,7 +142,7 @@ pub fn write_shard(
     done: &BTreeMap<usize, String>,
     seconds: f64,
 ) -> io::Result<()> {
-    let (mut file, mut hash) = (Whole::create(path)?, Sha256::new());
+    let (mut file, mut hash) = (WholeFile::create(path)?, Sha256::new());
     let mut line = |text: String| {
         hash.update(&text);
         file.write_all(text.as_bytes())

@@ -9,7 +9,7 @@ use super::{Header, Shard, Units};
 
 /// All units of a work.
 #[derive(Clone, Debug)]
-pub struct Merged {
+pub struct MergedUnits {
     /// Of which work.
     pub header: Header,
     /// Results by unit.
@@ -25,14 +25,14 @@ pub enum MergeError {
     #[error("there is no shard to merge")]
     None,
     /// A file that was cut off.
-    #[error("{} is no finished shard", path.display())]
+    #[error("{} is not a finished shard", path.display())]
     #[diagnostic(help("run this shard again"))]
     Unfinished {
         /// The file.
         path: PathBuf,
     },
     /// Of different works.
-    #[error("{} and {} are not of one work: {difference}", first.display(), other.display())]
+    #[error("{} and {} are shards of different runs: {difference}", first.display(), other.display())]
     #[diagnostic(help(
         "`here` is the first file; run one of them again with the other's code, settings and scenes"
     ))]
@@ -65,7 +65,7 @@ pub enum MergeError {
         of: usize,
     },
     /// A part that lacks units, or has those of others.
-    #[error("{} has not the units of shard {shard}; unit {unit} is the first that is wrong", path.display())]
+    #[error("{} does not hold the units of shard {shard}: unit {unit} is the first that differs", path.display())]
     #[diagnostic(help("the file was not written by this program: run this shard again"))]
     Units {
         /// The file.
@@ -87,7 +87,7 @@ fn names(missing: &[usize]) -> String {
 ///
 /// # Errors
 /// Files that are unfinished, of different works, there twice or missing.
-pub fn merge(files: Vec<(PathBuf, Units)>) -> Result<Merged, MergeError> {
+pub fn merge(files: Vec<(PathBuf, Units)>) -> Result<MergedUnits, MergeError> {
     let (first, header) = match files.first() {
         Some((path, units)) => (path.clone(), units.header.clone()),
         None => return Err(MergeError::None),
@@ -139,7 +139,7 @@ pub fn merge(files: Vec<(PathBuf, Units)>) -> Result<Merged, MergeError> {
     if !missing.is_empty() {
         return Err(MergeError::Missing { missing, of });
     }
-    Ok(Merged {
+    Ok(MergedUnits {
         header,
         done,
         seconds,

@@ -18,7 +18,7 @@ mod shard;
 pub use file::{Units, UnitsError, write_shard};
 pub use header::{Header, code, digest};
 pub use here::here;
-pub use merge::{MergeError, Merged, merge};
+pub use merge::{MergeError, MergedUnits, merge};
 pub use order::InOrder;
 pub use ranks::on_ranks;
 pub use shard::{Shard, ShardError};

@@ -95,7 +95,7 @@ fn same_work(header: &Header, headers: &[Vec<u8>], rank: usize) -> miette::Resul
         if let Some(difference) = header.difference(&other_header) {
             return Err(miette!(
                 help = "all ranks must have the same program, scenes and kind of CPU; `here` is rank 0",
-                "rank {other} has other work: {difference}"
+                "rank {other} has different work: {difference}"
             ));
         }
     }
@@ -221,7 +221,7 @@ mod tests {
             .to_string();
         assert_eq!(
             error,
-            "rank 1 has other work: the number of units is 9 here and 8 there"
+            "rank 1 has different work: the number of units is 9 here and 8 there"
         );
     }
 }

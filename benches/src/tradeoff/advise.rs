@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::TradeoffError;
 use super::decide::{Choice, choose_measured};
 use super::density::{lines, lines_of_a_run};
-use super::pays::{Line, Stretch, envelope};
+use super::pays::{CheapestRange, Line, envelope};
 use super::variant::{Variant, s_dops};
 use crate::measure::conditions::Conditions;
 use crate::measure::estimate::Estimate;
@@ -30,7 +30,7 @@ const MOST_FOR_ALL_PAIRS: usize = 10_000;
 
 /// The candidates; `None` means all.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Tried {
+pub struct CandidateFilter {
     /// Only this finder.
     pub finder: Option<Finder>,
     /// Only these axes.
@@ -61,7 +61,7 @@ pub struct Advice {
     /// The finders tied with the chosen one.
     pub tied_finders: Vec<String>,
     /// The cheapest variant for each price of a check.
-    pub cheapest: Vec<Stretch>,
+    pub cheapest: Vec<CheapestRange>,
     /// Every finder, with the scene's S-DOP.
     pub finders: Vec<Candidate>,
     /// Every variant, with the chosen finder.
@@ -91,7 +91,7 @@ pub struct Candidate {
 /// The scene can't be built or run.
 pub fn advise(
     file: &SceneFile,
-    tried: Tried,
+    tried: CandidateFilter,
     check: f64,
     tier: Tier,
 ) -> Result<Option<Advice>, TradeoffError> {

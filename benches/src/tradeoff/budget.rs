@@ -13,7 +13,7 @@ use super::counts::{share, shared};
 use super::interest::spread;
 use super::truth::{ExactJudge, Sample};
 use super::variant::Variant;
-use crate::cost::pass::{Culled, Simulated, pass};
+use crate::cost::pass::{SceneFrames, VariantRun, pass};
 use crate::measure::turns::{Regime, median};
 use crate::percentiles::Percentiles;
 use crate::scene::Scene;
@@ -199,13 +199,13 @@ impl Starvation {
 /// The settings can't be carried out.
 pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>, TradeoffError> {
     let variant = |budget| Variant::of(String::new(), settings(scene, budget, Order::AsFound));
-    let culled = |budgets: &[Budget]| -> Result<Vec<Culled>, TradeoffError> {
+    let culled = |budgets: &[Budget]| -> Result<Vec<VariantRun>, TradeoffError> {
         let variants: Vec<Variant> = budgets.iter().copied().map(variant).collect();
-        let mut frames = Simulated::new(scene, frames)?;
+        let mut frames = SceneFrames::new(scene, frames)?;
         let pass = pass(scene, &variants, tier, &mut frames, None, &mut ())?;
         Ok(pass.culled)
     };
-    let spent = |culled: &Culled| -> Vec<f64> {
+    let spent = |culled: &VariantRun| -> Vec<f64> {
         let warm = culled.times.of(Regime::Warm).iter();
         warm.map(|s| 1e6 * (s.finding + s.refining)).collect()
     };
@@ -216,7 +216,7 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
             .collect(),
     );
     let microseconds = SHARES.map(|share| (share * whole).round() as u64);
-    let row = |(microseconds, culled): (u64, Culled)| {
+    let row = |(microseconds, culled): (u64, VariantRun)| {
         let times = spent(&culled);
         if times.is_empty() {
             return None;

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::TradeoffError;
 use super::counts::Tally;
-use super::pays::{Line, OrDopKind, Stretch, break_even, envelope};
+use super::pays::{CheapestRange, Line, OrDopKind, break_even, envelope};
 use super::timing::{PASSES, measure};
 use super::truth::{Sample, samples};
 use super::variant::{Variant, s_dops};
-use crate::cost::pass::{Pass, Simulated, pass};
+use crate::cost::pass::{Pass, SceneFrames, pass};
 use crate::measure::turns::{FrameTimes, Regime, median};
 use crate::number::Positive;
 use crate::scene::{Scene, SceneError, SceneFile};
@@ -35,7 +35,7 @@ pub struct Density {
     /// T and Np of every compared variant.
     pub lines: Vec<Line>,
     /// The cheapest variant as Cp grows.
-    pub cheapest: Vec<Stretch>,
+    pub cheapest: Vec<CheapestRange>,
     /// For each compared S-DOP: the Cp in seconds above which it is cheaper than spheres alone.
     pub break_even: Vec<BreakEven>,
 }
@@ -116,7 +116,7 @@ pub fn lines_of_a_run(
         .min((RUN_BODIES / scene.bodies.len().max(1)).clamp(24, 80) as u32);
     let mut passes = Vec::new();
     for _ in 0..PASSES {
-        let mut run = Simulated::new(scene, frames)?;
+        let mut run = SceneFrames::new(scene, frames)?;
         passes.push(pass(scene, variants, tier, &mut run, None, &mut ())?);
     }
     let first = Scene {

@@ -37,7 +37,7 @@ pub struct InterestRow {
 /// The counts of an interest set of one size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Counted {
+pub struct InterestCounts {
     /// Bodies of interest.
     bodies: usize,
     /// Counts on the sample frames.
@@ -73,11 +73,11 @@ pub fn counts(
     tier: Tier,
     samples: &[Sample],
     truth: &TruePairs,
-) -> Result<Vec<Counted>, TradeoffError> {
+) -> Result<Vec<InterestCounts>, TradeoffError> {
     let counted = |bodies: usize| {
         let variant = variant(scene, bodies, Updates::Eager);
         let tally = Tally::of(scene, &variant, tier, samples, truth)?;
-        Ok(Counted { bodies, tally })
+        Ok(InterestCounts { bodies, tally })
     };
     sizes(scene).into_iter().map(counted).collect()
 }
@@ -98,9 +98,9 @@ pub fn times(scene: &Scene, tier: Tier, count: u32) -> Result<Vec<[Estimate; 2]>
 }
 
 /// Joins counts and times.
-pub(super) fn rows(counts: &[Counted], times: &[[Estimate; 2]]) -> Vec<InterestRow> {
-    let row = |(counted, times): (&Counted, &[Estimate; 2])| {
-        let Counted { bodies, tally } = counted;
+pub(super) fn rows(counts: &[InterestCounts], times: &[[Estimate; 2]]) -> Vec<InterestRow> {
+    let row = |(counted, times): (&InterestCounts, &[Estimate; 2])| {
+        let InterestCounts { bodies, tally } = counted;
         InterestRow {
             bodies: *bodies,
             tests: tally.counters.ordop.tests as f64 / f64::from(tally.frames),

@@ -75,7 +75,7 @@ impl Line {
 
 /// A range of Cp in which one variant is the cheapest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stretch {
+pub struct CheapestRange {
     /// The cheapest variant.
     pub name: String,
     /// The start of the range, in seconds per pair; it ends at the start of the next.
@@ -84,7 +84,7 @@ pub struct Stretch {
 
 /// The lower envelope of the lines over Cp ≥ 0, by rising Cp.
 #[must_use]
-pub fn envelope(lines: &[Line]) -> Vec<Stretch> {
+pub fn envelope(lines: &[Line]) -> Vec<CheapestRange> {
     let cheapest = |at: f64| {
         let cost = |line: &&Line| (line.time() + at * line.pairs, line.pairs);
         lines.iter().min_by(|a, b| {
@@ -95,7 +95,7 @@ pub fn envelope(lines: &[Line]) -> Vec<Stretch> {
     let mut stretches = Vec::new();
     let (mut current, mut from) = (cheapest(0.0), 0.0);
     while let Some(line) = current {
-        stretches.push(Stretch {
+        stretches.push(CheapestRange {
             name: line.name.clone(),
             from,
         });
@@ -119,7 +119,7 @@ pub fn break_even(steep: &Line, flat: &Line) -> f64 {
 
 /// One line that says which variant to use, by the price of a narrow-phase check.
 #[must_use]
-pub fn advice(cheapest: &[Stretch], narrow_phase: &NarrowPhase) -> String {
+pub fn advice(cheapest: &[CheapestRange], narrow_phase: &NarrowPhase) -> String {
     let parts: Vec<String> = cheapest
         .iter()
         .map(|stretch| match stretch.from {

@@ -7,7 +7,7 @@ use super::budget::{BudgetRow, ClockRow};
 use super::decide::Decision;
 use super::density::Density;
 use super::interest::InterestRow;
-use super::pays::{Standing, Stretch};
+use super::pays::{CheapestRange, Standing};
 use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
@@ -90,7 +90,7 @@ pub struct Tradeoff {
     /// Every variant.
     pub rows: Vec<VariantResult>,
     /// The cheapest variant as Cp grows.
-    pub cheapest: Vec<Stretch>,
+    pub cheapest: Vec<CheapestRange>,
     /// The scene at other densities.
     pub densities: Vec<Density>,
     /// The scene with other numbers of bodies, triangles, motion and shapes.

@@ -1,6 +1,6 @@
 //! Joins the results of the units of a comparison.
 
-use std::path::PathBuf;
+use miette::IntoDiagnostic as _;
 
 use super::Estimate;
 use super::budget::{BudgetRow, ClockRow};
@@ -13,7 +13,7 @@ use super::result::{Tradeoff, VariantResult};
 use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
-use super::units::{Compared, Counts, Found, Settings};
+use super::units::{ComparedVariants, Counts, Settings, UnitResult};
 use super::variant::Variant;
 use super::vary::Variation;
 use crate::cost::pass::Pass;
@@ -21,31 +21,11 @@ use crate::cost::table;
 use crate::measure::conditions::Conditions;
 use crate::measure::counts::Volume;
 use crate::measure::turns::Regime;
-use sdop::simd::Tier;
-
-/// The amount of work.
-#[derive(Clone, Debug)]
-pub struct TradeoffPlan {
-    /// Number of seeds from the scene's on, with one run each.
-    pub seeds: u64,
-    /// Judged frames per run.
-    pub samples: u32,
-    /// Random pairs per shape.
-    pub pairs: u32,
-    /// Consecutive frames for time-critical culling.
-    pub window: u32,
-    /// One in this number of them is judged.
-    pub stride: usize,
-    /// The SIMD tier.
-    pub tier: Tier,
-    /// The directory in which truths are stored.
-    pub cache: Option<PathBuf>,
-}
 
 /// The results of units so far.
 #[derive(Debug, Default)]
 pub struct Findings {
-    compared: Option<Compared>,
+    compared: Option<ComparedVariants>,
     seeds: Vec<Counts>,
     budgets: Vec<BudgetRow>,
     shapes: Vec<ShapeSurvival>,
@@ -60,27 +40,36 @@ pub struct Findings {
 
 impl Findings {
     /// Adds the results of a unit; units come in their order.
-    pub(super) fn add(&mut self, found: Found) {
+    fn add(&mut self, found: UnitResult) {
         match found {
-            Found::Compared(compared) => self.compared = Some(compared),
-            Found::Seed(counts) => self.seeds.push(counts),
-            Found::Budgets(rows) => self.budgets = rows,
-            Found::Shape(shape) => self.shapes.push(shape),
-            Found::Pass(pass) => self.passes.push(pass),
-            Found::NarrowPhase(seconds) => self.narrow_phase = seconds,
-            Found::Clock(rows) => self.clock = rows,
-            Found::Interest(times) => self.interest = times,
-            Found::Density(density) => self.densities.extend(density),
-            Found::Variation(variation) => self.variations.extend(variation),
-            Found::Safety(rows) => self.safety = rows,
+            UnitResult::Compared(compared) => self.compared = Some(compared),
+            UnitResult::Seed(counts) => self.seeds.push(counts),
+            UnitResult::Budgets(rows) => self.budgets = rows,
+            UnitResult::Shape(shape) => self.shapes.push(shape),
+            UnitResult::Pass(pass) => self.passes.push(pass),
+            UnitResult::NarrowPhase(seconds) => self.narrow_phase = seconds,
+            UnitResult::Clock(rows) => self.clock = rows,
+            UnitResult::Interest(times) => self.interest = times,
+            UnitResult::Density(density) => self.densities.extend(density),
+            UnitResult::Variation(variation) => self.variations.extend(variation),
+            UnitResult::Safety(rows) => self.safety = rows,
         }
+    }
+
+    /// Reads a unit's result; units come in their order.
+    ///
+    /// # Errors
+    /// The text is not the result of a unit.
+    pub fn take(&mut self, result: &str) -> miette::Result<()> {
+        self.add(serde_json::from_str(result).into_diagnostic()?);
+        Ok(())
     }
 
     /// The comparison. `None` if units are missing or belong to another one. `before` are the
     /// machine's conditions at the start.
     #[must_use]
     pub fn finish(self, settings: &Settings, before: Conditions) -> Option<Tradeoff> {
-        let Compared {
+        let ComparedVariants {
             hits,
             variants,
             volumes,
@@ -97,7 +86,7 @@ impl Findings {
         if !fits {
             return None;
         }
-        let measured = Measured {
+        let measured = VariantMeasurements {
             scene: (settings.scene.as_str(), settings.bodies),
             seeds: &self.seeds,
             passes: self.passes.iter().collect(),
@@ -134,14 +123,14 @@ impl Findings {
 }
 
 /// Counts per seed and times per pass of every variant.
-struct Measured<'a> {
+struct VariantMeasurements<'a> {
     /// The scene's name and its number of bodies.
     scene: (&'a str, usize),
     seeds: &'a [Counts],
     passes: Vec<&'a Pass>,
 }
 
-impl Measured<'_> {
+impl VariantMeasurements<'_> {
     fn rows(&self, variants: &[Variant], volumes: &[Option<f64>]) -> Vec<VariantResult> {
         let mut rows: Vec<VariantResult> = variants
             .iter()

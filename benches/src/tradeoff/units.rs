@@ -4,6 +4,7 @@
 //! them.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use miette::IntoDiagnostic as _;
@@ -15,7 +16,6 @@ use super::density::{self, Density};
 use super::interest;
 use super::safety::{self, SafetyRow};
 use super::shapes::{self, ShapeSurvival};
-use super::study::{Findings, TradeoffPlan};
 use super::timing::{PASSES, Windows};
 use super::truth::{ExactJudge, NarrowPhase, Sample, samples};
 use super::variant::{self, Variant};
@@ -26,6 +26,7 @@ use crate::cost::pass::{Pass, pass};
 use crate::measure::machine::Machine;
 use crate::scene::{Scene, SceneFile};
 use crate::sweep::{Header, Sweep, digest};
+use sdop::simd::Tier;
 use sdop::volume::Shape;
 
 /// The name in its files.
@@ -40,6 +41,25 @@ const EFFORT: Effort = Effort {
     turns: 1,
     builds: 5,
 };
+
+/// The amount of work.
+#[derive(Clone, Debug)]
+pub struct TradeoffPlan {
+    /// Number of seeds from the scene's on, with one run each.
+    pub seeds: u64,
+    /// Judged frames per run.
+    pub samples: u32,
+    /// Random pairs per shape.
+    pub pairs: u32,
+    /// Consecutive frames for time-critical culling.
+    pub window: u32,
+    /// One in this number of them is judged.
+    pub stride: usize,
+    /// The SIMD tier.
+    pub tier: Tier,
+    /// The directory in which truths are stored.
+    pub cache: Option<PathBuf>,
+}
 
 /// What is compared, how thoroughly, and on what kind of machine: times of different machines can't
 /// be joined.
@@ -108,8 +128,8 @@ enum TradeoffUnit {
 /// The result of a unit.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) enum Found {
-    Compared(Compared),
+pub(super) enum UnitResult {
+    Compared(ComparedVariants),
     Seed(Counts),
     Budgets(Vec<BudgetRow>),
     Shape(ShapeSurvival),
@@ -126,7 +146,7 @@ pub(super) enum Found {
 /// The compared variants.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Compared {
+pub(super) struct ComparedVariants {
     /// Mean sphere hits per frame.
     pub(super) hits: f64,
     pub(super) variants: Vec<Variant>,
@@ -141,7 +161,7 @@ pub(super) struct Counts {
     /// The counts of each variant.
     pub(super) tallies: Vec<Tally>,
     /// Counts of interest sets, only with the first seed.
-    pub(super) interest: Vec<interest::Counted>,
+    pub(super) interest: Vec<interest::InterestCounts>,
 }
 
 impl Comparison {
@@ -197,20 +217,20 @@ impl Comparison {
         }
     }
 
-    fn find(&self, unit: TradeoffUnit) -> Result<Found, TradeoffError> {
+    fn find(&self, unit: TradeoffUnit) -> Result<UnitResult, TradeoffError> {
         let (file, scene, tier) = (&self.file, &self.scene, self.plan.tier);
         Ok(match unit {
-            TradeoffUnit::Compared => Found::Compared(self.compared()),
-            TradeoffUnit::Seed(seed) => Found::Seed(self.counts(seed)?),
-            TradeoffUnit::Budgets => Found::Budgets(self.budgets()?),
+            TradeoffUnit::Compared => UnitResult::Compared(self.compared()),
+            TradeoffUnit::Seed(seed) => UnitResult::Seed(self.counts(seed)?),
+            TradeoffUnit::Budgets => UnitResult::Budgets(self.budgets()?),
             TradeoffUnit::Shape(number) => {
                 let shape = &self.shapes[number];
-                Found::Shape(shapes::survival(shape, self.plan.pairs, tier)?)
+                UnitResult::Shape(shapes::survival(shape, self.plan.pairs, tier)?)
             }
-            TradeoffUnit::Pass(seed) => Found::Pass(self.pass(seed)?),
+            TradeoffUnit::Pass(seed) => UnitResult::Pass(self.pass(seed)?),
             TradeoffUnit::NarrowPhase => {
                 let judge = ExactJudge::new(&scene.shapes)?;
-                Found::NarrowPhase(judge.price_of_spheres(
+                UnitResult::NarrowPhase(judge.price_of_spheres(
                     scene,
                     &scene.bodies,
                     tier,
@@ -219,18 +239,18 @@ impl Comparison {
             }
             TradeoffUnit::Clock => {
                 let frames = self.plan.window.min(scene.frames);
-                Found::Clock(budget::by_clock(scene, tier, frames)?)
+                UnitResult::Clock(budget::by_clock(scene, tier, frames)?)
             }
             TradeoffUnit::Interest => {
-                Found::Interest(interest::times(scene, tier, self.plan.samples)?)
+                UnitResult::Interest(interest::times(scene, tier, self.plan.samples)?)
             }
             TradeoffUnit::Density(factor) => {
-                Found::Density(density::at(file, factor, tier, self.samples_of_changed())?)
+                UnitResult::Density(density::at(file, factor, tier, self.samples_of_changed())?)
             }
             TradeoffUnit::Variation(change) => {
-                Found::Variation(vary::varied(file, change, tier, self.samples_of_changed())?)
+                UnitResult::Variation(vary::varied(file, change, tier, self.samples_of_changed())?)
             }
-            TradeoffUnit::Safety => Found::Safety(safety::compare(scene, self.plan.samples)?),
+            TradeoffUnit::Safety => UnitResult::Safety(safety::compare(scene, self.plan.samples)?),
         })
     }
 
@@ -238,9 +258,9 @@ impl Comparison {
         self.plan.samples.min(CHANGED_SAMPLES)
     }
 
-    fn compared(&self) -> Compared {
+    fn compared(&self) -> ComparedVariants {
         let volume = |own| variant::tightness(own, &self.scene);
-        Compared {
+        ComparedVariants {
             hits: self.hits,
             variants: self.variants.clone(),
             volumes: self.variants.iter().map(volume).collect(),
@@ -398,16 +418,5 @@ impl Sweep for Comparison {
             | TradeoffUnit::Variation(_)
             | TradeoffUnit::Safety => true,
         }
-    }
-}
-
-impl Findings {
-    /// Reads a unit's result; units come in their order.
-    ///
-    /// # Errors
-    /// The text is not the result of a unit.
-    pub fn take(&mut self, result: &str) -> miette::Result<()> {
-        self.add(serde_json::from_str(result).into_diagnostic()?);
-        Ok(())
     }
 }

@@ -125,7 +125,7 @@ pub struct Variation {
     /// T and Np of every compared variant.
     pub lines: Vec<Line>,
     /// The cheapest variant for each price of a narrow-phase check.
-    pub best: Vec<Best>,
+    pub best: Vec<Recommendation>,
 }
 
 /// Pairs on which a variation's narrow phase is timed.
@@ -133,7 +133,7 @@ const CHECKED_PAIRS: usize = 500;
 
 /// The recommendation for one price of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Best {
+pub struct Recommendation {
     /// Seconds of a narrow-phase check of a pair that doesn't meet.
     pub check: f64,
     /// The cheapest variant.
@@ -187,7 +187,7 @@ fn variation(
         .map(|&shape| scene.shapes[shape as usize].triangles.len());
     let best = CHECKS.iter().filter_map(|&check| {
         let choice = choose_measured(&lines, check)?;
-        Some(Best {
+        Some(Recommendation {
             check,
             name: choice.best,
             tied: choice.tied,

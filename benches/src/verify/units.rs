@@ -14,7 +14,8 @@ use crate::scene::Scene;
 use crate::sweep::{Header, Sweep, digest};
 use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
 use sdop::simd::Tier;
-use sdop_judge::every_way::rounds::{Judged, Ledger, Source, boxes, group, round};
+use sdop_judge::every_way::rounds::{Source, boxes, group, round};
+use sdop_judge::every_way::{Judged, Ledger};
 use sdop_judge::ours::answers::Predicate;
 use sdop_judge::ours::boxes::BoxCell;
 use sdop_judge::ours::compare::Count;
@@ -95,7 +96,7 @@ impl Verification {
                 .find(|tier| tier.name() == name)
                 .ok_or_else(|| {
                     miette!(
-                        help = "take its results on a CPU like those that gave them",
+                        help = "merge on a CPU that has it, as those had that made the shards",
                         "this CPU has no {name}"
                     )
                 })
@@ -216,7 +217,7 @@ impl Verification {
             VerifyUnit::Rounds(..) => vec![UnitOrigin::Near, UnitOrigin::Random, UnitOrigin::Boxes],
             VerifyUnit::Frames(n, _) => vec![UnitOrigin::Scene(n)],
         };
-        let wrong = || miette!("the result of unit {unit} is none of `sdop verify`");
+        let wrong = || miette!("the result of unit {unit} was not written by `sdop verify`");
         if texts.len() != origins.len() {
             return Err(wrong());
         }

@@ -9,14 +9,14 @@ const LEVELS: [usize; 4] = [3000, 500, 120, 40];
 
 /// One shape, prepared for drawing.
 #[derive(Debug)]
-pub struct Drawn {
+pub struct DrawnShape {
     /// The finest first; each has fewer triangles than the one before.
     pub levels: Vec<TriangleMesh>,
     /// The convex hull's vertices, for boxes fitted to the posed body.
     pub hull: Vec<[f32; 3]>,
 }
 
-impl Drawn {
+impl DrawnShape {
     /// Decimates a shape's mesh. Only the picture is coarser: numbers and truth are those of the
     /// whole mesh.
     pub fn of(shape: &Shape) -> Self {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::Show;
+use super::ShownRun;
 use super::show::{Focus, file_name, in_words};
 use sdop::settings::{Interest, Strategy};
 use sdop_judge::Claim;
@@ -80,7 +80,7 @@ pub struct BlockHeader {
 
 impl Header {
     /// The facts that are known without the frames.
-    pub fn of(show: &Show) -> Self {
+    pub fn of(show: &ShownRun) -> Self {
         let header = &show.header;
         let interest = match header
             .cull

@@ -1,6 +1,6 @@
 //! A run as a page: one HTML file that shows it without network, `sdop view`.
 //!
-//! > record, scene or hard case → [`Show`] → pairs with their flags ([`pairs`]), meshes to draw ([`detail`]), T ([`terms`]) → [`Page`]
+//! > record, scene or hard case → [`ShownRun`] → pairs with their flags ([`pairs`]), meshes to draw ([`detail`]), T ([`terms`]) → [`Page`]
 //!
 //! The page is `web/dist/page.html`, made from the TypeScript in `web/` and committed, with a run's
 //! data at its mark: a JSON header and blocks of little-endian numbers in base64 ([`page`]). Poses
@@ -14,7 +14,7 @@ mod show;
 mod terms;
 
 pub use page::{Page, PageError};
-pub use show::{Culled, Focus, Show};
+pub use show::{Focus, ShownRun, ShownStrategy};
 
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ use sdop_judge::record::FrameLine;
 ///
 /// # Errors
 /// The exact reference rejects a number, which never happens for a record that was read.
-pub fn decide_truth(show: &mut Show, done: impl Fn() + Sync) -> Result<(), TradeoffError> {
+pub fn decide_truth(show: &mut ShownRun, done: impl Fn() + Sync) -> Result<(), TradeoffError> {
     let judge = ExactJudge::new(&show.shapes)?;
     let bodies = &show.bodies;
     let decide = |frame: &mut FrameLine| -> Result<(), TradeoffError> {

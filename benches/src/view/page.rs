@@ -10,11 +10,11 @@ use miette::Diagnostic;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::detail::Drawn;
+use super::detail::DrawnShape;
 use super::header::{BlockHeader, Header, Level, RunHeader, ShapeHeader};
 use super::pairs::Pairs;
 use super::terms::{self, TermCourse};
-use super::{Culled, Show};
+use super::{ShownRun, ShownStrategy};
 use crate::simulate::SimulationError;
 use sdop::culler::CullError;
 use sdop::settings::Strategy;
@@ -39,7 +39,7 @@ pub struct Page {
 #[derive(Debug, Error, Diagnostic)]
 pub enum PageError {
     /// The data are larger than a browser can read.
-    #[error("{name} of {frames} frames take {megabytes} MB, which no browser reads")]
+    #[error("{name} of {frames} frames take {megabytes} MB, more than browsers can read")]
     #[diagnostic(help("show fewer frames: --frames N"))]
     TooLarge {
         /// The block.
@@ -71,7 +71,11 @@ impl Page {
     ///
     /// # Errors
     /// The run is too large for a browser.
-    pub fn new(show: &Show, culled: &[Culled], tier: Option<Tier>) -> Result<Self, PageError> {
+    pub fn new(
+        show: &ShownRun,
+        culled: &[ShownStrategy],
+        tier: Option<Tier>,
+    ) -> Result<Self, PageError> {
         let mut page = Self {
             header: Header::of(show),
             blocks: Vec::new(),
@@ -156,7 +160,7 @@ impl Page {
 
     /// The poses of all bodies in the first frame, and in every frame those of bodies that ever
     /// move.
-    fn put_poses(&mut self, show: &Show) -> Result<(), PageError> {
+    fn put_poses(&mut self, show: &ShownRun) -> Result<(), PageError> {
         let frames = &show.frames;
         let first = &frames[0].poses;
         let bits = |pose: &[f32; 7]| pose.map(f32::to_bits);
@@ -192,7 +196,7 @@ impl Page {
         self.put("poses", frames.iter().flat_map(posed).collect::<Vec<f32>>())
     }
 
-    fn put_pairs(&mut self, show: &Show, culled: &[Culled]) -> Result<(), PageError> {
+    fn put_pairs(&mut self, show: &ShownRun, culled: &[ShownStrategy]) -> Result<(), PageError> {
         let Pairs {
             starts,
             pairs,
@@ -220,8 +224,8 @@ impl Page {
         self.put("flags", flags)
     }
 
-    fn put_shapes(&mut self, show: &Show) -> Result<(), PageError> {
-        let drawn: Vec<Drawn> = show.shapes.par_iter().map(Drawn::of).collect();
+    fn put_shapes(&mut self, show: &ShownRun) -> Result<(), PageError> {
+        let drawn: Vec<DrawnShape> = show.shapes.par_iter().map(DrawnShape::of).collect();
         let (mut vertices, mut triangles, mut hulls) = (Vec::new(), Vec::new(), Vec::new());
         for (shape, drawn) in show.shapes.iter().zip(drawn) {
             let ShapeLine {
@@ -255,8 +259,8 @@ impl Page {
 
     fn put_run(
         &mut self,
-        show: &Show,
-        culled: &Culled,
+        show: &ShownRun,
+        culled: &ShownStrategy,
         side: usize,
         tier: Option<Tier>,
     ) -> Result<(), PageError> {

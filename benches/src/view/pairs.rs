@@ -1,6 +1,6 @@
 //! Every pair of interest of every frame, with its flags.
 
-use super::{Culled, Show};
+use super::{ShownRun, ShownStrategy};
 use sdop::culler::CullError;
 
 /// The spheres of the pair overlap.
@@ -26,7 +26,7 @@ impl Pairs {
     ///
     /// # Errors
     /// Never for a record that was read: the sphere strategy needs no settings.
-    pub fn join(show: &Show, culled: &[Culled]) -> Result<Self, CullError> {
+    pub fn join(show: &ShownRun, culled: &[ShownStrategy]) -> Result<Self, CullError> {
         let spheres = show.spheres()?;
         let mut joined = Self::default();
         for (at, frame) in show.frames.iter().enumerate() {

@@ -19,7 +19,7 @@ use serde::Serialize;
 
 /// A run in memory.
 #[derive(Clone, Debug)]
-pub struct Show {
+pub struct ShownRun {
     /// Its source, as the page names it.
     pub source: String,
     /// The first line of its record.
@@ -53,7 +53,7 @@ pub struct Focus {
 
 /// The pairs that one strategy reported, frame by frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Culled {
+pub struct ShownStrategy {
     /// Its name on the page.
     pub name: String,
     /// A description of how it culled.
@@ -66,7 +66,7 @@ pub struct Culled {
     pub counters: Option<Vec<Vec<VolumeLine>>>,
 }
 
-impl Show {
+impl ShownRun {
     /// Reads a record, or its first `frames` frames. If a record is broken, the frames before that
     /// are shown with a message, and the error is returned, too.
     ///
@@ -175,7 +175,7 @@ impl Show {
             bodies,
         };
         show.header.cull = Some(settings.clone());
-        let Culled {
+        let ShownStrategy {
             pairs, counters, ..
         } = show.cull(settings, tier)?;
         let counters = counters.into_iter().flatten();
@@ -269,14 +269,14 @@ impl Show {
 
     /// The pairs of the record.
     #[must_use]
-    pub fn recorded(&self) -> Culled {
+    pub fn recorded(&self) -> ShownStrategy {
         let settings = self.header.cull.clone();
         let name = match (&settings, &self.header.program) {
             (Some(cull), _) => cull.strategy.name().to_owned(),
             (None, Some(program)) => program.clone(),
             (None, None) => "as recorded".to_owned(),
         };
-        Culled {
+        ShownStrategy {
             name,
             detail: settings.as_ref().map_or(String::new(), detail),
             settings,
@@ -293,7 +293,7 @@ impl Show {
     ///
     /// # Errors
     /// The settings can't be carried out.
-    pub fn cull(&self, settings: &CullSettings, tier: Tier) -> Result<Culled, CullError> {
+    pub fn cull(&self, settings: &CullSettings, tier: Tier) -> Result<ShownStrategy, CullError> {
         let mut bodies = self.bodies.clone();
         if let Some(first) = self.frames.first() {
             first.pose(&mut bodies);
@@ -310,7 +310,7 @@ impl Show {
                 &culler.counters().since(&before),
             ));
         }
-        Ok(Culled {
+        Ok(ShownStrategy {
             name: settings.strategy.name().to_owned(),
             detail: detail(settings),
             settings: Some(settings.clone()),
@@ -324,7 +324,7 @@ impl Show {
     ///
     /// # Errors
     /// A text with the first difference.
-    pub fn culled_by(&self, other: &Self) -> Result<Culled, String> {
+    pub fn culled_by(&self, other: &Self) -> Result<ShownStrategy, String> {
         if self.header.bodies != other.header.bodies {
             return Err("its bodies are others".to_owned());
         }
@@ -357,7 +357,7 @@ impl Show {
     }
 
     /// The pairs whose spheres overlap: the potentially colliding set of the paper.
-    pub(super) fn spheres(&self) -> Result<Culled, CullError> {
+    pub(super) fn spheres(&self) -> Result<ShownStrategy, CullError> {
         let settings = CullSettings {
             strategy: Strategy::Sphere,
             pairs: sdop::settings::Finder::Auto,

@@ -1,7 +1,7 @@
 //! T = Nu·Cu + F + Nv·Cv, frame by frame: a run's counters at prices calibrated for its shapes and
 //! the level of its working set.
 
-use super::{Culled, Show};
+use super::{ShownRun, ShownStrategy};
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::predict::Prices;
 use crate::effects::{EffectsSpec, Velocities};
@@ -32,7 +32,11 @@ pub struct TermCourse {
 ///
 /// # Errors
 /// The settings can't be carried out.
-pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>, SimulationError> {
+pub fn prices(
+    show: &ShownRun,
+    culled: &ShownStrategy,
+    tier: Tier,
+) -> Result<Option<Prices>, SimulationError> {
     let culls = |cull: &CullSettings| cull.strategy != Strategy::None;
     let Some(cull) = culled.settings.clone().filter(culls) else {
         return Ok(None);
@@ -68,7 +72,7 @@ pub fn prices(show: &Show, culled: &Culled, tier: Tier) -> Result<Option<Prices>
 
 impl TermCourse {
     /// T by its terms. `None` if a counted volume has no price.
-    pub fn predict(show: &Show, culled: &Culled, prices: &Prices) -> Option<Self> {
+    pub fn predict(show: &ShownRun, culled: &ShownStrategy, prices: &Prices) -> Option<Self> {
         let counters = culled.counters.as_ref()?;
         let bodies = show.bodies.len();
         let mut course = Self {

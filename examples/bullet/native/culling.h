@@ -1,4 +1,4 @@
-// S-DOP culling for Bullet: what an application copies, beside sdop.h.
+// S-DOP culling for Bullet: what an application copies, together with sdop.h.
 #pragma once
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -13,8 +13,8 @@
 
 #include "sdop.h"
 
-// Hands over to the narrow phase only pairs that may touch. A collision object takes part when `setUserIndex3` has told it its mesh's
-// number; all others pass.
+// Hands over to the narrow phase only pairs that may touch. A collision object is tested if
+// its user index 3 is its mesh's number (`setUserIndex3`); pairs with other objects pass.
 class CullingDispatcher : public btCollisionDispatcher {
 public:
     CullingDispatcher(btCollisionConfiguration* configuration, const SdopPairTest* test)
@@ -40,8 +40,9 @@ public:
         return sdop_pair_test_may_touch(test, uint32_t(first) + 1, uint32_t(second), &rotation, &translation);
     }
 
-    // Adds a mesh about its body's origin, and after it the same grown by `margin`. Returns the first's number, for `setUserIndex3`, or
-    // −1 for a mesh that can't be culled: `sdop_last_error` says why, and its bodies pass unfiltered.
+    // Adds a mesh about its body's origin, and after it the same grown by `margin`. Returns the
+    // first's number, for `setUserIndex3`, or −1 for a mesh that can't be culled: `sdop_last_error`
+    // says why, and its bodies pass unfiltered.
     static int add(SdopPairTest* test, const float (*vertices)[3], size_t vertex_count, const uint32_t (*triangles)[3],
                    size_t triangle_count, float margin) {
         std::vector<std::array<double, 3>> wide(vertex_count);
@@ -56,9 +57,10 @@ public:
         return added ? int(number) : -1;
     }
 
-    // What a shape's mesh must be grown by: contacts are made up to both shapes' collision margins (`widest_margin` is the largest in the
-    // world) and the smaller of their breaking thresholds. 1 % is for GJK, which stops early, and the last term for what rounding moves
-    // within `FAR` of the origin.
+    // What a shape's mesh must be grown by: contacts are made up to both shapes' collision margins
+    // (`widest_margin` is the largest in the world) and the smaller of their breaking thresholds. 1
+    // % is for GJK, which stops early, and the last term for what rounding moves within `FAR` of
+    // the origin.
     static float margin(const btCollisionShape& shape, float widest_margin) {
         const float breaking = shape.getContactBreakingThreshold(gContactBreakingThreshold);
         return 1.01f * (shape.getMargin() + widest_margin + breaking) + std::ldexp(FAR, -17);

@@ -1,4 +1,5 @@
-// A scene in Bullet, stepped as it comes, with the filter, or with the filter's verdicts judged by Bullet's own narrow phase.
+// A scene in Bullet, stepped as it comes, with the filter, or with the filter's verdicts judged by
+// Bullet's own narrow phase.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <LinearMath/btConvexHullComputer.h>
@@ -167,7 +168,8 @@ uint32_t scene_shape(Scene* scene, uint32_t kind, const float* vertices, size_t 
     return uint32_t(scene->shapes.size() - 1);
 }
 
-// The number that the filter knows the shape's mesh by, or -1: grown by what bodies of the default collision margin need, times `share`.
+// The number that the filter knows the shape's mesh by, or -1: grown by what bodies of the default
+// collision margin need, times `share`.
 int scene_model(Scene* scene, uint32_t shape, const float (*vertices)[3], size_t count, const uint32_t (*triangles)[3],
                 size_t triangle_count, float share) {
     const float margin = CullingDispatcher::margin(*scene->shapes[shape], CONVEX_DISTANCE_MARGIN) * share;

@@ -17,12 +17,12 @@ pub struct Study {
     /// once.
     pub clock_ns: f64,
     /// Steps timed in turns, if they were.
-    pub timed: Option<Timed>,
+    pub timed: Option<StepTimes>,
 }
 
 /// Steps with and without the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Timed {
+pub struct StepTimes {
     /// Bullet without a filter: processor time of the stepping thread in milliseconds per step.
     pub plain_ms: f64,
     /// The same with the filter.
@@ -69,7 +69,7 @@ fn saved_ms(judged: &Counts, clock_ns: f64) -> f64 {
     (checks - tests) * 1e-6
 }
 
-fn time(plan: Plan, forms: &[TriangleMesh], steps: usize) -> Timed {
+fn time(plan: Plan, forms: &[TriangleMesh], steps: usize) -> StepTimes {
     let mut stages = [Mode::Plain, Mode::Filtered].map(|mode| Stage::new(plan, forms, mode, 1.0));
     let mut ms = [0.0; 2];
     for step in 0..steps {
@@ -79,7 +79,7 @@ fn time(plan: Plan, forms: &[TriangleMesh], steps: usize) -> Timed {
             ms[turn] += cpu_ms() - start;
         }
     }
-    Timed {
+    StepTimes {
         plain_ms: ms[0] / steps as f64,
         filtered_ms: ms[1] / steps as f64,
         filtered: stages[1].counts(),

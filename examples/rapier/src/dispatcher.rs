@@ -26,9 +26,9 @@ use super::volumes::{rounding, volume};
 /// dispatcher: `NarrowPhase::with_query_dispatcher(culling.clone().chain(DefaultQueryDispatcher))`.
 /// Clones know the same shapes.
 #[derive(Clone)]
-pub struct CullingDispatcher(Arc<RwLock<Known>>);
+pub struct CullingDispatcher(Arc<RwLock<KnownShapes>>);
 
-struct Known {
+struct KnownShapes {
     test: PairTest,
     /// By address. Holding the shape prevents the address from being reused.
     shapes: FxHashMap<usize, Entry>,
@@ -45,7 +45,7 @@ struct Entry {
 impl Default for CullingDispatcher {
     fn default() -> Self {
         let test = PairTest::new(DirectionSet::K18);
-        Self(Arc::new(RwLock::new(Known {
+        Self(Arc::new(RwLock::new(KnownShapes {
             test,
             shapes: FxHashMap::default(),
         })))
@@ -108,7 +108,7 @@ impl CullingDispatcher {
         let Ok(mut known) = self.0.write() else {
             return;
         };
-        let Known { test, shapes } = &mut *known;
+        let KnownShapes { test, shapes } = &mut *known;
         if let Some(entry) = shapes.get_mut(&address(shape))
             && let Ok(model) = test.grown(entry.number, margin * WIDER)
         {
@@ -121,7 +121,7 @@ impl CullingDispatcher {
 /// itself divided by the square of this factor.
 const WIDER: f32 = 1.125;
 
-impl Known {
+impl KnownShapes {
     fn find(&self, shape: &dyn Shape) -> Option<&Entry> {
         self.shapes.get(&address(shape))
     }

@@ -9,7 +9,7 @@ use sdop::Tier;
 use sdop_bench::measure::machine::Machine;
 use sdop_rapier::forms::forms;
 use sdop_rapier::plan::{Detail, Kind, Mode, Plan, Real, Scene};
-use sdop_rapier::record::{Found, Record};
+use sdop_rapier::record::{Record, RecordedFinding};
 use sdop_rapier::{double, single, whole};
 
 /// S-DOP culling in rapier: contacts compared, steps timed.
@@ -102,7 +102,7 @@ impl Run {
     }
 
     /// Prints the record and writes it where it was asked for.
-    fn finish(&self, found: Found) -> Result<()> {
+    fn finish(&self, found: RecordedFinding) -> Result<()> {
         let record = Record {
             command: std::env::args().skip(1).collect::<Vec<_>>().join(" "),
             machine: Machine::here(Tier::detect()),
@@ -139,7 +139,7 @@ fn main() -> Result<ExitCode> {
             let forms = forms(&run.meshes, run.detail)?;
             let check = check(run.plan(), &forms, mode, run.steps, without_margin, &cases)?;
             let fine = check.dropped == 0;
-            run.finish(Found::Checked {
+            run.finish(RecordedFinding::Checked {
                 mode: mode.to_string(),
                 without_margin,
                 check,
@@ -162,7 +162,7 @@ fn main() -> Result<ExitCode> {
             };
             let forms = forms(&run.meshes, run.detail)?;
             let (shares, prices) = measure(run.plan(), &forms, &modes, run.steps, calibrate);
-            run.finish(Found::Measured { shares, prices })?;
+            run.finish(RecordedFinding::Measured { shares, prices })?;
             Ok(ExitCode::SUCCESS)
         }
     }

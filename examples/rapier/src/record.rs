@@ -106,13 +106,13 @@ pub struct Record {
     pub real: String,
     /// What was found.
     #[serde(flatten)]
-    pub found: Found,
+    pub found: RecordedFinding,
 }
 
 /// What was found.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Found {
+pub enum RecordedFinding {
     /// By `check`.
     Checked {
         /// How it was filtered.

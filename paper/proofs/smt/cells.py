@@ -1,9 +1,9 @@
 """The grid's count of cells by an SMT solver, in 16-bit floats (half a minute).
 
-`.ci/proofs` runs it, with `pip install bitwuzla`. Cell numbers are computed as `CellRule::cell` does
-(src/broad_phase/grid/cells.rs). The former count, round(extent / size) + 1, is refuted. Today's,
-the number of the farthest centre's cell and one, is proved; Coq proves it for f64 (coq/Cells.v,
-centre_in_table).
+`.ci/proofs` runs it, with `pip install bitwuzla`. Cell numbers are computed as `CellRule::cell`
+does (src/broad_phase/grid/cells.rs). The former count, round(extent / size) + 1, is refuted.
+Today's, the number of the farthest centre's cell and one, is proved; Coq proves it for f64
+(coq/Cells.v, centre_in_table).
 """
 
 import sys

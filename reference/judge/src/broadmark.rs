@@ -1,8 +1,8 @@
 //! Broadmark's recordings, `.aabbs`: boxes frame by frame, for the claim about given boxes.
 //!
-//! Little endian. A head of 304 bytes: two names in 128 bytes each, i32 bodies, i32 frames, two i32
-//! of zero, the world's box in 2 × 4 f32. Then 1 + frames times the bodies' boxes in 2 × 4 f32
-//! each, the fourth of no meaning.
+//! Numbers are little endian. A head of 304 bytes has two names in 128 bytes each, i32 bodies, i32
+//! frames, two i32 of zero, and the world's box in 2 × 4 f32. Then follow, 1 + frames times, the
+//! bodies' boxes in 2 × 4 f32 each. The fourth f32 has no meaning.
 
 use super::case::{Case, Frame};
 use super::catalogue::{CatalogueError, of_boxes};
@@ -30,7 +30,7 @@ pub enum RecordingError {
         ends: WorldBox,
     },
     /// A case whose set of bodies changes.
-    #[error("the recording of a changing set of bodies: its format has no place for it")]
+    #[error("the set of bodies changes between frames, which a Broadmark recording can't hold")]
     Changes,
     /// Never: a point can be built.
     #[error(transparent)]

@@ -2,7 +2,7 @@
 //!
 //! A culler states a [`Claim`]: what it never misses. The [`catalogue`] has the cases for it; a
 //! [`subject`] answers them, be it a Rust type ([`judge`]) or a program ([`process`], over a
-//! [`wire`]); a case's answers are held against the exact [`truth`], and a missed pair becomes the
+//! [`wire`]); a case's answers are compared with the exact [`truth`], and a missed pair becomes the
 //! smallest scene that shows it ([`shrink`]), with a certificate ([`witness`]).
 //!
 //! ```
@@ -62,7 +62,9 @@ pub mod witness;
 pub use crate::contestant::{Contestant, Filter, WorldBox};
 pub use case::{Case, Frame};
 pub use claim::Claim;
-pub use run::{Judge, JudgeError, Options, examine, judge, judge_pair_test};
+pub use run::{Judge, JudgeError, Options, examine, judge, judge_function, judge_pair_test};
 pub use score::{Count, Miss, Outcome};
-pub use subject::{PairTest, Scene, Subject};
+pub use sdop::bodies::Bodies;
+pub use sdop::volume::Shape;
+pub use subject::{Scene, Subject};
 pub use verdict::{Conclusion, Verdict};

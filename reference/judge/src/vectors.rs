@@ -102,7 +102,7 @@ fn vector(group: &Group, number: u32) -> Result<Option<Vector>, VectorError> {
     }))
 }
 
-/// The file's text: its head, then a case a line.
+/// The file's text: its head, then one case per line.
 fn text(group: &Group, cases: &[Vector]) -> serde_json::Result<String> {
     let quoted = serde_json::to_string;
     let mut text = format!(

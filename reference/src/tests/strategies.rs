@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::shapes::{Draws, cuboid, exact_basis, poses, shape, torus, wedge};
 use crate::overlap::{obb, ordop, sphere};
-use crate::strategy::{Plain, run};
+use crate::strategy::{PlainPredicates, run};
 use crate::{Body, DirectionSet, Overlap, Pose, Shape, Strategy, pairs};
 
 fn forms() -> Vec<Shape> {
@@ -76,7 +76,7 @@ fn counters_follow_the_stages() {
     let dynamic = [true, true, false, false];
     let tested = [(0, 1)];
     let (found, counters) = run(
-        &Plain::new(&bodies, Overlap::TwoSided),
+        &PlainPredicates::new(&bodies, Overlap::TwoSided),
         &dynamic,
         Strategy::TimeCritical(&tested),
     );

@@ -42,7 +42,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
         ),
         _ => "this is neither text STL (no `solid`) nor binary STL (under 84 bytes)".to_owned(),
     };
-    let help = "the file is cut off, has something appended, or is no STL file";
+    let help = "the file is cut off, has other data after its end, or is not an STL file";
     Err((None, Problem::malformed(message, help)))
 }
 
@@ -194,7 +194,7 @@ impl Facets<'_, '_> {
 }
 
 fn malformed(message: String) -> Problem {
-    let help = "text STL has seven lines a facet: facet normal, outer loop, three times vertex, endloop, endfacet";
+    let help = "text STL has seven lines per facet: facet normal, outer loop, three times vertex, endloop, endfacet";
     Problem::malformed(message, help)
 }
 

@@ -2,8 +2,9 @@
 
     pip install mujoco && python touching_boxes.py
 
-All numbers are exact in floating point: the boxes share a face, an edge or a corner, at several places. The margin is 0, and the
-documentation does not say whether a distance of exactly 0 is a contact.
+All numbers are exact in floating point: the boxes share a face, an edge or a corner, at several
+places. The margin is 0, and the documentation does not say whether a distance of exactly 0 is a
+contact.
 """
 
 import itertools

@@ -2,8 +2,8 @@
 
     pip install newton && python touching_boxes.py
 
-Both are documented to find pairs "whose AABBs overlap". All numbers are exact in float32. A box of side 1 is moved by 1 along each axis
-in turn, and by 1 along all of them.
+Both are documented to find pairs "whose AABBs overlap". All numbers are exact in float32. A box of
+side 1 is moved by 1 along each axis in turn, and by 1 along all of them.
 """
 
 import itertools

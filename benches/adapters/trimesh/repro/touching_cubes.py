@@ -2,8 +2,9 @@
 
     pip install trimesh python-fcl && python touching_cubes.py
 
-All numbers are exact in floating point: the cubes share a face, an edge or a corner, at several places. The documentation does not
-say whether touching is colliding; this prints what 5.2.0 answers.
+All numbers are exact in floating point: the cubes share a face, an edge or a corner, at several
+places. The documentation does not say whether touching is colliding; this prints what 5.2.0
+answers.
 """
 
 import itertools

@@ -2,7 +2,8 @@
 
     pip install vesin numpy && python far_apart.py
 
-Each distance is tried in a process of its own, since some end the process by a signal. The right answer is "0 pairs" to all.
+Each distance is tried in a separate process, because some end the process by a signal. The right
+answer is always "0 pairs".
 """
 
 import subprocess

@@ -10,9 +10,9 @@ use crate::boxes::Frame;
 use crate::entry::Setup;
 
 /// A culler with one strategy.
-pub struct Culled(Culler);
+pub struct StrategyCuller(Culler);
 
-impl Culled {
+impl StrategyCuller {
     /// With k = 18, two-sided, all volumes updated each frame: what a culler has by default.
     pub fn new(setup: &Setup<'_>, strategy: Strategy) -> miette::Result<Self> {
         let culler = Culler::builder()
@@ -24,7 +24,7 @@ impl Culled {
     }
 }
 
-impl Contestant<Frame> for Culled {
+impl Contestant<Frame> for StrategyCuller {
     fn frame(&mut self, frame: &Frame) {
         let pairs = self.0.cull(&frame.bodies);
         assert!(pairs.is_ok(), "{pairs:?}: frames keep their bodies");

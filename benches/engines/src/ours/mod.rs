@@ -26,7 +26,12 @@ pub const ENTRIES: [Entry; 3] = [
         work: Work::Spheres,
         threads: usize::MAX,
         ages: true,
-        new: |setup| Ok(Box::new(culler::Culled::new(setup, Strategy::Sphere)?)),
+        new: |setup| {
+            Ok(Box::new(culler::StrategyCuller::new(
+                setup,
+                Strategy::Sphere,
+            )?))
+        },
     },
     Entry {
         name: "sdop s-dop",
@@ -35,7 +40,7 @@ pub const ENTRIES: [Entry; 3] = [
         threads: usize::MAX,
         ages: true,
         new: |setup| {
-            Ok(Box::new(culler::Culled::new(
+            Ok(Box::new(culler::StrategyCuller::new(
                 setup,
                 Strategy::SDopSequential,
             )?))

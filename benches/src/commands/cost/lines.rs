@@ -2,7 +2,7 @@
 
 use sdop_bench::cost::predict::{TermWidths, Terms};
 use sdop_bench::cost::study::CostReport;
-use sdop_bench::cost::table::{Compared, Cost, PriceRow};
+use sdop_bench::cost::table::{CheckedPrediction, Cost, PriceRow};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::Estimate;
 use serde::Serialize;
@@ -67,7 +67,7 @@ pub fn of_cost(cost: &Cost) -> Vec<Line<'_>> {
             &cost.total,
         ),
     ] {
-        let Compared {
+        let CheckedPrediction {
             predicted,
             measured,
             residual,

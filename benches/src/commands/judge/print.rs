@@ -34,7 +34,7 @@ impl From<Format> for ReportFormat {
 
 /// All of a verdict, for programs.
 #[derive(Serialize)]
-struct Whole<'a> {
+struct WholeVerdict<'a> {
     passed: bool,
     conclusion: Conclusion,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -61,7 +61,7 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
                 .smallest
                 .as_ref()
                 .and_then(|smallest| smallest.witness.as_ref());
-            let whole = Whole {
+            let whole = WholeVerdict {
                 passed: verdict.passed(),
                 conclusion: verdict.conclusion(),
                 why: verdict.why(),

@@ -38,7 +38,7 @@ impl Args {
         let chosen = chosen(self)?;
         if let Some(whole) = chosen.iter().find(|experiment| !sweep(experiment)) {
             return Err(miette!(
-                help = "its work isn't cut into units: start it once, without mpirun and without flags for many machines",
+                help = "start it once, without mpirun, --shard and --merge",
                 "{} is measured in one process",
                 whole.name
             ));

@@ -13,7 +13,7 @@ use sdop_bench::measure::conditions::Conditions;
 pub use sdop_bench::reproduce::units::NAME;
 use sdop_bench::reproduce::units::{ExperimentSettings, Experiments};
 use sdop_bench::reproduce::{ExperimentPlan, Results};
-use sdop_bench::sweep::{Merged, Sweep as _};
+use sdop_bench::sweep::{MergedUnits, Sweep as _};
 
 use super::Outcome;
 use super::files::{command, write};
@@ -117,7 +117,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 ///
 /// # Errors
 /// Results of another command, a CPU that lacks the tier, files that can't be written.
-pub fn merged(merged: &Merged, out: &Path, format: Format) -> miette::Result<Outcome> {
+pub fn merged(merged: &MergedUnits, out: &Path, format: Format) -> miette::Result<Outcome> {
     let settings: ExperimentSettings = merged.header.settings().into_diagnostic()?;
     let mut results = Results::of_header(&merged.header)?;
     for result in merged.done.values() {
@@ -164,8 +164,7 @@ fn plan(args: &Args) -> miette::Result<ExperimentPlan> {
     let frames = args.frames.unwrap_or(size.frames);
     if !args.scenes.is_dir() {
         return Err(miette!(
-            help =
-                "run it in the root of the repository, or say where the scenes are: --scenes DIR",
+            help = "run it in the root of the repository, or give --scenes DIR",
             "there is no directory {}",
             args.scenes.display()
         ));

@@ -3,7 +3,7 @@
 use comfy_table::Table;
 use sdop::settings::{Axes, Overlap};
 use sdop_bench::cost::predict::Terms;
-use sdop_bench::cost::table::Compared;
+use sdop_bench::cost::table::CheckedPrediction;
 use sdop_bench::tradeoff::decide::{CHECKS, Decision};
 use sdop_bench::tradeoff::pays::{Line, Standing};
 use sdop_bench::tradeoff::shapes::ShapeSurvival;
@@ -221,7 +221,7 @@ fn variant(row: &VariantResult) -> Vec<String> {
         terms.join(" + ")
     };
     let sum = |term: fn(&Terms) -> f64| format!("{:.1}", 1e6 * terms.iter().map(term).sum::<f64>());
-    let compared = |cost: Option<&Compared>, scale: f64| {
+    let compared = |cost: Option<&CheckedPrediction>, scale: f64| {
         let cells = cost.map(|cost| {
             let residual = format!("{:+.1}", 100.0 * cost.residual.mean);
             [plus_minus(&cost.measured, scale, 1), residual]

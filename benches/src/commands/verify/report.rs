@@ -1,10 +1,10 @@
-//! What a verification run says of itself: answers by stage and lists by strategy, one table each a
-//! source, and the matrix of what was judged.
+//! Prints the result of a verification run: answers by stage and lists by strategy, in one table
+//! per source, and the matrix of what was judged.
 
 mod coverage;
 
 use sdop_judge::Conclusion;
-use sdop_judge::every_way::rounds::{Judged, Ledger};
+use sdop_judge::every_way::{Judged, Ledger};
 use sdop_judge::ours::Predicate;
 use sdop_judge::ours::boxes::BoxLedger;
 use sdop_judge::ours::matrix::Matrix;

@@ -7,7 +7,7 @@ use std::path::Path;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::Tier;
 use sdop_bench::remedy::OrReport as _;
-use sdop_bench::view::Show;
+use sdop_bench::view::ShownRun;
 use sdop_judge::answer::{Answer, Stop, sorted};
 use sdop_judge::ours::hard::Group;
 use sdop_judge::record::RecordError;
@@ -22,7 +22,7 @@ use crate::commands::scene_args::SceneArgs;
 /// What was found.
 pub enum ViewInput {
     /// Something to show; with a record that is broken somewhere, what is wrong.
-    Show(Box<Show>, Option<RecordError>),
+    Run(Box<ShownRun>, Option<RecordError>),
     /// A record with no frame that can be read.
     Broken(RecordError),
 }
@@ -44,19 +44,19 @@ pub fn read(
         if answers.is_some() || is_claimed(path, most).unwrap_or(false) {
             refuse(args, run, "its poses are given")?;
             let show = judged((path, most), answers)?;
-            return Ok(ViewInput::Show(Box::new(show), None));
+            return Ok(ViewInput::Run(Box::new(show), None));
         }
         return record(args, run);
     }
     if answers.is_some() {
         return Err(miette!(
             help = "cases are written by `sdop cases` and, for a miss, by `sdop judge`",
-            "--answers is for a case or record (.ndjson); {} is none",
+            "--answers needs a case or record (.ndjson); {} is neither",
             path.display()
         ));
     }
     if is_case(path, most) {
-        return Ok(ViewInput::Show(
+        return Ok(ViewInput::Run(
             Box::new(case(args, run.unwrap_or(0), tier)?),
             None,
         ));
@@ -70,9 +70,9 @@ pub fn read(
     }
     let scene = args.build()?;
     let bar = progress(scene.frames.into(), &scene.name);
-    let show = Show::scene(&scene, path, tier, || bar.inc(1))?;
+    let show = ShownRun::scene(&scene, path, tier, || bar.inc(1))?;
     bar.finish_and_clear();
-    Ok(ViewInput::Show(Box::new(show), None))
+    Ok(ViewInput::Run(Box::new(show), None))
 }
 
 fn is_record(path: &Path) -> miette::Result<bool> {
@@ -114,7 +114,7 @@ fn is_claimed(path: &Path, most: u64) -> Option<bool> {
 
 /// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at
 /// most `most` bytes.
-fn judged((path, most): (&Path, u64), answers: Option<&Path>) -> miette::Result<Show> {
+fn judged((path, most): (&Path, u64), answers: Option<&Path>) -> miette::Result<ShownRun> {
     let Read { case, pairs, .. } = read_case(path, most)?;
     let given = match answers {
         None => {
@@ -138,7 +138,7 @@ fn judged((path, most): (&Path, u64), answers: Option<&Path>) -> miette::Result<
     };
     let reported = given.map(sort).transpose()?;
     let unasked = reported.is_none();
-    let mut show = Show::case(&case, reported, path)
+    let mut show = ShownRun::case(&case, reported, path)
         .map_err(|why| miette!(help = "view another case", "{}: {why}", path.display()))?;
     if unasked {
         let words = "Nobody has answered this case: --answers FILE shows what a program reports.";
@@ -182,15 +182,15 @@ fn refuse(args: &SceneArgs, run: Option<usize>, why: &str) -> miette::Result<()>
 
 fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<ViewInput> {
     refuse(args, run, "a record is shown as it was culled")?;
-    match Show::record(args.path(), args.frames()) {
-        Ok((show, broken)) => Ok(ViewInput::Show(Box::new(show), broken)),
+    match ShownRun::record(args.path(), args.frames()) {
+        Ok((show, broken)) => Ok(ViewInput::Run(Box::new(show), broken)),
         // Nothing there is no record that is broken.
         Err(error @ RecordError::Unreadable { .. }) => Err(error).or_report(),
         Err(error) => Ok(ViewInput::Broken(error)),
     }
 }
 
-fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<Show> {
+fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<ShownRun> {
     let path = args.path();
     let name = path.display();
     let text = std::fs::read_to_string(path)
@@ -202,7 +202,7 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<Show> {
     if args.seed().is_some() {
         return Err(miette!(
             help = "leave --seed out",
-            "{name}: a group of hard cases has a seed of its own"
+            "{name}: a group of hard cases has its own seed"
         ));
     }
     let settings = args.settings();
@@ -225,7 +225,7 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<Show> {
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned();
-    let mut show = Show::poses(
+    let mut show = ShownRun::poses(
         &stem,
         path,
         cases.shapes.built.clone(),

@@ -1,5 +1,5 @@
-// Makes dist/page.html from the sources: one page with style, script and licences in it, and a mark where a run's data go.
-// With --check: fails unless the committed page is what the sources make.
+// Makes dist/page.html from the sources: one page with style, script and licences in it, and a mark
+// where a run's data go. With --check: fails unless the committed page is what the sources make.
 
 import { readFileSync, writeFileSync } from "node:fs";
 import { build } from "esbuild";
@@ -25,7 +25,7 @@ const style = await build({
   write: false,
 });
 
-// A script element ends at the first "</script", wherever it stands.
+// A script element ends at the first "</script", wherever that is.
 const script = bundled.outputFiles[0].text.replaceAll("</script", "<\\/script").trim();
 const licence = read("node_modules/three/LICENSE").replaceAll("&", "&amp;").replaceAll("<", "&lt;").trim();
 const page = read("src/page.html")

@@ -21,16 +21,16 @@ use super::super::rapier::prelude::{ContactData, ContactManifoldData};
 #[derive(Debug, Default)]
 pub struct Calls {
     /// Pairs with contact points afterwards.
-    pub hits: Timed,
+    pub hits: CallTimes,
     /// Pairs without.
-    pub misses: Timed,
+    pub misses: CallTimes,
     /// Of the misses, those that the filter rejects. In [`Filtering::Shadow`] they are checked all
     /// the same.
-    pub culled: Timed,
+    pub culled: CallTimes,
     /// Pairs that the filter was asked about: the time is its own.
-    pub asked: Timed,
+    pub asked: CallTimes,
     /// Pairs of which one is a sensor.
-    pub sensors: Timed,
+    pub sensors: CallTimes,
     filtering: AtomicU8,
     timing: AtomicBool,
     without_margin: AtomicBool,
@@ -49,7 +49,7 @@ pub enum Filtering {
 
 /// A number of calls and their nanoseconds.
 #[derive(Debug, Default)]
-pub struct Timed {
+pub struct CallTimes {
     count: AtomicU64,
     timed: AtomicU64,
     ns: AtomicU64,
@@ -58,7 +58,7 @@ pub struct Timed {
 /// A call that took longer was interrupted by another process, and is not timed.
 const INTERRUPTED_NS: u64 = 2_000_000;
 
-impl Timed {
+impl CallTimes {
     /// Calls so far.
     pub fn count(&self) -> u64 {
         self.count.load(Ordering::Relaxed)
@@ -114,7 +114,7 @@ fn since(start: Option<Instant>) -> Option<u64> {
 
 /// A [`CullingDispatcher`] followed by the [`DefaultQueryDispatcher`], with [`Calls`].
 #[derive(Clone, Default)]
-pub struct Counted {
+pub struct CountingDispatcher {
     /// The counts.
     pub calls: Arc<Calls>,
     /// The filter.
@@ -123,7 +123,7 @@ pub struct Counted {
 
 type Manifold = ContactManifold;
 
-impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Counted {
+impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for CountingDispatcher {
     fn contact_manifolds(
         &self,
         pos12: &Pose,
@@ -179,7 +179,7 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for Counted {
     }
 }
 
-impl QueryDispatcher for Counted {
+impl QueryDispatcher for CountingDispatcher {
     fn intersection_test(
         &self,
         pos12: &Pose,

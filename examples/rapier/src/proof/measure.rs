@@ -5,7 +5,7 @@ use std::time::Instant;
 use rustix::time::{ClockId, clock_gettime};
 use sdop::mesh::TriangleMesh;
 
-use super::calls::{Filtering, Timed};
+use super::calls::{CallTimes, Filtering};
 use super::sim::{Sim, StepMs, touches};
 use crate::plan::{Mode, Plan};
 use crate::record::{Prices, Share};
@@ -112,7 +112,7 @@ pub fn calibrate(plan: Plan, forms: &[TriangleMesh], steps: usize) -> Prices {
         sim.step();
     }
     let (calls, clock) = (sim.calls(), clock_ns());
-    let price = |timed: &Timed| (timed.mean_ns() - clock).max(0.0);
+    let price = |timed: &CallTimes| (timed.mean_ns() - clock).max(0.0);
     Prices {
         rejected_ns: price(&calls.culled),
         hit_ns: price(&calls.hits),

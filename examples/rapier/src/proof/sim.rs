@@ -9,7 +9,7 @@ use sdop::mesh::TriangleMesh;
 use super::super::rapier::math::Vector;
 use super::super::rapier::prelude::*;
 use super::super::{Cost, Filter, HOOKS};
-use super::calls::{Calls, Counted, Filtering};
+use super::calls::{Calls, CountingDispatcher, Filtering};
 use super::scenes::Stage;
 use crate::plan::{Mode, Plan};
 
@@ -19,7 +19,7 @@ pub struct Sim {
     pub stage: Stage,
     /// How it is stepped.
     pub mode: Mode,
-    counted: Counted,
+    counted: CountingDispatcher,
     filter: Filter,
     /// A bug for the check to see: the filter gets a prediction distance of zero, and a step
     /// without length.
@@ -61,7 +61,7 @@ impl Sim {
             ActiveHooks::empty()
         };
         let mut stage = Stage::new(plan, forms, hooks);
-        let counted = Counted::default();
+        let counted = CountingDispatcher::default();
         stage.world.narrow_phase = NarrowPhase::with_query_dispatcher(counted.clone());
         stage.world.integration_parameters.contact_recycling = mode.recycles();
         for shape in stage.shapes() {

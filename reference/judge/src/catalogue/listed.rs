@@ -1,5 +1,5 @@
-//! Slow approaches: lists of candidates that are kept while nothing has moved far are kept too long
-//! by whoever measures that wrongly.
+//! Slow approaches: a culler that keeps its list of candidates until a body has moved far keeps it
+//! too long if it measures that distance wrongly.
 
 use rand::{Rng, RngExt};
 
@@ -12,19 +12,19 @@ use sdop::volume::{Axes, DirectionSet};
 /// How bodies move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Two bodies come to each other, each by half of the way.
+    /// Two bodies approach each other, each by half of the distance.
     Both,
-    /// One comes, the other stands.
+    /// One approaches, the other rests.
     One,
-    /// One goes away first, and comes back.
+    /// One moves away first, then approaches.
     Return,
 }
 
 const PAIRS: usize = 12;
 const FRAMES: usize = 33;
 
-/// Pairs of cubes, each with a speed and a gap of its own: from a 64th of the radius a frame, which
-/// no list notices from frame to frame, to a quarter.
+/// Pairs of cubes, each with its own speed and gap. Speeds are from a 64th of the radius per frame,
+/// which no list notices from one frame to the next, to a quarter.
 pub fn approach(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, FormError> {
     let form = Form::of("box", [0.0, 0.0]);
     let shapes = forms::build(&[form], 1, DirectionSet::K18, Axes::Model, rng)?.built;

@@ -201,7 +201,7 @@ pub fn groups() -> Result<Vec<Group>, CatalogueError> {
     Ok(groups)
 }
 
-/// What breaks in a group of hard cases: its file says so in a line of its own.
+/// What breaks in a group of hard cases, from the line `why` of its file.
 fn why(text: &'static str) -> &'static str {
     let line = text.lines().find_map(|line| line.strip_prefix("why = \""));
     line.and_then(|line| line.strip_suffix('"')).unwrap_or("")

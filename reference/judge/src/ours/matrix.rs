@@ -1,5 +1,5 @@
 //! What was judged: the matrix strategy × overlap test × finder × k × axes × updates × tier ×
-//! threads, a count of lists in each cell.
+//! threads, with the number of lists in each cell.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use super::ways::{Mode, Rotation, variants, ways};
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
 use sdop::volume::{Axes, DirectionSet};
 
-/// One cell. A strategy without an overlap test has one cell instead of one a test: the others
-/// can't exist.
+/// One cell. A strategy without an overlap test has one cell instead of one per test, because the
+/// others can't exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Cell {
     /// The strategy.

@@ -1,9 +1,9 @@
 //! The optimised culler against the exact reference: `optimised ⊇ reference predicate ⊇ exact mesh
 //! intersection`.
 //!
-//! [`answers`] are the reference's, pair by pair; [`compare()`] holds a culler's list against them.
+//! [`answers`] are the reference's, pair by pair; [`compare()`] compares a culler's list with them.
 //! What is judged comes from seeds ([`draw`]: random crowds, and contacts put together on purpose),
-//! from the corpus of [`hard`] cases, and from scenes. Given [`boxes`] are held against their
+//! from the corpus of [`hard`] cases, and from scenes. Given [`boxes`] are compared with their
 //! definition.
 
 pub mod answers;

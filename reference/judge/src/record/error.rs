@@ -26,7 +26,7 @@ pub enum RecordError {
         cause: std::io::Error,
     },
     /// Another kind of file.
-    #[error("{file}:1: this is no record: {problem}")]
+    #[error("{file}:1: not a record: {problem}")]
     Stranger {
         /// The path as given.
         file: String,

@@ -1,7 +1,7 @@
 //! `sdop-record`, version 1: a run as lines of JSON, enough for an independent oracle to judge the
 //! pairs.
 //!
-//! Line 1 holds shapes and bodies, every further line a frame with its poses and sorted pairs.
+//! Line 1 holds shapes and bodies. Every further line holds a frame: its poses and sorted pairs.
 //! Vertices, balls and slabs are the body-frame numbers exactly as built, before any inflation for
 //! rounding. A number is written as the shortest text of the f64 that equals it ([`crate::json`]);
 //! records with the shorter text of an f32 are read as well. Bodies and frames are counted from 0;

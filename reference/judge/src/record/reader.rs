@@ -246,7 +246,7 @@ fn line_error(name: &str, line: u64, problem: String, hint: &str) -> RecordError
     }
 }
 
-/// What the parser says, without its own line number: every line is a text of its own to it.
+/// The parser's message without its line number: it parses each line separately.
 fn said(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());

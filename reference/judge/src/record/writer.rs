@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{BodyLine, FORMAT, FrameLine, Header, MINOR, RecordError, ShapeLine, VERSION};
 use crate::json;
 use sdop::bodies::Bodies;
-use sdop::files::Whole;
+use sdop::files::WholeFile;
 use sdop::volume::Shape;
 
 impl Header {
@@ -49,7 +49,7 @@ impl BodyLine {
 #[derive(Debug)]
 pub struct Recorder {
     path: PathBuf,
-    file: Whole,
+    file: WholeFile,
 }
 
 impl Recorder {
@@ -58,7 +58,7 @@ impl Recorder {
     /// # Errors
     /// A file that can't be written.
     pub fn create(path: &Path, header: &Header) -> Result<Self, RecordError> {
-        let file = Whole::create(path);
+        let file = WholeFile::create(path);
         let mut recorder = Self {
             path: path.to_owned(),
             file: file.map_err(|cause| RecordError::unwritable(path, cause))?,

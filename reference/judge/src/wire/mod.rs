@@ -47,7 +47,7 @@ impl Wire {
     /// Reads the answer to a frame.
     ///
     /// # Errors
-    /// A line that is none, or one about another frame.
+    /// An invalid line, or one about another frame.
     pub fn decode(self, expected: usize, line: &[u8]) -> Result<Said, Trouble> {
         match self {
             Self::Ndjson => ndjson::decode(expected, line),
@@ -56,7 +56,7 @@ impl Wire {
     }
 }
 
-/// Books what a program says to a frame.
+/// Records what a program answers to a frame.
 ///
 /// # Errors
 /// That it skips the case, or that an answer before the first still holds.

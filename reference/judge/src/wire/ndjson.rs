@@ -1,5 +1,5 @@
-//! Cases as lines of JSON: `sdop-record`, version 1, with what a case has on top. Unknown keys are
-//! ignored by readers.
+//! Cases as lines of JSON: `sdop-record`, version 1, with the additional data of a case. Readers
+//! ignore unknown keys.
 //!
 //! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claims about given
 //! boxes, and `bodies` when the set changes, each with its former number as `was` (null for a new
@@ -139,7 +139,7 @@ pub struct Read {
 /// Reads a case or a record whose lines have at most `most` bytes.
 ///
 /// # Errors
-/// A line that is none, with its number and what is wrong.
+/// An invalid line, with its number and what is wrong.
 pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
     let lines = std::iter::from_fn(|| {
         let mut line = Vec::new();

@@ -1,5 +1,5 @@
-//! Cases as words between white space: every count stands before what it counts, every f32 is its
-//! bits in eight hexadecimal digits. The page in `examples/judge` has the grammar.
+//! Cases as words between white space: every count precedes what it counts, every f32 is its bits
+//! in eight hexadecimal digits. The page in `examples/judge` has the grammar.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,4 @@
-//! Lists of long boxes, of which the balls of a finder, cubes about them, tell little.
+//! Lists of long boxes, which a finder's balls (the cubes around them) describe badly.
 
 use super::TrackedBodies;
 use crate::bodies::Aabb;

@@ -149,13 +149,13 @@ mod tests {
     use crate::commands::palette::{TESTS, UPDATES};
     use sdop::settings::Strategy;
     use sdop_bench::cost::predict::Terms;
-    use sdop_bench::cost::table::Compared;
+    use sdop_bench::cost::table::CheckedPrediction;
     use sdop_bench::measure::counts::Volume;
     use sdop_bench::measure::turns::{Quartiles, Regime};
 
     fn cost(strategy: Strategy, volume: Volume, microseconds: f64) -> Cost {
         let seconds = 1e-6 * microseconds;
-        let compared = Compared::of(&[[seconds, seconds]], &[seconds]);
+        let compared = CheckedPrediction::of(&[[seconds, seconds]], &[seconds]);
         Cost {
             scene: "s".into(),
             bodies: 1,

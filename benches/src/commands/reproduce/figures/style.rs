@@ -1,4 +1,4 @@
-//! What the figures share: fonts, whiskers, legends, and a colour a strategy.
+//! What the figures share: fonts, whiskers, legends, and one colour per strategy.
 
 use plotters::chart::MeshStyle;
 use plotters::coord::CoordTranslate;

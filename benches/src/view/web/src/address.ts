@@ -1,4 +1,5 @@
-// The page's address after #: frame, camera, switches, so that a link shows the same.
+// The part of the page's address after #: frame, camera and switches, so that a link restores the
+// view.
 
 import { LAYERS, type Switches } from "./overlays.ts";
 

@@ -1,4 +1,5 @@
-// The meshes: one instanced mesh per shape and level of detail; a body's level follows its size on the screen.
+// The meshes: one instanced mesh per shape and level of detail; a body's level follows its size on
+// the screen.
 
 import {
   BufferAttribute,
@@ -25,12 +26,12 @@ import { Surface } from "./shading.ts";
 import type { Space } from "./space.ts";
 
 /** Radii in pixels above which the finer level is drawn, finest first. */
-const DETAIL = [80, 24, 10];
+const DETAIL_RADII = [80, 24, 10];
 
-/** Shapes with fewer triangles are meant to have edges, others to look round. */
-const ROUND = 200;
+/** Shapes with more triangles are shaded smoothly; others have visible edges. */
+const MIN_SMOOTH_TRIANGLES = 200;
 
-/** A body's place in the picture. */
+/** A body's position in the picture. */
 export interface Placement {
   /** Rotation, normalised. */
   turn: [number, number, number, number];
@@ -47,7 +48,7 @@ export class Bodies extends Group {
   private boxes: Float32Array | null = null;
   readonly surface = new Surface();
   private readonly frustum = new Frustum();
-  /** Bodies from the nearest to the farthest: what is hidden then costs least. */
+  /** Bodies from the nearest to the farthest, so that hidden ones cost least. */
   private readonly order: Uint32Array;
   private readonly distance: Float64Array;
 
@@ -76,7 +77,7 @@ export class Bodies extends Group {
     });
   }
 
-  /** Moves the bodies to a frame's poses; `asBoxes`: a case's boxes take the place of the meshes. */
+  /** Moves the bodies to a frame's poses. If `asBoxes`, a case's boxes replace the meshes. */
   place(frame: number, asBoxes = false): void {
     const { run, space, placed } = this;
     this.boxes = asBoxes ? run.boxesAt(frame) : null;
@@ -91,7 +92,7 @@ export class Bodies extends Group {
     }
   }
 
-  /** The box that is drawn in the place of a body's mesh, if one is. */
+  /** The box that is drawn instead of a body's mesh, if there is one. */
   box(body: number): { centre: Triple; half: Triple } | null {
     const { boxes, space } = this;
     if (!boxes) return null;
@@ -124,8 +125,8 @@ export class Bodies extends Group {
   }
 
   /**
-   * Chooses each body's level of detail for this camera; `height` in pixels. Bodies count as `coarseness` times smaller
-   * than they are. What is hidden or out of sight isn't drawn.
+   * Chooses each body's level of detail for this camera; `height` in pixels. Bodies count as
+   * `coarseness` times smaller than they are. What is hidden or out of sight isn't drawn.
    */
   arrange(camera: PerspectiveCamera, height: number, coarseness: number, hidden: (body: number) => boolean): void {
     const { placed, run, distance } = this;
@@ -150,7 +151,7 @@ export class Bodies extends Group {
       }
       const pixels = (radius * focal) / Math.max(distance[body], 1e-9);
       const levels = this.meshes[run.shapeOf[body]];
-      const wanted = DETAIL.filter((limit) => pixels < limit).length;
+      const wanted = DETAIL_RADII.filter((limit) => pixels < limit).length;
       const mesh = levels[Math.min(wanted, levels.length - 1)];
       at.mesh = mesh;
       at.index = mesh.count++;
@@ -219,7 +220,9 @@ const SPHERE = new Sphere();
 const POINT = new Vector3();
 const PROBE = new Mesh(new BufferGeometry(), new MeshBasicMaterial());
 
-/** One level of a shape's mesh, scaled to reach 1: shapes may be smaller than f32's normal numbers. */
+/**
+ * One level of a shape's mesh, scaled to reach 1: shapes may be smaller than f32's normal numbers.
+ */
 function geometry(run: Run, shape: ShapeHeader, level: number): BufferGeometry {
   const { vertices, triangles } = shape.lods[level];
   const points = run.blocks.get("vertices")!.subarray(3 * vertices[0], 3 * (vertices[0] + vertices[1]));
@@ -228,8 +231,8 @@ function geometry(run: Run, shape: ShapeHeader, level: number): BufferGeometry {
   const round = new BufferGeometry();
   round.setAttribute("position", new BufferAttribute(Float32Array.from(points, (x) => x / reach), 3));
   round.setIndex(new BufferAttribute(Uint32Array.from(corners), 1));
-  // Without shared vertices each triangle has a normal of its own.
-  const geometry = shape.triangles > ROUND ? round : round.toNonIndexed();
+  // Without shared vertices each triangle has its own normal.
+  const geometry = shape.triangles > MIN_SMOOTH_TRIANGLES ? round : round.toNonIndexed();
   geometry.computeVertexNormals();
   geometry.computeBoundingSphere();
   return geometry;

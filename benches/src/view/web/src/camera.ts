@@ -1,17 +1,18 @@
-// The camera: orbit, pan and zoom by mouse and touch (three's controls), the same by keys, flights to a place.
+// The camera: orbit, pan and zoom by mouse, touch (three's controls) and keys, and flights to a
+// point.
 
 import { PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { EXTENT } from "./space.ts";
 import { reducedMotion } from "./theme.ts";
 
-const FLIGHT = 600; // milliseconds
+const FLIGHT_MS = 600;
 
 /** Where the camera looks from at first; the whole box is in view. */
 const HOME = new Vector3(0.55, 0.42, 1).normalize();
 
 /** The part of the view's width and height that the box fills; the legend has room under it. */
-const FILLED = 0.9;
+const FILLED_PART = 0.9;
 
 export class Camera {
   readonly lens = new PerspectiveCamera(40, 1, EXTENT / 1000, 1000 * EXTENT);
@@ -21,8 +22,8 @@ export class Camera {
   private readonly rest: [Vector3, Vector3] = [new Vector3(), new Vector3()];
 
   /**
-   * `headroom` is the part of the view's height that titles take. `changed` is called whenever the picture must be drawn again, `moved` when a
-   * movement by hand has ended.
+   * `headroom` is the part of the view's height that titles take. `changed` is called whenever the
+   * picture must be drawn again, `moved` when a movement by hand has ended.
    */
   constructor(
     element: HTMLElement,
@@ -41,15 +42,16 @@ export class Camera {
     this.home();
   }
 
-  /** Sees the whole box, in the middle and as large as fits. */
+  /** Shows the whole box, centred and as large as fits. */
   home(): void {
     this.flight = null;
     const right = new Vector3(0, 1, 0).cross(HOME).normalize();
     const up = HOME.clone().cross(right);
     const slope = Math.tan((this.lens.fov * Math.PI) / 360);
-    const [across, rise] = [FILLED * slope * this.lens.aspect, FILLED * slope * (1 - this.headroom)];
+    const [across, rise] = [FILLED_PART * slope * this.lens.aspect, FILLED_PART * slope * (1 - this.headroom)];
     const [target, position] = [new Vector3(), new Vector3()];
-    // What is near looks larger, so the box isn't in the middle of the view when the camera looks at its centre.
+    // What is near looks larger, so the box isn't in the middle of the view when the camera looks
+    // at its centre.
     for (let turn = 0; turn < 8; turn++) {
       const seen = CORNERS.map((corner) => corner.clone().sub(target));
       const need = (c: Vector3) => c.dot(HOME) + Math.max(Math.abs(c.dot(right)) / across, Math.abs(c.dot(up)) / rise);
@@ -88,7 +90,7 @@ export class Camera {
     else this.zoom(this.widening / widening);
   }
 
-  /** How many times farther away the camera must be on a view that is higher than wide, for the same to be in view. */
+  /** The factor on distances that keeps the same things in view if it is higher than wide. */
   private get widening(): number {
     const { fov, aspect } = this.lens;
     const half = (fov * Math.PI) / 360;
@@ -100,7 +102,7 @@ export class Camera {
     return (radius * this.widening) / Math.sin((this.lens.fov * Math.PI) / 360);
   }
 
-  /** Flies to a ball; jumps if it is told to, or where the person wants less motion. */
+  /** Flies to a ball. Jumps if `jump` is set, or if the user prefers reduced motion. */
   flyTo(centre: Vector3, radius: number, jump = false): void {
     const away = this.back.normalize();
     const target = centre.clone();
@@ -119,7 +121,7 @@ export class Camera {
   /** Moves on a flight; true while there is one. */
   advance(now: number): boolean {
     if (!this.flight) return false;
-    const part = Math.min(1, (now - this.flight.start) / FLIGHT);
+    const part = Math.min(1, (now - this.flight.start) / FLIGHT_MS);
     const eased = part * part * (3 - 2 * part);
     this.lens.position.lerpVectors(this.flight.from[0], this.flight.to[0], eased);
     this.controls.target.lerpVectors(this.flight.from[1], this.flight.to[1], eased);
@@ -163,7 +165,10 @@ export class Camera {
     this.controls.update();
   }
 
-  /** Position, then target, as six numbers, as on a view that is as wide as high; none while the whole box is seen. */
+  /**
+   * Position, then target, as six numbers, as on a view that is as wide as high; none while the
+   * whole box is seen.
+   */
   get state(): number[] | null {
     if (this.atHome) return null;
     const [position, target] = this.flight ? this.flight.to : [this.lens.position, this.controls.target];

@@ -1,4 +1,5 @@
-// The course of the numbers over the frames. A chart is drawn once per size and theme; the present frame is a line over it.
+// Charts of numbers over the frames. A chart is drawn once per size and theme; a line over it marks
+// the present frame.
 
 export interface Course {
   name: string;
@@ -71,7 +72,7 @@ export class Charts {
     new ResizeObserver(draw).observe(canvas);
   }
 
-  /** What never changes is a line of text. */
+  /** A number that never changes is shown as text. */
   private addConstant({ title, unit, courses: [{ name, values }] }: Chart): void {
     const text = document.createElement("p");
     text.className = "constant";

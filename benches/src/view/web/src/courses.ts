@@ -13,7 +13,7 @@ export function buildCharts(run: Run, element: HTMLElement, seek: (frame: number
     counts.forEach((list, side) => {
       for (const [name, colour, get] of courses) {
         if (list.some((c) => get(c) === null)) continue;
-        // The truth is one for both strategies.
+        // Both strategies have the same truth.
         if (side > 0 && name === "true") continue;
         made.courses.push({ name, colour, values: Float64Array.from(list, (c) => get(c)!), dashed: side > 0 });
       }

@@ -1,6 +1,8 @@
-// The page's data: a JSON header and blocks of numbers in base64, little endian, each in a script element of its own.
+// The page's data: a JSON header and blocks of numbers in base64, little endian, each in its own
+// script element.
 //
-// `benches/src/view/page.rs` writes it; `format` and `version` say which layout. All poses are the record's f32 to the bit.
+// `benches/src/view/page.rs` writes it; `format` and `version` say which layout. All poses are the
+// record's f32 to the bit.
 
 export const FORMAT = "sdop-view";
 export const VERSION = 1;
@@ -8,7 +10,10 @@ export const VERSION = 1;
 export interface Lod {
   /** First vertex and number of vertices in the block `vertices`, three floats each. */
   vertices: [number, number];
-  /** First triangle and number of triangles in the block `triangles`, three vertex numbers each, counted from the first vertex. */
+  /**
+   * First triangle and number of triangles in the block `triangles`, three vertex numbers each,
+   * counted from the first vertex.
+   */
   triangles: [number, number];
 }
 
@@ -31,11 +36,14 @@ export interface ShapeHeader {
 export interface RunHeader {
   name: string;
   detail: string;
-  /** Culls nothing, so that nothing counts as missed. */
+  /** Whether the strategy culls nothing; then no pair counts as missed. */
   control: boolean;
   /** Volumes in the order of their tests, or null where the record has no counters. */
   volumes: string[] | null;
-  /** Co in seconds, or null where T is not known. The block `terms-…` has Nu·Cu, F and Nv·Cv per frame. */
+  /**
+   * Co in seconds, or null where T is not known. The block `terms-…` has Nu·Cu, F and Nv·Cv per
+   * frame.
+   */
   construct: number | null;
 }
 
@@ -65,14 +73,17 @@ export interface Header {
   runs: RunHeader[];
   /** Whether pairs are known to meet or not, in exact arithmetic. */
   truth: boolean;
-  /** What is said to meet, such as meshes. */
+  /** What the truth is about, such as meshes. */
   meet: string;
   /** Layers that are switched on at first. */
   layers: string[];
   effects: { name: string; on: boolean }[] | null;
-  /** The missed pair of a counter-example, by the frame's index, and a point that both bodies share in it. */
+  /**
+   * The missed pair of a counter-example, by the frame's index, and a point that both bodies share
+   * in it.
+   */
   focus: { frame: number; bodies: [number, number]; point: [number, number, number] | null } | null;
-  /** What the reader of the record had to say. */
+  /** Messages from the reader of the record. */
   messages: string[];
   blocks: BlockHeader[];
 }
@@ -104,7 +115,7 @@ export function fromBase64(text: string): Uint8Array {
   return bytes;
 }
 
-/** Decodes one block and holds it against its header. */
+/** Decodes one block and checks it against its header. */
 export function decodeBlock(block: BlockHeader, text: string): Numbers {
   const type = TYPES[block.type];
   if (!type) throw new DataError(`block ${block.name} has the unknown type ${block.type}`);
@@ -112,7 +123,7 @@ export function decodeBlock(block: BlockHeader, text: string): Numbers {
   try {
     bytes = fromBase64(text.trim());
   } catch {
-    throw new DataError(`block ${block.name} is no base64: the page was cut off or changed`);
+    throw new DataError(`block ${block.name} is not base64: the page was cut off or changed`);
   }
   const expected = block.length * type.BYTES_PER_ELEMENT;
   if (bytes.length !== expected) {
@@ -121,22 +132,25 @@ export function decodeBlock(block: BlockHeader, text: string): Numbers {
   return new type(bytes.buffer as ArrayBuffer, bytes.byteOffset, block.length);
 }
 
-/** Reads the header and refuses what this page can't show. */
+/** Reads the header and rejects data that this page can't show. */
 export function parseHeader(text: string): Header {
   let header: Header;
   try {
     header = JSON.parse(text) as Header;
   } catch (error) {
-    throw new DataError(`the header is no JSON (${(error as Error).message}): the page was cut off or changed`);
+    throw new DataError(`the header is not JSON (${(error as Error).message}): the page was cut off or changed`);
   }
-  if (header?.format !== FORMAT) throw new DataError("this page holds no run");
+  if (header?.format !== FORMAT) throw new DataError("this page has no run");
   if (header.version !== VERSION) {
-    throw new DataError(`the run has layout ${header.version}, this viewer reads ${VERSION}: write the page again with sdop view`);
+    throw new DataError(`the run has version ${header.version}, this viewer reads version ${VERSION}: write the page again with sdop view`);
   }
   return header;
 }
 
-/** Takes header and blocks out of the document. The texts are removed: they are large and nobody reads them again. */
+/**
+ * Takes header and blocks out of the document. The texts are removed: they are large and nobody
+ * reads them again.
+ */
 export function readDocument(document: Document): { header: Header; blocks: Map<string, Numbers> } {
   const take = (id: string): string => {
     const element = document.getElementById(id);

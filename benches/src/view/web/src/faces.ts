@@ -1,4 +1,4 @@
-// Boxes that a case gives, as bodies: their faces let through what is inside and behind.
+// The boxes of a case as bodies, with transparent faces.
 
 import { BoxGeometry, type Color, DoubleSide, InstancedMesh, Matrix4, MeshBasicMaterial } from "three";
 import type { Triple } from "./figures.ts";

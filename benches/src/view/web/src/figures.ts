@@ -28,7 +28,9 @@ export function rotate([x, y, z, w]: Turn, v: Triple, scale: number): Triple {
   ];
 }
 
-/** The world-aligned extent of turned points, relative to the body's origin, in the world's units. */
+/**
+ * The world-aligned extent of turned points, relative to the body's origin, in the world's units.
+ */
 export function extent(points: Float64Array, turn: Turn): { low: Triple; high: Triple } {
   const rows = [rotate(turn, [1, 0, 0], 1), rotate(turn, [0, 1, 0], 1), rotate(turn, [0, 0, 1], 1)];
   const low: Triple = [Infinity, Infinity, Infinity];

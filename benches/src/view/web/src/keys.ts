@@ -9,10 +9,10 @@ export interface Key {
   act: (event: KeyboardEvent) => void;
 }
 
-/** Elements that use keys themselves; space and letters stay theirs. */
+/** Elements that handle keys themselves: they keep space and letters. */
 const OWN_KEYS = new Set(["INPUT", "SELECT", "TEXTAREA"]);
 
-/** Obeys the keys wherever the focus is, except where an element needs them. */
+/** Handles the keys wherever the focus is, unless the focused element needs them. */
 export function listen(keys: Key[], table: HTMLElement): void {
   for (const { label, does } of keys) {
     const row = document.createElement("tr");

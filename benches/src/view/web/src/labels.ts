@@ -1,4 +1,4 @@
-// Words at places of the picture: which body is which, and where the two of a missed pair meet.
+// Labels in the picture: which body is which, and where the two of a missed pair meet.
 
 import { type PerspectiveCamera, Vector3 } from "three";
 
@@ -13,7 +13,7 @@ export interface Label {
 export class Labels {
   constructor(private readonly place: HTMLElement) {}
 
-  /** Shows these labels alone, over a picture of this size; none behind the camera. */
+  /** Shows these labels only, over a picture of this size, and none that is behind the camera. */
   show(labels: Label[], camera: PerspectiveCamera, width: number, height: number): void {
     const shown = labels.flatMap(({ text, at, colour }) => {
       const seen = new Vector3(...at).project(camera);

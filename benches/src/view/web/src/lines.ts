@@ -1,4 +1,5 @@
-// One wire figure drawn many times: spheres, or-DOPs, boxes, cells. An instance is turned, scaled and moved in the shader.
+// One wire figure drawn many times: spheres, or-DOPs, boxes, cells. An instance is turned, scaled
+// and moved in the shader.
 
 import {
   BufferAttribute,

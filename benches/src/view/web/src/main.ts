@@ -7,7 +7,7 @@ import { Viewer } from "./viewer.ts";
 
 declare global {
   interface Window {
-    /** For tests and for the curious at the console. */
+    /** For tests, and for use in the browser's console. */
     sdop?: Viewer["handle"];
   }
 }
@@ -22,7 +22,7 @@ function start(): void {
   let run: Run;
   try {
     const { header, blocks } = readDocument(document);
-    // Such a page has no blocks either.
+    // Such a page also has no blocks.
     if (header.frames === 0) throw new DataError(header.messages.join("\n") || "the run has no frames");
     run = new Run(header, blocks);
   } catch (error) {

@@ -1,4 +1,4 @@
-// What can be switched on over the meshes: spheres, or-DOPs, world boxes, pairs, grid cells.
+// Overlays that can be switched on: spheres, or-DOPs, world boxes, pairs, grid cells.
 
 import { Group } from "three";
 import type { Color, Vector3 } from "three";
@@ -11,32 +11,32 @@ import { type Run, State } from "./run.ts";
 import type { Space } from "./space.ts";
 import type { Theme } from "./theme.ts";
 
-/** What can be switched, by its name in the page's address. */
+/** The overlays, by their names in the page's address. */
 export const LAYERS = ["spheres", "ordops", "boxes", "pairs", "cells"] as const;
 export type Layer = (typeof LAYERS)[number];
 export type Switches = Record<Layer, boolean>;
 
-/** What the overlays need to know of the moment. */
+/** What the overlays need to know about the picture. */
 export interface Moment {
   frame: number;
   run: number;
   switches: Switches;
   picked: number | null;
   theme: Theme;
-  /** A body's colour, or null where nothing of it is to be drawn. */
+  /** A body's colour, or null if nothing of it is drawn. */
   colour: (body: number) => Color | null;
   /** Where the camera is. */
   eye: Vector3;
 }
 
 /** Five lines close together: WebGL draws none thicker than a pixel. */
-const SEGMENT = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].flatMap(([y, z]) => [-1, y, z, 1, y, z]);
+const THICK_SEGMENT = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].flatMap(([y, z]) => [-1, y, z, 1, y, z]);
 
 /** The radius of the ball about a shared point, as a part of its distance from the eye. */
-const POINT = 0.012;
+const POINT_RADIUS = 0.012;
 
 /** Half the thickness of a line, as a part of its distance from the eye. */
-const THIN = 7e-4;
+const LINE_HALF_THICKNESS = 7e-4;
 
 export class Overlays extends Group {
   private readonly spheres = new Wires(sphereLines(), 0.55);
@@ -44,10 +44,10 @@ export class Overlays extends Group {
   private readonly boxes = new Wires(cubeLines(), 0.7);
   private readonly faces: Faces;
   private readonly cells = new Wires(cubeLines(), 0.35);
-  private readonly halos = new Wires(SEGMENT, 0.9, true);
-  private readonly pairs = new Wires(SEGMENT, 0.9, true);
+  private readonly halos = new Wires(THICK_SEGMENT, 0.9, true);
+  private readonly pairs = new Wires(THICK_SEGMENT, 0.9, true);
   private readonly marks = new Wires(sphereLines(40), 1, true);
-  private readonly markedPairs = new Wires(SEGMENT, 1, true);
+  private readonly markedPairs = new Wires(THICK_SEGMENT, 1, true);
   private readonly hulls: Float64Array[];
   private readonly widest: number;
 
@@ -75,7 +75,9 @@ export class Overlays extends Group {
     this.add(this.spheres, ...this.ordops, this.boxes, this.faces, this.cells, this.halos, this.pairs, this.marks, this.markedPairs);
   }
 
-  /** Draws what is switched on for the moment; `marked` are bodies with a ring, each with its colour. */
+  /**
+   * Draws the overlays that are switched on. `marked` are bodies with a ring, each with its colour.
+   */
   update(moment: Moment, marked: Map<number, Color>): void {
     const { switches } = moment;
     const all = [this.spheres, ...this.ordops, this.boxes, this.faces, this.cells, this.halos, this.pairs, this.marks, this.markedPairs];
@@ -119,7 +121,10 @@ export class Overlays extends Group {
     }
   }
 
-  /** World-aligned boxes: those that were given with the frame, with faces, or else fitted to the posed hull's vertices. */
+  /**
+   * World-aligned boxes: with faces those of the frame, if it has boxes, otherwise boxes around the
+   * posed hulls.
+   */
   private addBoxes(moment: Moment): void {
     for (const [body, colour] of this.shown(moment)) {
       const given = this.bodies.box(body);
@@ -136,7 +141,10 @@ export class Overlays extends Group {
     }
   }
 
-  /** The cells, of the widest ball's diameter, that hold the origin of a body: what a uniform grid would sort by. */
+  /**
+   * The cells of a uniform grid that contain a body's origin. A cell is as wide as the largest
+   * ball.
+   */
   private addCells(moment: Moment): void {
     const cell = 2 * this.widest * this.space.scale;
     if (!(cell > 0)) return;
@@ -151,7 +159,9 @@ export class Overlays extends Group {
     }
   }
 
-  /** Lines between the origins of a pair's bodies: all pairs when switched on, missed ones always. */
+  /**
+   * Lines between the origins of a pair's bodies: always for missed pairs, others if switched on.
+   */
   private addPairs(moment: Moment): void {
     const { states, spheres } = moment.theme;
     for (const { i, j, flags } of this.run.pairsAt(moment.frame)) {
@@ -163,13 +173,16 @@ export class Overlays extends Group {
     }
   }
 
-  /** Of a counter-example, a ball about the point that the missed pair shares, as large as it can be seen from anywhere. */
+  /**
+   * For a counter-example, a ball at the point that the missed pair shares. It looks equally large
+   * from any distance.
+   */
   private addSharedPoint({ frame, eye, theme }: Moment): void {
     const { focus } = this.run.header;
     if (!focus?.point || frame !== focus.frame) return;
     const [x, y, z] = focus.point;
     const at: Triple = [this.space.x(x), this.space.y(y), this.space.z(z)];
-    const radius = POINT * Math.hypot(at[0] - eye.x, at[1] - eye.y, at[2] - eye.z);
+    const radius = POINT_RADIUS * Math.hypot(at[0] - eye.x, at[1] - eye.y, at[2] - eye.z);
     this.marks.put(at, UPRIGHT, [radius, radius, radius], theme.states[State.Missed]);
   }
 
@@ -178,9 +191,9 @@ export class Overlays extends Group {
     const half = [0, 1, 2].map((axis) => (b[axis] - a[axis]) / 2) as Triple;
     const length = Math.hypot(...half);
     const middle = [0, 1, 2].map((axis) => (a[axis] + b[axis]) / 2) as Triple;
-    const thickness = THIN * Math.hypot(middle[0] - eye.x, middle[1] - eye.y, middle[2] - eye.z);
+    const thickness = LINE_HALF_THICKNESS * Math.hypot(middle[0] - eye.x, middle[1] - eye.y, middle[2] - eye.z);
     const turn = turnFromX(half, length);
-    // On bodies of its own colour a line is seen by the ground's colour about it.
+    // A halo in the background's colour shows a line in front of bodies of the line's colour.
     this.halos.put(middle, turn, [length, 3 * thickness, 3 * thickness], theme.background);
     wires.put(middle, turn, [length, thickness, thickness], colour);
   }

@@ -1,12 +1,12 @@
-// The panel beside the picture: numbers, switches, lists.
+// The panel next to the picture: numbers, switches, lists.
 
 import { LAYERS, type Layer } from "./overlays.ts";
 import { type Counts, type Pair, type Run, State } from "./run.ts";
 
-/** Rows of a list; a click on a body shows its own pairs alone. */
-const ROWS = 60;
+/** The most rows of a list. If a body is picked, only its pairs are listed. */
+const MAX_ROWS = 60;
 
-/** Cells of the table, whose ids tests read. */
+/** The rows of the table. Tests read cells by these ids. */
 const CELLS = ["nu", "nv", "hits", "reported", "true", "t"] as const;
 
 export const LAYER_NAMES: Record<Layer, string> = {
@@ -114,7 +114,7 @@ export class Panel {
       ["both", "side by side"],
     ] as const;
     for (const [sides, name] of choices) {
-      const button = create("button", name, { type: "button", "aria-pressed": "false", title: `${name} (v changes)` });
+      const button = create("button", name, { type: "button", "aria-pressed": "false", title: `${name} (v switches)` });
       button.addEventListener("click", () => this.actions.sides(sides));
       element("sides-choice").append(button);
       this.sideButtons.set(sides, button);
@@ -126,7 +126,7 @@ export class Panel {
     const { effects } = this.run.header;
     const list = element("effects");
     if (!effects) {
-      list.append(create("li", "the record doesn't say which", { class: "off" }));
+      list.append(create("li", "not recorded", { class: "off" }));
       return;
     }
     for (const { name, on } of effects) {
@@ -138,7 +138,7 @@ export class Panel {
     const { runs } = this.run.header;
     let total = 0;
     runs.forEach((run, side) => {
-      const { list, count } = this.run.missed(side, ROWS);
+      const { list, count } = this.run.missed(side, MAX_ROWS);
       total += count;
       for (const { frame, pair } of list) {
         const where = runs.length > 1 ? `frame ${this.run.numbers[frame]}, ${run.name}` : `frame ${this.run.numbers[frame]}`;
@@ -150,7 +150,7 @@ export class Panel {
     element("missed-section").hidden = total === 0;
   }
 
-  /** The colours' meaning, each with its number of pairs in this frame. */
+  /** Builds the legend: each colour's meaning and its number of pairs in this frame. */
   private buildLegend(): void {
     const states = [State.Idle, State.Reported];
     if (this.run.header.truth) states.push(State.Meets, State.Missed);
@@ -204,7 +204,7 @@ export class Panel {
     return item;
   }
 
-  /** The numbers of a frame: cheap, every frame. */
+  /** Shows the numbers of a frame. Fast enough for every frame. */
   showNumbers(frame: number, sides: number[]): void {
     element("frame").textContent = String(this.run.numbers[frame]);
     this.run.header.runs.forEach((_, side) => {
@@ -239,7 +239,7 @@ export class Panel {
     const { construct, volumes } = this.run.header.runs[side];
     const place = element("terms");
     if (!terms || construct === null) {
-      place.textContent = volumes ? "T is not known: no prices" : "Nu, Nv, hits and T are not known: the record has no counters";
+      place.textContent = volumes ? "T is unknown: the run has no prices" : "Nu, Nv, hits and T are unknown: the record has no counters";
       return;
     }
     const bar = create("div", "", { class: "bar", "aria-hidden": "true" });
@@ -274,7 +274,7 @@ export class Panel {
     element("volumes").replaceChildren(...rows);
   }
 
-  /** What of a frame takes longer to show, for when it stays: terms, volumes, pairs. */
+  /** Shows terms, volumes and pairs of a frame. Too slow to do for every frame while playing. */
   showLists(frame: number, side: number, picked: number | null): void {
     this.showTerms(this.run.counts(frame, side), side);
     this.showVolumes(frame, side);
@@ -285,8 +285,8 @@ export class Panel {
       shown.push([state, pair]);
     }
     shown.sort(([a], [b]) => b - a);
-    const rows = shown.slice(0, ROWS).map(([state, pair]) => this.row(frame, pair, state, this.describe(state)));
-    if (shown.length > ROWS) rows.push(create("li", `… and ${grouped.format(shown.length - ROWS)} more: pick a body to see its own`));
+    const rows = shown.slice(0, MAX_ROWS).map(([state, pair]) => this.row(frame, pair, state, this.describe(state)));
+    if (shown.length > MAX_ROWS) rows.push(create("li", `… and ${grouped.format(shown.length - MAX_ROWS)} more: pick a body to list only its pairs`));
     if (shown.length === 0) rows.push(create("li", "none"));
     element("pairs").replaceChildren(...rows);
     element("pairs-count").textContent = grouped.format(shown.length);

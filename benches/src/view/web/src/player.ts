@@ -1,10 +1,10 @@
 // Playback: which frame is due, at which speed.
 
-/** Speeds, as multiples of the run's own time. */
+/** Speeds, as multiples of real time. */
 export const SPEEDS = [0.125, 0.25, 0.5, 1, 2, 4, 8];
 
-/** Frames per second at speed 1 where the record doesn't say how long a frame is. */
-const USUAL_RATE = 60;
+/** Frames per second at speed 1, if the record has no duration of a frame. */
+const DEFAULT_RATE = 60;
 
 export class Player {
   playing = false;
@@ -37,16 +37,16 @@ export class Player {
     if (this.playing && this.frame === this.frames - 1) this.seek(0);
   }
 
-  /** Moves on to the frame that is due; true when it is another one. */
+  /** Advances to the frame that is due; returns whether it is another one. */
   advance(now: number): boolean {
     if (!this.playing) return false;
     const passed = this.last === null ? 0 : now - this.last;
     this.last = now;
     this.shown.push(now);
     while (now - this.shown[0] > 2000) this.shown.shift();
-    const rate = this.dt && this.dt > 0 ? 1 / this.dt : USUAL_RATE;
+    const rate = this.dt && this.dt > 0 ? 1 / this.dt : DEFAULT_RATE;
     this.rest += (passed / 1000) * rate * this.speed;
-    // A page that was hidden for long doesn't leap.
+    // A page that was hidden for long doesn't skip frames.
     const steps = Math.min(Math.floor(this.rest), Math.ceil(rate * this.speed));
     this.rest -= Math.floor(this.rest);
     const before = this.frame;

@@ -1,7 +1,8 @@
 // The polytope of an or-DOP, for drawing: corners and edges of the slabs lo ≤ d·x ≤ hi.
 //
-// Every corner lies on three planes, so all triples of the k ≤ 26 planes are solved and those points kept that no slab
-// excludes. An edge joins corners that share two planes. f64 with a tolerance: nothing is decided by it.
+// Every corner lies on three planes. Therefore all triples of the k ≤ 26 planes are solved, and the
+// points that no slab excludes are kept. An edge joins corners that share two planes. It computes
+// in f64 with a tolerance, because it only draws and decides nothing.
 
 export type Vec = [number, number, number];
 
@@ -39,7 +40,7 @@ interface Plane {
 const dot = (a: Vec, b: Vec): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a: Vec, b: Vec): Vec => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-/** The half-spaces normal·x ≤ offset, with unit normals. `basis`: three vectors, one after the other. */
+/** The half-spaces normal·x ≤ offset, with unit normals. `basis` is three vectors in a row. */
 export function halfSpaces(k: number, basis: number[], lo: number[], hi: number[]): Plane[] {
   return coefficients(k).flatMap(([a, b, c], slab) => {
     const d = [0, 1, 2].map((axis) => a * basis[axis] + b * basis[3 + axis] + c * basis[6 + axis]) as Vec;

@@ -1,14 +1,18 @@
-// How sharp and how fine to draw: everything while the picture rests, only what the machine manages while it moves.
+// How sharp and how fine to draw: full quality at rest, and what the machine can draw in time while
+// the picture moves.
 
 export interface Quality {
   /** Pixels drawn per CSS pixel; two and more smooth the edges. */
   sharpness: number;
-  /** Bodies are drawn as if so many times smaller. */
+  /** Bodies are drawn with the detail of bodies this many times smaller. */
   coarseness: number;
 }
 
-/** From the finest to the cheapest. Factors of sharpness apply to the screen's own pixels, at most two per CSS pixel. */
-const LADDER: Quality[] = [
+/**
+ * From the finest to the cheapest. Factors of sharpness apply to the screen's own pixels, at most
+ * two per CSS pixel.
+ */
+const LEVELS: Quality[] = [
   { sharpness: 2, coarseness: 0.4 },
   { sharpness: 1, coarseness: 1 },
   { sharpness: 1, coarseness: 2 },
@@ -17,36 +21,36 @@ const LADDER: Quality[] = [
   { sharpness: 0.4, coarseness: 8 },
 ];
 
-/** The longest mean time between pictures that is smooth enough, in milliseconds. */
-const SMOOTH = 26;
+/** The longest mean time between pictures that is smooth enough. */
+const SMOOTH_MS = 26;
 
-/** What nobody waits a whole window for, in milliseconds. */
-const FAR_TOO_LONG = 4 * SMOOTH;
+/** A time between pictures that lowers the quality before a whole window is measured. */
+const MUCH_TOO_SLOW_MS = 4 * SMOOTH_MS;
 
-/** Times in a mean. */
+/** The number of times that are averaged. */
 const WINDOW = 6;
 
 export class Pace {
   private level = 1;
   private times: number[] = [];
 
-  /** What to draw with, now. Between pictures of one movement the time is measured. */
+  /** The quality of the picture at `now`. Measures the time between pictures of a movement. */
   at(now: number, moving: boolean): Quality {
     if (!moving) {
       this.times = [];
-      return scaled(LADDER[0]);
+      return scaled(LEVELS[0]);
     }
     this.times.push(now);
     const gaps = this.times.length - 1;
-    const slow = gaps >= 2 && now - this.times[gaps - 2] > 2 * FAR_TOO_LONG;
+    const slow = gaps >= 2 && now - this.times[gaps - 2] > 2 * MUCH_TOO_SLOW_MS;
     if (gaps === WINDOW || slow) {
       const mean = (now - this.times[0]) / gaps;
       // One step per doubling of the time.
-      const steps = Math.ceil(Math.log2(mean / SMOOTH));
-      if (steps > 0) this.level = Math.min(LADDER.length - 1, this.level + steps);
+      const steps = Math.ceil(Math.log2(mean / SMOOTH_MS));
+      if (steps > 0) this.level = Math.min(LEVELS.length - 1, this.level + steps);
       this.times = steps > 0 ? [] : this.times.slice(1);
     }
-    return scaled(LADDER[this.level]);
+    return scaled(LEVELS[this.level]);
   }
 }
 

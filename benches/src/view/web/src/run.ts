@@ -2,14 +2,14 @@
 
 import { DataError, type Header, MEETS, type Numbers, REPORTED, SPHERES } from "./data.ts";
 
-/** What a frame's counters add up to, for one strategy. `null`: the record doesn't say. */
+/** The sums of a frame's counters for one strategy; null if they aren't recorded. */
 export interface Counts {
   nu: number | null;
   nv: number | null;
-  /** Pairs that the first volume test let through. */
+  /** Pairs that pass the first volume test. */
   hits: number | null;
   reported: number;
-  /** Reported pairs whose meshes don't meet, or all of them where the truth isn't known. */
+  /** Reported pairs whose meshes don't meet; all reported pairs if the truth is unknown. */
   apart: number;
   true: number | null;
   missed: number;
@@ -24,7 +24,7 @@ export interface Pair {
   flags: number;
 }
 
-/** How a pair, or a body by its worst pair, stands; worse is larger. */
+/** The state of a pair, or of a body by its worst pair; a worse state is larger. */
 export enum State {
   Idle = 0,
   Spheres = 1,
@@ -45,9 +45,12 @@ export class Run {
   private readonly flags: Uint8Array;
   private readonly counters: (Float64Array | null)[];
   private readonly terms: (Float64Array | null)[];
-  /** The boxes that a case gives with its frames, six numbers per body and frame: the lower corner, then the upper one. */
+  /**
+   * The boxes that a case gives with its frames, six numbers per body and frame: the lower corner,
+   * then the upper one.
+   */
   private readonly boxes: Float32Array | null;
-  /** The poses of all bodies in the frame last asked for: q (x, y, z, w), then t. */
+  /** The poses of all bodies in the last requested frame: q (x, y, z, w), then t. */
   private readonly posed: Float32Array;
   private posedFrame = -1;
 

@@ -1,5 +1,5 @@
-// The meshes' surface: diffuse light from the sky and from a sun, computed per vertex and with few operations, because
-// software renderers (and tests in them) pay for each one.
+// The meshes' surface: diffuse light from the sky and from a sun, computed per vertex and with few
+// operations, because software renderers (and tests in them) pay for each one.
 
 import { Color, ShaderMaterial, Vector2, Vector3 } from "three";
 import { EXTENT } from "./space.ts";
@@ -58,8 +58,8 @@ export class Surface extends ShaderMaterial {
   }
 
   /**
-   * Light for the theme, from above the eye; what is far behind the point looked at fades, which shows depth. `back` leads
-   * from that point to the eye.
+   * Light for the theme, from above the eye. Bodies much farther away than the target fade, which
+   * shows depth. `back` leads from the target to the eye.
    */
   light(theme: Theme, back: Vector3): void {
     this.uniforms.sun.value.copy(back).normalize().add(UP).normalize();
@@ -67,7 +67,7 @@ export class Surface extends ShaderMaterial {
     this.uniforms.ground.value = theme.dark ? 0.08 : 0.26;
     this.uniforms.glare.value = theme.dark ? 0.85 : 0.75;
     this.uniforms.haze.value.copy(theme.background);
-    // A little light ground shows at once, a little dark ground doesn't.
+    // A light background shows through sooner than a dark one.
     this.uniforms.hazeMost.value = theme.dark ? 0.9 : 0.62;
     const [start, depth] = theme.dark ? [1.4, 2] : [0.8, 2.4];
     const distance = back.length();

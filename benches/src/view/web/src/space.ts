@@ -1,7 +1,8 @@
 // From the world's coordinates to those of the picture.
 //
-// Worlds lie anywhere up to 2⁶⁰ and have any size, and the GPU computes in f32: so positions are taken relative to an
-// origin and scaled in f64 first. Flying far moves the origin along.
+// A world can be anywhere up to 2⁶⁰ and have any size, but the GPU computes in f32. Therefore
+// positions are first taken relative to an origin and scaled, in f64. A long flight moves the
+// origin along.
 
 import type { Run } from "./run.ts";
 
@@ -9,7 +10,7 @@ import type { Run } from "./run.ts";
 export const EXTENT = 10;
 
 /** Past this distance from the origin, in the picture's units, f32 gets coarse. */
-const FAR = 1000 * EXTENT;
+const MAX_OFFSET = 1000 * EXTENT;
 
 export class Space {
   /** In the world's units. */
@@ -35,10 +36,10 @@ export class Space {
     return (world - this.origin[2]) * this.scale;
   }
 
-  /** Moves the origin when a place lies too far away from it; returns by how much the picture moved. */
+  /** Moves the origin if a point is too far from it. Returns how far the picture moved. */
   rebase(place: [number, number, number]): [number, number, number] | null {
     const at = [this.x(place[0]), this.y(place[1]), this.z(place[2])];
-    if (at.every((x) => Math.abs(x) < FAR)) return null;
+    if (at.every((x) => Math.abs(x) < MAX_OFFSET)) return null;
     this.origin = place;
     return at as [number, number, number];
   }
@@ -46,15 +47,18 @@ export class Space {
 
 type Cube = { centre: [number, number, number]; half: number };
 
-/** The part of the picture below which a missed pair can't be made out. */
-const SMALL = 1 / 100;
+/** A missed pair that takes a smaller part of the picture can't be made out. */
+const SMALL_PART = 1 / 100;
 
-/** About the bodies of the first frame; of a counter-example, of the frame with the missed pair, or about that pair where it is small. */
+/**
+ * The space around the bodies of the first frame. For a counter-example, around those of the frame
+ * with the missed pair, or around that pair if it is small.
+ */
 function boundsOfRun(run: Run): Cube {
   const { focus } = run.header;
   if (!focus) return boundsOf(run, 0);
   const [all, pair] = [boundsOf(run, focus.frame), boundsOf(run, focus.frame, focus.bodies)];
-  return pair.half < SMALL * all.half ? { centre: pair.centre, half: pair.half / SMALL } : all;
+  return pair.half < SMALL_PART * all.half ? { centre: pair.centre, half: pair.half / SMALL_PART } : all;
 }
 
 /** A cube about all bodies of a frame, or about some. */

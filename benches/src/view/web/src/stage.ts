@@ -22,24 +22,24 @@ import { type Run, State } from "./run.ts";
 import { EXTENT, Space } from "./space.ts";
 import { reducedMotion, type Theme, theme } from "./theme.ts";
 
-/** What is to be seen. */
+/** What a picture shows. */
 export interface Shown {
   frame: number;
   /** The strategies shown, one or two. */
   sides: number[];
   switches: Switches;
   picked: number | null;
-  /** Whether pictures follow one another: then speed goes before sharpness. */
+  /** Whether the picture moves: then speed matters more than sharpness. */
   moving: boolean;
-  /** Whether this picture is all there will be: nothing flashes in it. */
+  /** Whether this is a still picture, in which nothing flashes. */
   still: boolean;
 }
 
 /** The part of the picture's height under the strategies' names. */
-const TITLES = 0.12;
+const TITLE_PART = 0.12;
 
-/** Half a period of the flashing of missed bodies, in milliseconds: slow enough for the photosensitive. */
-const FLASH = 350;
+/** Half a period of the flashing of missed bodies: slow enough for photosensitive people. */
+const FLASH_MS = 350;
 
 export class Stage {
   readonly camera: Camera;
@@ -67,7 +67,7 @@ export class Stage {
     this.labels = new Labels(labels);
     this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
     this.space = new Space(run);
-    this.camera = new Camera(canvas, run.header.runs.length > 1 ? TITLES : 0, changed, moved);
+    this.camera = new Camera(canvas, run.header.runs.length > 1 ? TITLE_PART : 0, changed, moved);
     this.bodies = new Bodies(run, this.space);
     this.overlays = new Overlays(run, this.space, this.bodies);
     this.scene.add(this.bodies, this.overlays, this.walls);
@@ -82,7 +82,7 @@ export class Stage {
     this.resize(shown.sides.length, quality.sharpness);
     const colours = theme();
     this.dress(colours);
-    // Decimated meshes have slits, through which the inside is better than nothing; pictures in a hurry do without.
+    // Decimated meshes have slits. The back faces hide them, except in pictures of a movement.
     this.bodies.surface.side = shown.moving ? FrontSide : DoubleSide;
     this.bodies.place(shown.frame, shown.switches.boxes);
     const { width, height } = this.canvas.getBoundingClientRect();
@@ -101,13 +101,13 @@ export class Stage {
     });
   }
 
-  /** Whether drawing again now would show something else: a flight goes on, or missed bodies flash. */
+  /** Whether the picture changes by itself: during a flight, or while missed bodies flash. */
   restless(now: number): boolean {
     return this.camera.advance(now) || (this.flashing && this.phaseAt(now) !== this.phase);
   }
 
   private phaseAt(now: number): number {
-    return this.still || reducedMotion() ? 0 : Math.floor(now / FLASH) % 2;
+    return this.still || reducedMotion() ? 0 : Math.floor(now / FLASH_MS) % 2;
   }
 
   private paint(shown: Shown, side: number, colours: Theme, now: number): void {
@@ -133,7 +133,7 @@ export class Stage {
     this.label(shown, colours);
   }
 
-  /** Of a counter-example, the colour of one of its two bodies. */
+  /** The colour of one of the two bodies of a counter-example. */
   private hue(body: number, colours: Theme): Color | null {
     return colours.pair[this.run.header.focus?.bodies.indexOf(body) ?? -1] ?? null;
   }
@@ -146,7 +146,7 @@ export class Stage {
     const put = (text: string, [x, y, z]: number[], colour: Color) => {
       labels.push({ text, at: [this.space.x(x), this.space.y(y), this.space.z(z)], colour: `#${colour.getHexString()}` });
     };
-    // Side by side there is no room for them.
+    // There is no room for them side by side.
     if (focus && sides.length === 1) {
       focus.bodies.forEach((body, n) => put(String(body), this.run.cubeAbout(frame, body).centre, colours.pair[n]));
       if (focus.point && frame === focus.frame) put("shared point", focus.point, colours.states[State.Missed]);
@@ -154,7 +154,7 @@ export class Stage {
     this.labels.show(spread(labels, this.camera.lens), this.camera.lens, width, height);
   }
 
-  /** With a picked body: which others hide a part of it, and aren't drawn. */
+  /** If a body is picked: the bodies that hide a part of it, which aren't drawn. */
   private covering(picked: number | null): (body: number) => boolean {
     if (picked === null) return () => false;
     const seen = (body: number) => {
@@ -172,7 +172,7 @@ export class Stage {
     };
   }
 
-  /** With a picked body, whether this one has nothing to do with it and misses no pair. */
+  /** If a body is picked: whether this one has no pair with it, and no missed pair. */
   private isAway(body: number, picked: number | null): boolean {
     return picked !== null && body !== picked && this.related[body] === State.Idle && this.states[body] !== State.Missed;
   }
@@ -253,7 +253,10 @@ export class Stage {
     this.camera.flyTo(centre, Math.max(...radii), jump);
   }
 
-  /** Looks at what a frame is opened for: the missed pair of a counter-example, or everything; where no body is near, at one. */
+  /**
+   * Shows the subject of a frame: the missed pair of a counter-example, otherwise everything, or
+   * one body if none is near.
+   */
   look(frame: number): void {
     const { focus, bodies, side } = this.run.header;
     if (focus?.frame === frame) return this.flyTo(frame, focus.bodies, true);

@@ -1,4 +1,5 @@
-// Colours that the colour-blind tell apart (Okabe & Ito 2008) on light and on dark ground.
+// Colours for light and dark backgrounds that colour-blind people can distinguish (Okabe & Ito
+// 2008).
 
 import { Color } from "three";
 
@@ -53,7 +54,7 @@ export function theme(): Theme {
   return made;
 }
 
-/** Whether the person wants things not to move by themselves. */
+/** Whether the user prefers reduced motion. */
 export function reducedMotion(): boolean {
   return stillness.matches;
 }

@@ -13,15 +13,15 @@ import { onSettings } from "./theme.ts";
 
 type Sides = "first" | "second" | "both";
 
-/** While playing, lists and address follow at most so often, in milliseconds. */
-const LAZY = 300;
+/** While playing, lists and address are updated at most this often. */
+const LIST_INTERVAL_MS = 300;
 
-/** A picture that has rested for so long is drawn sharp, in milliseconds. */
-const REST = 160;
+/** The picture is drawn sharp after it has been at rest for this long. */
+const SHARPEN_DELAY_MS = 160;
 
-/** Turned per key press, in radians; panned, as a part of the distance. */
-const TURN = 0.12;
-const PAN = 0.06;
+/** How far a key press turns, in radians, and pans, as a part of the distance. */
+const TURN_PER_KEY = 0.12;
+const PAN_PER_KEY = 0.06;
 
 export class Viewer {
   private readonly player: Player;
@@ -48,7 +48,7 @@ export class Viewer {
       sides: (sides) => this.setSides(sides),
       fly: (frame, bodies) => this.fly(frame, bodies),
     });
-    // One frame has no course.
+    // A single frame has nothing to plot.
     element("charts").hidden = run.frames === 1;
     this.charts = buildCharts(run, element("charts"), (frame) => this.seek(frame));
     const changed = () => {
@@ -57,7 +57,7 @@ export class Viewer {
     try {
       this.stage = new Stage(run, element<HTMLCanvasElement>("picture"), element("labels"), changed, () => this.keepAddress());
     } catch {
-      explain("No picture: this browser has no WebGL.", "The numbers, charts and lists work all the same.");
+      explain("No picture: this browser has no WebGL.", "The numbers, charts and lists still work.");
     }
     for (const layer of LAYERS) this.switches[layer] = run.header.layers.includes(layer);
     this.connect();
@@ -71,7 +71,7 @@ export class Viewer {
     this.opened = performance.now();
   }
 
-  /** What scripts may use: tests read and steer the page by it. */
+  /** The interface for scripts. Tests control the page through it. */
   get handle() {
     const viewer = this;
     return {
@@ -130,8 +130,8 @@ export class Viewer {
   private keys(): Key[] {
     const step = (by: number) => () => this.seek(this.player.at + by);
     const turn = (right: number, up: number) => (event: KeyboardEvent) => {
-      if (event.shiftKey) this.stage?.camera.pan(PAN * right, PAN * up);
-      else this.stage?.camera.orbit(TURN * right, TURN * up);
+      if (event.shiftKey) this.stage?.camera.pan(PAN_PER_KEY * right, PAN_PER_KEY * up);
+      else this.stage?.camera.orbit(TURN_PER_KEY * right, TURN_PER_KEY * up);
       this.keepAddress();
     };
     const zoom = (factor: number) => () => {
@@ -144,9 +144,9 @@ export class Viewer {
     return [
       { keys: [" ", "k"], label: "space", does: "play or pause", act: () => this.togglePlaying() },
       { keys: [",", "PageUp"], label: ",", does: "one frame back", act: step(-1) },
-      { keys: [".", "PageDown"], label: ".", does: "one frame on", act: step(1) },
+      { keys: [".", "PageDown"], label: ".", does: "one frame forward", act: step(1) },
       { keys: ["<"], label: "<", does: "ten frames back", act: step(-10) },
-      { keys: [">"], label: ">", does: "ten frames on", act: step(10) },
+      { keys: [">"], label: ">", does: "ten frames forward", act: step(10) },
       { keys: ["Home"], label: "Home", does: "first frame", act: () => this.seek(0) },
       { keys: ["End"], label: "End", does: "last frame", act: () => this.seek(this.run.frames - 1) },
       { keys: ["["], label: "[", does: "slower", act: () => this.changeSpeed(-1) },
@@ -155,17 +155,17 @@ export class Viewer {
       { keys: ["ArrowRight"], label: "→", does: "turn right; with shift, move right", act: turn(1, 0) },
       { keys: ["ArrowUp"], label: "↑", does: "turn up; with shift, move up", act: turn(0, 1) },
       { keys: ["ArrowDown"], label: "↓", does: "turn down; with shift, move down", act: turn(0, -1) },
-      { keys: ["+", "="], label: "+", does: "nearer", act: zoom(0.88) },
-      { keys: ["-"], label: "-", does: "farther", act: zoom(1 / 0.88) },
-      { keys: ["r"], label: "r", does: "see the whole box", act: () => this.home() },
+      { keys: ["+", "="], label: "+", does: "zoom in", act: zoom(0.88) },
+      { keys: ["-"], label: "-", does: "zoom out", act: zoom(1 / 0.88) },
+      { keys: ["r"], label: "r", does: "show everything", act: () => this.home() },
       ...layers,
-      { keys: ["v"], label: "v", does: "one strategy, the other, both", act: () => this.nextSides() },
+      { keys: ["v"], label: "v", does: "show one strategy, the other, or both", act: () => this.nextSides() },
       { keys: ["n"], label: "n", does: "pick the next body", act: () => this.pickNext(1) },
-      { keys: ["p"], label: "p", does: "pick the body before", act: () => this.pickNext(-1) },
+      { keys: ["p"], label: "p", does: "pick the previous body", act: () => this.pickNext(-1) },
       { keys: ["f"], label: "f", does: "fly to the picked body", act: () => this.picked !== null && this.fly(this.player.at, [this.picked]) },
       { keys: ["m"], label: "m", does: "fly to the next missed pair", act: () => this.nextMissed() },
-      { keys: ["Escape"], label: "esc", does: "let the picked body go", act: () => this.pick(null) },
-      { keys: ["?"], label: "?", does: "these keys", act: () => element<HTMLDialogElement>("about").showModal() },
+      { keys: ["Escape"], label: "esc", does: "clear the picked body", act: () => this.pick(null) },
+      { keys: ["?"], label: "?", does: "show these keys", act: () => element<HTMLDialogElement>("about").showModal() },
     ];
   }
 
@@ -235,7 +235,7 @@ export class Viewer {
     if (next) this.fly(next.frame, [next.pair.i, next.pair.j]);
   }
 
-  /** Everything shows the present state. */
+  /** Updates all parts of the page to the present state. */
   private refresh(): void {
     const { player } = this;
     document.body.classList.toggle("playing", player.playing);
@@ -265,7 +265,7 @@ export class Viewer {
     const before = this.player.playing;
     if (this.player.advance(now)) this.showFrame();
     if (before && !this.player.playing) this.refresh();
-    if (this.player.playing && now - this.lazily > LAZY) {
+    if (this.player.playing && now - this.lazily > LIST_INTERVAL_MS) {
       this.lazily = now;
       this.showLists();
       this.keepAddress();
@@ -280,7 +280,7 @@ export class Viewer {
     if (this.stage.restless(now)) this.dirty = true;
     if (this.dirty) this.changed = now;
     const { at, playing } = this.player;
-    const moving = !this.still && (playing || now - this.changed < REST);
+    const moving = !this.still && (playing || now - this.changed < SHARPEN_DELAY_MS);
     if (!this.dirty && (moving || this.sharp)) return;
     this.dirty = false;
     this.sharp = !moving;

@@ -36,7 +36,7 @@ export async function launch() {
     port,
     profile,
     async close() {
-      // With all its helpers, which would go on writing into the profile.
+      // With all its child processes, which would keep writing into the profile.
       process.kill(-browser.pid, "SIGKILL");
       await ended;
       for (let tries = 0; ; tries++) {
@@ -101,7 +101,7 @@ export class Tab {
     return result.value;
   }
 
-  /** Waits until what was asked for is drawn. A tab behind another draws nothing. */
+  /** Waits until pending changes are drawn. A tab in the background draws nothing. */
   async settle() {
     await this.client.Page.bringToFront();
     return this.read("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))");

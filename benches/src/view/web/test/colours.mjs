@@ -2,7 +2,9 @@
 
 import { Tab } from "./chromium.mjs";
 
-/** What a page of its own makes of pictures: `body` is the body of a function of their pixels, `seen`. */
+/**
+ * Evaluates pictures in a separate page: `body` is the body of a function of their pixels, `seen`.
+ */
 async function judged(browser, pngs, width, height, body) {
   const tab = await Tab.open(browser.port);
   try {
@@ -42,7 +44,10 @@ export function colours(browser, png, width, height) {
     return counts;`);
 }
 
-/** Of the pixels that are coloured in the first picture, how many have about the same colour in the second. */
+/**
+ * Of the pixels that are coloured in the first picture, how many have about the same colour in the
+ * second.
+ */
 export function kept(browser, first, second, width, height) {
   return judged(browser, [first, second], width, height, `
     const [before, after] = seen;

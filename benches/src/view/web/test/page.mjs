@@ -1,6 +1,8 @@
-// The page in headless Chromium: what a person sees equals the record, by every way to steer it, without errors and network.
+// The page in headless Chromium: what it shows equals the record, however it is controlled, without
+// errors and without network access.
 //
-// node test/page.mjs SDOP: the built binary makes scene, records and pages in a directory of its own.
+// node test/page.mjs SDOP: the built binary makes a scene, records and pages in a temporary
+// directory.
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
@@ -29,7 +31,7 @@ async function shown(tab, id) {
   return text === "–" ? null : Number(text.replaceAll(",", ""));
 }
 
-/** Asks again until the answer is true: a busy machine draws late. */
+/** Repeats a question until the answer is true: a busy machine draws late. */
 async function until(ask, what) {
   for (let tries = 0; tries < 200; tries++) {
     const answer = await ask();
@@ -116,7 +118,7 @@ const tests = {
   async "mouse and touch turn, zoom, scrub and pick"(browser) {
     const tab = await open(browser, "run.html");
     const { x, y, width, height } = await tab.read("document.getElementById('picture').getBoundingClientRect().toJSON()");
-    // The address names the camera once it has left the place from which it sees the whole box.
+    // The address holds the camera once it has left its first position.
     const camera = () => tab.read("location.hash.match(/camera=([^&]*)/)?.[1] ?? 'home'");
     let before = await camera();
     await tab.mouse("mousePressed", x + 60, y + 60, { button: "left", clickCount: 1 });
@@ -218,7 +220,8 @@ const tests = {
     }, "both bodies and their boxes have their own hues");
     // What is red is the shared point, not the boxes.
     assert.ok(seen.red > 20 && seen.red < seen.teal / 2, JSON.stringify(seen));
-    // A frame by its address, without the missed pair, is not empty, though the bodies are far apart there.
+    // A frame by its address, without the missed pair, is not empty, though the bodies are far
+    // apart there.
     for (const frame of [0, 2]) {
       const other = await open(browser, "counter.html", `#frame=${frame}`);
       assert.equal(await shown(other, "frame"), frame);
@@ -264,7 +267,7 @@ const tests = {
     assert.ok(mean > 0.85 && Math.min(...shares) > 0.5, `shares of pixels that keep their colour: ${shares}`);
     await tab.key("Escape");
     const { coloured, same } = await kept(browser, unpicked, await finished(tab), 800, 700);
-    assert.equal(same, coloured, "let go, all is as before");
+    assert.equal(same, coloured, "without a picked body, all is as before");
   },
 
   async "broken and old records are explained in the page"(browser) {

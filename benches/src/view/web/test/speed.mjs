@@ -1,4 +1,5 @@
-// Page size, load time and pictures per second in headless Chromium's software rendering: a measurement, not a test.
+// Page size, load time and pictures per second in headless Chromium's software rendering: a
+// measurement, not a test.
 //
 // node test/speed.mjs PAGE…
 

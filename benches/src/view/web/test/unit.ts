@@ -144,7 +144,7 @@ test("blocks that don't fit their header are refused", () => {
   assert.throws(() => decodeBlock(block, "AACAPwAAAE"), /cut off/);
   assert.throws(() => decodeBlock(block, "AACAPw=="), /4 bytes, not 8/);
   assert.throws(() => parseHeader('{"format":"sdop-view","vers'), /cut off/);
-  assert.throws(() => parseHeader('{"format":"sdop-view","version":2}'), /layout 2, this viewer reads 1/);
+  assert.throws(() => parseHeader('{"format":"sdop-view","version":2}'), /version 2, this viewer reads version 1/);
   assert.throws(() => parseHeader("null"), /no run/);
 });
 
@@ -218,7 +218,8 @@ test("a case's boxes are those of each frame, and a picture is about them", () =
 
 test("a counter-example's picture is about its frame, and about its pair where that is small", () => {
   const focus = (bodies: [number, number]) => header({ focus: { frame: 1, bodies, point: null } });
-  // In the second frame body 1 is at (7, 8, 9), the others at (1, 0, 0) and (3, 0, 0), each of reach 1.
+  // In the second frame body 1 is at (7, 8, 9), the others at (1, 0, 0) and (3, 0, 0), each of
+  // reach 1.
   assert.deepEqual(new Space(new Run(focus([0, 2]), blocks())).origin, [4, 4, 4.5]);
   const far = blocks();
   (far.get("poses") as Float32Array).set([1e6, 1e6, 1e6], 11);

@@ -13,7 +13,7 @@ enum Keeps {
     Nothing,
     /// A body's ends of the frame before.
     Body,
-    /// The ends of whoever had the same number in the frame before.
+    /// The ends of the body that had the same number in the frame before.
     Number,
     /// A body's ends of the first frame in which it was there.
     First,

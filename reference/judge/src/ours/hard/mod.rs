@@ -1,7 +1,7 @@
 //! The corpus of hard cases: groups stored by recipe and seed, each with its exact answers.
 //!
 //! A group's file says what is drawn and, for every or-DOP (k, axes), which pairs overlap by each
-//! predicate: one bit a pair, hexadecimal, in the order of runs, frames and sorted pairs. The
+//! predicate: one bit per pair, hexadecimal, in the order of runs, frames and sorted pairs. The
 //! answers were computed by the exact reference when they were recorded and are checked against it
 //! ever after.
 
@@ -86,7 +86,7 @@ impl Group {
             .cases(&self.forms, &self.contacts, (k, axes), &mut rng)?)
     }
 
-    /// The exact answers for one or-DOP, one a frame, run by run.
+    /// The exact answers for one or-DOP, one per frame, run by run.
     ///
     /// # Errors
     /// Poses outside the contract.
@@ -156,7 +156,7 @@ pub fn spell(judged: &[Vec<Answers>]) -> BTreeMap<String, String> {
     Predicate::ALL.iter().map(spelled).collect()
 }
 
-/// Four bits a digit, the first the highest; the last digit is filled with zeros.
+/// Four bits per digit, the highest first. The last digit is padded with zeros.
 fn hexadecimal(bits: impl Iterator<Item = bool>) -> String {
     let bits: Vec<bool> = bits.collect();
     let digit = |four: &[bool]| {

@@ -7,14 +7,17 @@ use super::{Group, GroupError, naive_misses};
 const HEAD: &str = "\
 # Hard cases
 
-Each file is a group: why it is hard, a recipe, a seed, and the exact answers for every or-DOP, one bit a pair, by
-predicate. `tests/hard_cases.rs` checks the answers against the exact reference and every strategy, finder, overlap test and
-tier against the answers. `refused.toml` has what must not get in. Written by
+For authors of a culler: scenes with exact answers in which a careless culler misses pairs. Each
+file is a group: why it is hard, a recipe, a seed, and the exact answers for every or-DOP, one bit
+per pair and predicate. `tests/hard_cases.rs` checks the answers against the exact reference, and
+every strategy, finder, overlap test and tier against the answers. `refused.toml` has inputs that
+must be rejected. This page and the files are written by
 
     cargo run --release -- verify --record-hard-cases data/hard_cases
 
-The columns count overlaps (or-DOP: k = 18, principal axes, two-sided) that a plain f32 test without margins denies, and
-under `surface` the meshes that meet by containment alone, which a test of surfaces denies.
+The columns count overlapping pairs (or-DOP: k = 18, principal axes, two-sided) that a plain f32
+test without margins misses. `surface` counts pairs of meshes that meet only because one contains
+the other, which a test of surfaces misses.
 
 | group | pairs | sphere | aabb | or-dop | surface | why |
 |---|--:|--:|--:|--:|--:|---|

@@ -18,9 +18,9 @@ use sdop::volume::{Axes, DirectionSet};
 pub enum Recipe {
     /// One dynamic probe among static partners in contact with it.
     Probe {
-        /// Independent frames, each with a probe of its own.
+        /// Independent frames, each with its own probe.
         frames: usize,
-        /// Partners a frame.
+        /// Partners per frame.
         partners: usize,
         /// The first form is the probe and the others are the partners; otherwise any is either.
         #[serde(default)]
@@ -28,7 +28,7 @@ pub enum Recipe {
     },
     /// Dynamic bodies, each in contact with one before it.
     Chain {
-        /// How many bodies: one case a number.
+        /// Numbers of bodies, one case for each.
         bodies: Vec<usize>,
         /// How often each pose is taken: coincident bodies.
         #[serde(default = "one")]
@@ -51,7 +51,7 @@ pub enum Recipe {
     },
     /// Bars on the borders between a finder's cells, to a few units in the last place of f64.
     Borders {
-        /// Scenes, each a run of its own.
+        /// Scenes, each a separate run.
         scenes: usize,
         /// How many of them have an extent whose cells a division would count otherwise.
         divided: usize,
@@ -256,7 +256,7 @@ fn border(divides: bool, most: usize, rng: &mut impl Rng) -> Borders {
     }
 }
 
-/// The scenes as cases of one list of shapes, two a scene.
+/// The scenes as cases of one list of shapes, two per scene.
 fn bars(scenes: Vec<Borders>, k: DirectionSet, axes: Axes) -> Result<Cases, FormError> {
     let (mut built, mut runs) = (Vec::new(), Vec::new());
     for mut scene in scenes {
