@@ -136,10 +136,8 @@ fn shape_stream_keeps_memory() {
         let make = |first| held(|| streamed(strategy, &forms, first, steps));
         let ((mut long, bytes), (mut fresh, wanted)) = (make(0), make(steps - TERRAIN));
         // One in use keeps an index, and one with its last shapes alone has had no time to make it.
-        // Lists have the room of the longest so far, so that a long stream holds up to a fifth more
-        // until the world shrinks.
         let (_, used) = make(steps - 20 * TERRAIN);
-        assert!(10 * bytes <= 12 * used, "{strategy}: {bytes} of {used}");
+        assert!(10 * bytes <= 11 * used, "{strategy}: {bytes} of {used}");
         let shrunk = [&mut long, &mut fresh].map(|world| held(|| world.shrink_to_fit()).1);
         let [bytes, wanted] = [bytes + shrunk[0], wanted + shrunk[1]];
         assert!(

@@ -202,6 +202,7 @@ impl BoxWorld {
     ///
     /// # Errors
     /// As [`Self::set`].
+    #[inline]
     pub fn set_bounds(&mut self, id: BodyId, bounds: Aabb) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
         bounds.check(slot)?;

@@ -27,6 +27,8 @@ impl Partners {
             counts[number as usize] += 1;
         }
         partners.by_number.resize(numbers, Run::default());
+        let lengths = counts.iter().copied().filter(|&count| count > 0);
+        partners.lists.reserve_all(lengths);
         for (run, count) in partners.by_number.iter_mut().zip(counts) {
             if count > 0 {
                 partners.lists.reserve(run, count as usize);
@@ -93,6 +95,16 @@ impl Partners {
             self.lists.remove(run, at);
             self.entries -= 1;
         }
+    }
+
+    /// Whether former lists have left so much room that [`Self::compact`] pays.
+    pub fn is_sparse(&self) -> bool {
+        self.lists.is_sparse(self.by_number.len())
+    }
+
+    /// Frees the room that former lists have left.
+    pub fn compact(&mut self) {
+        self.lists.compact(self.by_number.iter_mut());
     }
 
     /// Number of pairs.

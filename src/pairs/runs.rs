@@ -3,16 +3,24 @@
 //! Each list is a run of entries, with room for a power of two of them. A list that outgrows its
 //! room moves to a larger one, and the next list of that size reuses the old room. Lists are
 //! therefore created and changed without calls to the allocator, and changing a list costs time in
-//! proportion to its length.
+//! proportion to its length. When many rooms are free, the owner of the lists moves them next to
+//! each other ([`Runs::compact`]), so that memory follows the present lists.
 
 use super::bytes;
-use crate::simd::prefetch;
+use crate::simd::{CACHE_LINE, prefetch};
 
 /// The smallest room of a list that is not empty, in entries.
 const LEAST_ROOM: u32 = 4;
 
 /// A list shrinks to half of its room when it fills at most one in this many entries of it.
 const SHRINK_DIVISOR: u32 = 4;
+
+/// Lists are moved next to each other when the free rooms exceed this share of the others and of
+/// the number of lists.
+const FREE_DIVISOR: usize = 4;
+
+/// The allocation grows by at least this share.
+const GROWTH_DIVISOR: usize = 4;
 
 /// Where a list's entries are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,10 +33,6 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    fn first(self) -> usize {
-        self.start as usize * LEAST_ROOM as usize
-    }
-
     /// Whether the list is empty.
     #[inline(always)]
     pub fn is_empty(self) -> bool {
@@ -46,24 +50,35 @@ impl Run {
 #[derive(Clone, Debug)]
 pub(crate) struct Runs<T> {
     items: Vec<T>,
+    /// Unused entries before the first room, so that rooms begin with a cache line, or fill one
+    /// together.
+    skipped: usize,
     /// Starts of the free rooms, indexed by the logarithm of their size.
     free: Vec<Vec<u32>>,
+    /// Entries in the rooms of lists.
+    taken: usize,
 }
 
 impl<T> Default for Runs<T> {
     fn default() -> Self {
         Self {
             items: Vec::new(),
+            skipped: 0,
             free: Vec::new(),
+            taken: 0,
         }
     }
 }
 
 impl<T: Copy + Default> Runs<T> {
+    fn first(&self, run: Run) -> usize {
+        self.skipped + run.start as usize * LEAST_ROOM as usize
+    }
+
     /// The entries of a list.
     #[inline(always)]
     pub fn get(&self, run: Run) -> &[T] {
-        let first = run.first();
+        let first = self.first(run);
         &self.items[first..first + run.len()]
     }
 
@@ -78,13 +93,32 @@ impl<T: Copy + Default> Runs<T> {
     /// The entries of a list, to be changed.
     #[inline(always)]
     pub fn get_mut(&mut self, run: Run) -> &mut [T] {
-        let first = run.first();
+        let first = self.first(run);
         &mut self.items[first..first + run.len()]
+    }
+
+    /// Allocates what lists of these lengths will take, none of them empty.
+    pub fn reserve_all(&mut self, lengths: impl Iterator<Item = u32>) {
+        let rooms = lengths.map(|len| room_for(len) as usize);
+        self.allocate(rooms.sum());
+    }
+
+    /// Allocates this number of entries, and aligns the rooms to cache lines.
+    fn allocate(&mut self, more: usize) {
+        let per_line = CACHE_LINE / size_of::<T>().max(1);
+        self.items.reserve_exact(more + per_line);
+        let (start, end) = (self.skipped, self.items.len());
+        let offset = self.items.as_ptr().align_offset(CACHE_LINE);
+        self.skipped = if offset < per_line { offset } else { 0 };
+        self.items
+            .resize(end.max(end + self.skipped - start), T::default());
+        self.items.copy_within(start..end, self.skipped);
+        self.items.truncate(end + self.skipped - start);
     }
 
     /// Makes room for at least `len` entries of an empty list.
     pub fn reserve(&mut self, run: &mut Run, len: usize) {
-        let needed = (len as u32).next_power_of_two().max(LEAST_ROOM);
+        let needed = room_for(len as u32);
         if needed > run.room {
             self.release(run);
             run.start = self.take_room(needed);
@@ -104,7 +138,7 @@ impl<T: Copy + Default> Runs<T> {
         if run.len == run.room {
             self.resize(run, (2 * run.room).max(LEAST_ROOM));
         }
-        let (first, len) = (run.first(), run.len());
+        let (first, len) = (self.first(*run), run.len());
         self.items
             .copy_within(first + at..first + len, first + at + 1);
         self.items[first + at] = item;
@@ -113,7 +147,7 @@ impl<T: Copy + Default> Runs<T> {
 
     /// Removes the entry at `at`. The others keep their order.
     pub fn remove(&mut self, run: &mut Run, at: usize) {
-        let (first, len) = (run.first(), run.len());
+        let (first, len) = (self.first(*run), run.len());
         self.items
             .copy_within(first + at + 1..first + len, first + at);
         self.shorten(run);
@@ -121,7 +155,7 @@ impl<T: Copy + Default> Runs<T> {
 
     /// Removes the entry at `at`. The last one takes its place.
     pub fn swap_remove(&mut self, run: &mut Run, at: usize) {
-        let (first, last) = (run.first(), run.len() - 1);
+        let (first, last) = (self.first(*run), run.len() - 1);
         self.items[first + at] = self.items[first + last];
         self.shorten(run);
     }
@@ -157,9 +191,8 @@ impl<T: Copy + Default> Runs<T> {
             len: run.len,
             room,
         };
-        let from = run.first();
-        self.items
-            .copy_within(from..from + run.len(), moved.first());
+        let (from, to) = (self.first(*run), self.first(moved));
+        self.items.copy_within(from..from + run.len(), to);
         std::mem::swap(run, &mut moved);
         self.release(&mut moved);
     }
@@ -172,24 +205,53 @@ impl<T: Copy + Default> Runs<T> {
                 self.free.resize_with(size + 1, Vec::new);
             }
             self.free[size].push(run.start);
+            self.taken -= run.room as usize;
         }
         *run = Run::default();
     }
 
     fn take_room(&mut self, room: u32) -> u32 {
+        self.taken += room as usize;
         let freed = self.free.get_mut(room.ilog2() as usize);
         if let Some(start) = freed.and_then(Vec::pop) {
             return start;
         }
+        let len = self.items.len();
+        if len + room as usize > self.items.capacity() {
+            self.allocate((room as usize).max(len / GROWTH_DIVISOR));
+        }
         let start = self.items.len();
         self.items.resize(start + room as usize, T::default());
-        (start / LEAST_ROOM as usize) as u32
+        ((start - self.skipped) / LEAST_ROOM as usize) as u32
+    }
+
+    /// Whether so much room is free that [`Self::compact`] pays, for this number of lists.
+    pub fn is_sparse(&self, lists: usize) -> bool {
+        self.items.len() - self.skipped - self.taken > (self.taken + lists) / FREE_DIVISOR
+    }
+
+    /// Moves the lists next to each other, each with no more room than it needs. `lists` must have
+    /// all that aren't empty.
+    pub fn compact<'a>(&mut self, lists: impl Iterator<Item = &'a mut Run>) {
+        let lists: Vec<&mut Run> = lists.filter(|list| list.room > 0).collect();
+        let mut compacted = Self::default();
+        compacted.reserve_all(lists.iter().map(|list| list.len));
+        for list in lists {
+            let mut moved = Run::default();
+            compacted.replace(&mut moved, self.get(*list));
+            *list = moved;
+        }
+        *self = compacted;
     }
 
     /// Bytes that the lists hold, including free rooms.
     pub fn bytes(&self) -> usize {
         bytes(&self.items) + self.free.iter().map(bytes).sum::<usize>()
     }
+}
+
+fn room_for(len: u32) -> u32 {
+    len.next_power_of_two().max(LEAST_ROOM)
 }
 
 #[cfg(test)]
@@ -204,6 +266,7 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut runs = Runs::default();
         let mut lists: Vec<(Run, Vec<u32>)> = vec![Default::default(); 12];
+        let mut compacted = 0;
         for step in 0..20_000 {
             let mut below = |n: usize| random.next_u32() as usize % n;
             // Some lists are filled, then others, so that all grow long and short again.
@@ -232,11 +295,19 @@ mod tests {
                 }
             }
             assert_eq!((run.len(), run.is_empty()), (list.len(), list.is_empty()));
+            let entries: usize = lists.iter().map(|(_, list)| list.len()).sum();
+            if runs.is_sparse(12) {
+                runs.compact(lists.iter_mut().map(|(run, _)| run));
+                assert!(runs.items.capacity() <= 2 * entries + 12 * 3 + 16, "{step}");
+                compacted += 1;
+            }
+            assert!(runs.items.len() <= 5 * entries + 12 * 5 + 16, "{step}");
             assert!(
                 lists.iter().all(|(run, list)| runs.get(*run) == list),
                 "{step}"
             );
         }
+        assert!((20..2000).contains(&compacted), "{compacted}");
     }
 
     #[test]

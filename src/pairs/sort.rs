@@ -1,9 +1,13 @@
 //! Sorting lists of pairs.
 
-use super::PairList;
+use super::{PairList, bytes};
 
 /// The longest list of numbers that is sorted by insertion.
 const MOST_BY_INSERTION: usize = 12;
+
+/// Up to this number of pairs per number, pairs are sorted as keys. Lists per number are then so
+/// short that the branches of a sort of each would cost more than all else.
+const MOST_AS_KEYS: usize = 4;
 
 /// Buffers of [`PairList::sort`], reused for the next list.
 #[derive(Clone, Debug, Default)]
@@ -12,12 +16,15 @@ pub(crate) struct PairSorter {
     places: Vec<usize>,
     /// The other numbers in the order of the first ones.
     second: Vec<u32>,
+    /// The same as `places` and `second` where pairs are few.
+    key_places: Vec<u32>,
+    keys: Vec<u64>,
 }
 
 impl PairSorter {
     /// Bytes that the buffers hold.
     pub fn bytes(&self) -> usize {
-        self.places.capacity() * size_of::<usize>() + self.second.capacity() * size_of::<u32>()
+        bytes(&self.places) + bytes(&self.second) + bytes(&self.key_places) + bytes(&self.keys)
     }
 }
 
@@ -31,7 +38,47 @@ impl PairList {
         if self.iter().is_sorted() {
             return;
         }
-        let PairSorter { places, second } = sorter;
+        let most = MOST_AS_KEYS.saturating_mul(numbers).min(u32::MAX as usize);
+        if self.len <= most {
+            self.sort_as_keys(numbers, sorter);
+        } else {
+            self.sort_by_number(numbers, sorter);
+        }
+    }
+
+    /// Sorts at most 2³² pairs as numbers of 64 bits.
+    fn sort_as_keys(&mut self, numbers: usize, sorter: &mut PairSorter) {
+        let PairSorter {
+            key_places: places,
+            keys,
+            ..
+        } = sorter;
+        places.clear();
+        places.resize(numbers, 0);
+        for &first in self.first() {
+            places[first as usize] += 1;
+        }
+        let mut start = 0;
+        for place in &mut *places {
+            start += std::mem::replace(place, start);
+        }
+        keys.reserve_exact(self.len.saturating_sub(keys.len()));
+        keys.resize(self.len, 0);
+        for [i, j] in self.iter() {
+            let place = &mut places[i as usize];
+            keys[*place as usize] = u64::from(i) << 32 | u64::from(j);
+            *place += 1;
+        }
+        sort_nearly_sorted(keys);
+        let columns = self.first.iter_mut().zip(&mut self.second);
+        for (&key, (first, second)) in keys.iter().zip(columns) {
+            (*first, *second) = ((key >> 32) as u32, key as u32);
+        }
+    }
+
+    /// Sorts the second numbers of each first number on their own.
+    fn sort_by_number(&mut self, numbers: usize, sorter: &mut PairSorter) {
+        let PairSorter { places, second, .. } = sorter;
         places.clear();
         places.resize(numbers, 0);
         for &first in self.first() {
@@ -63,6 +110,32 @@ impl PairList {
     }
 }
 
+/// Sorts keys of which each is near its place. The first pass has no branch that depends on them,
+/// and leaves few keys that have to move.
+fn sort_nearly_sorted(keys: &mut [u64]) {
+    let Some((&first, _)) = keys.split_first() else {
+        return;
+    };
+    let mut greatest = first;
+    for at in 1..keys.len() {
+        let key = keys[at];
+        keys[at - 1] = greatest.min(key);
+        greatest = greatest.max(key);
+    }
+    if let Some(last) = keys.last_mut() {
+        *last = greatest;
+    }
+    for end in 1..keys.len() {
+        let key = keys[end];
+        let mut at = end;
+        while at > 0 && keys[at - 1] > key {
+            keys[at] = keys[at - 1];
+            at -= 1;
+        }
+        keys[at] = key;
+    }
+}
+
 /// Sorts numbers; short lists without a function call.
 #[inline(always)]
 fn sort_few(numbers: &mut [u32]) {
@@ -89,7 +162,8 @@ mod tests {
     fn lists_are_sorted_by_both_numbers() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut sorter = PairSorter::default();
-        for (numbers, count) in [(1, 0), (2, 1), (50, 1000), (5000, 300), (3, 2000), (700, 7)] {
+        let sizes = [(1, 0), (2, 1), (50, 1000), (5000, 300), (3, 2000), (700, 7)];
+        for (numbers, count) in sizes.into_iter().chain([(300, 1200), (300, 1201)]) {
             let mut draw = || random.next_u32() % numbers;
             let mut list: PairList = (0..count).map(|_| [draw(), draw()]).collect();
             let wanted = list.sorted();
@@ -102,6 +176,6 @@ mod tests {
             list.push(numbers, 0);
             assert_eq!(list.len(), wanted.len() + 1);
         }
-        assert!(sorter.bytes() > 8 * 5000);
+        assert!(sorter.bytes() > 4 * 5000 + 8 * 1200);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::pair_log::Reported;
+use super::reported::Reported;
 use super::{BodyId, Event, Events};
 
 /// The least number of changes for which a log is searched for those that cancel each other.

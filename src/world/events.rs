@@ -4,7 +4,9 @@ use std::iter::Peekable;
 use std::sync::Arc;
 
 use super::BodyId;
-use super::pair_log::{PairIds, Reported, WorldPairs};
+use super::found_order::{key, pair_of};
+use super::pair_log::{PairIds, WorldPairs};
+use super::reported::Reported;
 use crate::pairs::Partners;
 
 /// Changes are listed if they are at most about one in this number of pairs of both culls.
@@ -139,42 +141,71 @@ impl Events {
 
 /// Lists the changes between two culls, unless most pairs have changed.
 fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> {
-    let [former, later] = [before, now].map(|reported| reported.slots.len());
-    let most = (former + later) / LISTED_SHARE + ALWAYS_LISTED;
-    if former.abs_diff(later) > most {
+    let most = (before.len() + now.len()) / LISTED_SHARE + ALWAYS_LISTED;
+    if before.len().abs_diff(now.len()) > most {
         return None;
     }
-    let (mut begun, mut ended) = (Vec::new(), Vec::new());
-    let slots = [before, now].map(|reported| (reported.slots.first(), reported.slots.second()));
-    let ids = [before, now].map(|reported| reported.pairs().iter());
     let are_of_one_time = Arc::ptr_eq(&before.generation, &now.generation);
-    let key = |(first, second): (&[u32], &[u32]), at: usize| {
-        u64::from(first[at]) << 32 | u64::from(second[at])
+    let [begun, ended] = if std::ptr::eq(before, now) {
+        Default::default()
+    } else {
+        let aligned = are_of_one_time.then(|| Reported::changes_in_found_order(before, now));
+        match aligned.flatten() {
+            Some(changes) => changes,
+            None => changes_in_order(before, now, are_of_one_time, most)?,
+        }
     };
-    let pair = |list: usize, at: usize| ids[list].at([slots[list].0[at], slots[list].1[at]]);
+    // Bodies are looked up at the end, because that misses the caches.
+    let named = |keys: Vec<u64>, reported: &Reported| {
+        let ids = reported.generation.as_slice();
+        let pairs = keys.into_iter().map(pair_of);
+        pairs.map(|pair| BodyId::pair_of(pair, ids)).collect()
+    };
+    Some(PairDifference::Listed {
+        begun: named(begun, now),
+        ended: named(ended, before),
+    })
+}
+
+/// The keys of the pairs that have begun and ended from one cull to a later one, found by merging
+/// their sorted lists. `None` if there are more than `most`.
+fn changes_in_order(
+    before: &Reported,
+    now: &Reported,
+    are_of_one_time: bool,
+    most: usize,
+) -> Option<[Vec<u64>; 2]> {
+    let [(old_first, old_second), (first, second)] =
+        [before, now].map(|reported| (reported.slots().first(), reported.slots().second()));
+    let is_same = |pair: [u32; 2]| {
+        let [before, now] = [before, now].map(|reported| &reported.generation);
+        are_of_one_time || BodyId::pair_of(pair, before) == BodyId::pair_of(pair, now)
+    };
+    let (mut begun, mut ended) = (Vec::new(), Vec::new());
     let (mut i, mut j) = (0, 0);
-    while i < former && j < later {
-        let (old, new) = (key(slots[0], i), key(slots[1], j));
+    while i < old_first.len() && j < first.len() {
+        let pair = [first[j], second[j]];
+        let (old, new) = (key([old_first[i], old_second[i]]), key(pair));
         // Equal slots are equal bodies, unless a slot was reused in between.
-        if old == new && (are_of_one_time || pair(0, i) == pair(1, j)) {
+        if old == new && is_same(pair) {
             (i, j) = (i + 1, j + 1);
             continue;
         }
         if old <= new {
-            ended.push(pair(0, i));
+            ended.push(old);
             i += 1;
         }
         if new <= old {
-            begun.push(pair(1, j));
+            begun.push(new);
             j += 1;
         }
         if begun.len() + ended.len() > most {
             return None;
         }
     }
-    ended.extend((i..former).map(|at| pair(0, at)));
-    begun.extend((j..later).map(|at| pair(1, at)));
-    Some(PairDifference::Listed { begun, ended })
+    ended.extend((i..old_first.len()).map(|at| key([old_first[at], old_second[at]])));
+    begun.extend((j..first.len()).map(|at| key([first[at], second[at]])));
+    Some([begun, ended])
 }
 
 /// One of two iterators.

@@ -38,6 +38,17 @@ impl BodyId {
     }
 }
 
+impl BodyId {
+    /// The bodies in two slots, at the time of these generations.
+    #[inline(always)]
+    pub(super) fn pair_of(slots: [u32; 2], generation: &[u32]) -> [Self; 2] {
+        slots.map(|slot| Self {
+            slot,
+            generation: generation[slot as usize],
+        })
+    }
+}
+
 impl fmt::Display for BodyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}.{}", self.slot, self.generation)
@@ -136,6 +147,7 @@ impl Ids {
     }
 
     /// The slot of a present body.
+    #[inline]
     pub fn slot(&self, id: BodyId) -> Result<usize, WorldError> {
         let slot = id.slot as usize;
         let lives = self.present.get(slot) == Some(&true) && self.generation[slot] == id.generation;

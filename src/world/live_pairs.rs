@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 use super::change_log::{ChangeLog, PairChange};
 use super::events::{CurrentPairs, Event, PairDifference};
-use super::pair_log::{PairLog, Reported, WorldPairs};
+use super::pair_log::{PairLog, WorldPairs};
+use super::reported::Reported;
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, Partners};
 
@@ -64,9 +65,9 @@ impl LivePairs {
     pub fn keep_by_body(&mut self, ids: &Ids) {
         if self.live.is_none() {
             let log = std::mem::take(&mut self.log);
-            let changes = (!log.watched.slots.is_empty())
+            let changes = (!log.watched.is_empty())
                 .then(|| ChangeLog::between(log.watched, log.last.clone()));
-            let partners = Partners::of(&log.last.slots, ids.slots());
+            let partners = Partners::of(log.last.slots(), ids.slots());
             self.live = Some(PairsByBody {
                 partners: Arc::new(partners),
                 changes,
@@ -106,6 +107,15 @@ impl LivePairs {
             && !live.partners.has_room_for(ids.slots())
         {
             Arc::make_mut(&mut live.partners).extend_to(ids.slots());
+        }
+    }
+
+    /// Frees the room that former pairs have left in lists, if it is much.
+    pub fn compact(&mut self) {
+        if let Some(live) = &mut self.live
+            && live.partners.is_sparse()
+        {
+            Arc::make_mut(&mut live.partners).compact();
         }
     }
 
@@ -154,10 +164,7 @@ impl LivePairs {
 
 impl PairsByBody {
     fn last(&self, ids: &Ids) -> Reported {
-        Reported {
-            slots: self.partners.iter().collect(),
-            generation: ids.generation().clone(),
-        }
+        Reported::sorted(self.partners.iter().collect(), ids.generation().clone())
     }
 
     fn pairs<'a>(&'a self, ids: &'a Ids) -> WorldPairs<'a> {
@@ -200,8 +207,7 @@ fn reported(pairs: impl Iterator<Item = [BodyId; 2]>) -> Reported {
         }
         slots.push(pair[0].slot, pair[1].slot);
     }
-    let generation = Arc::new(generation);
-    Reported { slots, generation }
+    Reported::sorted(slots, Arc::new(generation))
 }
 
 /// Changes pairs. A change is made in the lists of both bodies, and logged once.

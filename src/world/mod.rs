@@ -42,6 +42,7 @@ mod error;
 mod events;
 #[cfg(feature = "shapes")]
 mod excluded;
+mod found_order;
 mod ids;
 mod live_pairs;
 #[cfg(feature = "shapes")]
@@ -60,6 +61,7 @@ mod pair_test;
 mod region;
 #[cfg(feature = "shapes")]
 mod regions;
+mod reported;
 #[cfg(feature = "serde")]
 mod saved;
 #[cfg(feature = "shapes")]

@@ -172,11 +172,11 @@ impl Movers {
         boxes.clear();
         boxes.extend(self.changed.iter().copied().map(box_of));
         for (number, indexed) in boxes.iter().enumerate() {
-            if let Some(next) = boxes.get(number + PREFETCH_DISTANCE) {
-                index.prefetch(next.slot);
-            }
+            let ahead = [3, 2, 1].map(|steps| boxes.get(number + steps * PREFETCH_DISTANCE));
+            index.prefetch(ahead);
             work += index.put(indexed);
         }
+        index.compact();
         self.found.clear();
         self.ends.clear();
         for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
@@ -236,6 +236,7 @@ impl Movers {
             }
             changes.done();
         }
+        log.compact();
         for slot in self.changed.drain(..) {
             self.is_changed[slot as usize] = false;
         }

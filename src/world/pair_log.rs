@@ -2,8 +2,9 @@
 
 use std::iter::Zip;
 use std::slice::Iter;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use super::reported::Reported;
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, PairSorter, PartnerPairs, Partners};
 
@@ -14,10 +15,11 @@ pub struct WorldPairs<'a> {
     generation: &'a [u32],
 }
 
-/// Pairs of slots, in one of their two forms.
+/// Pairs of slots, in one of their forms.
 #[derive(Clone, Copy, Debug)]
 enum SlotPairs<'a> {
     List(&'a PairList),
+    Reported(&'a Reported),
     Partners(&'a Partners),
 }
 
@@ -37,6 +39,7 @@ impl<'a> WorldPairs<'a> {
     pub fn len(&self) -> usize {
         match self.slots {
             SlotPairs::List(list) => list.len(),
+            SlotPairs::Reported(reported) => reported.len(),
             SlotPairs::Partners(partners) => partners.len(),
         }
     }
@@ -50,8 +53,10 @@ impl<'a> WorldPairs<'a> {
     /// The pairs in the order of the list.
     #[must_use]
     pub fn iter(&self) -> PairIds<'a> {
+        let in_list = |list: &'a PairList| list.first().iter().zip(list.second());
         let slots = match self.slots {
-            SlotPairs::List(list) => SlotIter::List(list.first().iter().zip(list.second())),
+            SlotPairs::List(list) => SlotIter::List(in_list(list)),
+            SlotPairs::Reported(reported) => SlotIter::List(in_list(reported.slots())),
             SlotPairs::Partners(partners) => SlotIter::Partners(partners.iter()),
         };
         PairIds {
@@ -91,17 +96,6 @@ enum SlotIter<'a> {
     Partners(PartnerPairs<'a>),
 }
 
-impl PairIds<'_> {
-    /// The bodies in two slots.
-    #[inline(always)]
-    pub(super) fn at(&self, pair: [u32; 2]) -> [BodyId; 2] {
-        pair.map(|slot| BodyId {
-            slot,
-            generation: self.generation[slot as usize],
-        })
-    }
-}
-
 impl Iterator for PairIds<'_> {
     type Item = [BodyId; 2];
     fn next(&mut self) -> Option<[BodyId; 2]> {
@@ -109,7 +103,7 @@ impl Iterator for PairIds<'_> {
             SlotIter::List(list) => list.next().map(|(&first, &second)| [first, second])?,
             SlotIter::Partners(partners) => partners.next()?,
         };
-        Some(self.at([first, second]))
+        Some(BodyId::pair_of([first, second], self.generation))
     }
     fn size_hint(&self) -> (usize, Option<usize>) {
         match &self.slots {
@@ -121,33 +115,13 @@ impl Iterator for PairIds<'_> {
 
 impl ExactSizeIterator for PairIds<'_> {}
 
-/// The pairs of one cull by slot, sorted, with the generations of slots at that time.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Reported {
-    pub(super) slots: PairList,
-    pub(super) generation: Arc<Vec<u32>>,
-}
-
 impl Reported {
+    /// The pairs with their ids.
     pub fn pairs(&self) -> WorldPairs<'_> {
-        WorldPairs::new(&self.slots, &self.generation)
-    }
-
-    /// A copy without spare memory.
-    pub(super) fn compacted(&self) -> Self {
-        let mut slots = PairList::default();
-        slots.append(&self.slots);
-        let named = slots
-            .second()
-            .iter()
-            .max()
-            .map_or(0, |&last| last as usize + 1);
-        let generation = if named < self.generation.len() {
-            Arc::new(self.generation[..named].to_vec())
-        } else {
-            self.generation.clone()
-        };
-        Self { slots, generation }
+        WorldPairs {
+            slots: SlotPairs::Reported(self),
+            generation: &self.generation,
+        }
     }
 }
 
@@ -160,7 +134,7 @@ pub(crate) struct PairLog {
     pub(super) watched: Arc<Reported>,
     /// The list of events before: its memory is reused once nothing reads it.
     spare: Option<Arc<Reported>>,
-    sorter: PairSorter,
+    sorter: Arc<Mutex<PairSorter>>,
 }
 
 impl PairLog {
@@ -177,16 +151,15 @@ impl PairLog {
     pub fn take(&mut self) -> PairList {
         let last = Arc::into_inner(std::mem::take(&mut self.last));
         let unread = last.or_else(|| Arc::into_inner(self.spare.take()?));
-        let mut list = unread.unwrap_or_default().slots;
+        let mut list = unread.map(Reported::into_list).unwrap_or_default();
         list.clear();
         list
     }
 
-    /// Takes the pairs of a cull in any order, and sorts them.
-    pub fn put(&mut self, mut slots: PairList, ids: &Ids) {
-        slots.sort(ids.slots(), &mut self.sorter);
-        let generation = ids.generation().clone();
-        self.last = Arc::new(Reported { slots, generation });
+    /// Takes the pairs of a cull in any order.
+    pub fn put(&mut self, slots: PairList, ids: &Ids) {
+        let (generation, sorter) = (ids.generation().clone(), self.sorter.clone());
+        self.last = Arc::new(Reported::found(slots, generation, sorter));
     }
 
     /// The pairs of the last cull.
@@ -214,7 +187,8 @@ impl PairLog {
         let mut lists: Vec<_> = [last, watched].into_iter().chain(spare).collect();
         lists.sort_by_key(|list| Arc::as_ptr(list));
         lists.dedup_by_key(|list| Arc::as_ptr(list));
-        let lists = lists.iter().map(|list| list.slots.bytes());
+        let lists = lists.iter().map(|list| list.bytes());
+        let sorter = sorter.lock().unwrap_or_else(PoisonError::into_inner);
         lists.sum::<usize>() + sorter.bytes()
     }
 

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::Ids;
-use super::pair_log::{PairLog, Reported};
+use super::pair_log::PairLog;
+use super::reported::Reported;
 use crate::bodies::ExcludedPairs;
 use crate::bodies::contract::{ContractError, check_number};
 use crate::pairs::PairList;
@@ -199,12 +200,12 @@ impl PairsSnapshot {
         let watched = (!Arc::ptr_eq(&log.last, &log.watched)).then(|| {
             let watched = log.watched.compacted();
             WatchedSnapshot {
-                pairs: columns(&watched.slots),
+                pairs: columns(watched.slots()),
                 generation: watched.generation.to_vec(),
             }
         });
         Self {
-            last: columns(&log.last.slots),
+            last: columns(log.last.slots()),
             watched,
         }
     }
@@ -222,7 +223,7 @@ impl PairsSnapshot {
             return damaged(format!("the pair {i}, {j} has a slot that was empty"));
         }
         let generation = ids.generation().clone();
-        let last = Arc::new(Reported { slots, generation });
+        let last = Arc::new(Reported::sorted(slots, generation));
         let watched = match &self.watched {
             None => last.clone(),
             Some(WatchedSnapshot { pairs, generation }) => {
@@ -237,10 +238,8 @@ impl PairsSnapshot {
                 if let Some(slot) = unnamed.iter().position(|&generation| generation > 0) {
                     return damaged(format!("no watched pair names slot {slot}"));
                 }
-                Arc::new(Reported {
-                    slots: sorted(pairs, generation.len())?,
-                    generation: Arc::new(generation.clone()),
-                })
+                let slots = sorted(pairs, generation.len())?;
+                Arc::new(Reported::sorted(slots, Arc::new(generation.clone())))
             }
         };
         Ok(PairLog::of(last, watched))

@@ -23,9 +23,9 @@ const FIXED_TAG: u32 = 1;
 /// Tag of a box that doesn't collide with all groups.
 const GROUPED_TAG: u32 = 2;
 
-/// A box in its cell.
+/// A box in its cell. Two are in a cache line.
 #[derive(Clone, Copy, Debug, Default)]
-#[repr(C)]
+#[repr(C, align(32))]
 struct CellEntry {
     min: [f32; 3],
     slot: u32,
@@ -183,23 +183,40 @@ impl BoxIndex {
     fn make_room(&mut self) {
         let filled = self.cells.iter().filter(|cell| !cell.boxes.is_empty());
         let size = (2 * filled.clone().count() + 16).next_power_of_two();
-        let filled: Vec<Cell> = filled.copied().collect();
+        let mut filled: Vec<Cell> = filled.copied().collect();
         self.taken = filled.len();
         self.cells = vec![Cell::default(); size];
-        let boxes = std::mem::take(&mut self.boxes);
-        for Cell { name, boxes: run } in filled {
-            let at = self.find(name);
-            let mut moved = Run::default();
-            self.boxes.replace(&mut moved, boxes.get(run));
-            self.cells[at] = Cell { name, boxes: moved };
+        self.boxes
+            .compact(filled.iter_mut().map(|cell| &mut cell.boxes));
+        for cell in filled {
+            let at = self.find(cell.name);
+            self.cells[at] = cell;
         }
     }
 
-    /// Prefetches what [`Self::put`] will read of a box, some boxes before it.
+    /// Frees the room that boxes have left in cells, if it is much.
+    pub fn compact(&mut self) {
+        if self.boxes.is_sparse(self.cells.len()) {
+            self.boxes
+                .compact(self.cells.iter_mut().map(|cell| &mut cell.boxes));
+        }
+    }
+
+    /// Prefetches what [`Self::put`] will read of later boxes: for the last of them the name of its
+    /// cell, for the next one the cell, for the one that comes soon the boxes in the cell.
     #[inline]
-    pub fn prefetch(&self, slot: u32) {
-        if let Some(home) = self.homes.get(slot as usize) {
+    pub fn prefetch(&self, [last, next, soon]: [Option<&IndexedBox>; 3]) {
+        let home = |indexed: &IndexedBox| self.homes.get(indexed.slot as usize);
+        if let Some(home) = last.and_then(home) {
+            prefetch(home);
+        }
+        if let Some(home) = next.and_then(home) {
             prefetch(&self.cells[home.cell as usize & (self.cells.len() - 1)]);
+        }
+        if let Some(home) = soon.and_then(home)
+            && home.cell != 0
+        {
+            self.boxes.prefetch(self.cells[self.find(home.cell)].boxes);
         }
     }
 
