@@ -1,7 +1,7 @@
 (* What the theorems rest on. .ci/proofs accepts the four axioms of README.md and no other. One list
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
-  Finder Lists Levels Duality Margins Refit.
+  Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -36,6 +36,12 @@ Definition theorems := (
   Levels.levels_hand_over,
   Duality.support_bounds,
   Duality.axis_separates,
+  SupportRounded.support_rounded,
+  OrDop.rejected_polytopes_disjoint,
+  OrDopPose.posed_row_is,
+  SlabEnd.slab_end_covers,
+  OrDopBody.ordops_reject_disjoint,
+  OrDopBody.tight_slabs_near,
   Margins.place_within_moved,
   Margins.slab_with_margin,
   Refit.refit_contains
