@@ -102,8 +102,7 @@ pub struct Executor<'a> {
     pub pool: &'a Threads,
 }
 
-/// The error for threads that can't be started: more than [`MOST_THREADS`], or refused by the
-/// system.
+/// The error for threads that can't be started: more than 1,024, or refused by the system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot start {threads} threads: {reason}")]
 pub struct ThreadsError {

@@ -1,4 +1,4 @@
-//! [`Culler`]: the only place that calls the stages in order, and times them.
+//! Culling posed meshes frame by frame: [`Culler`] calls the stages in order and times them.
 //!
 //! > update → broad phase → overlap → pairs
 //!

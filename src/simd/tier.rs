@@ -8,8 +8,8 @@ use super::neon;
 #[cfg(target_arch = "x86_64")]
 use super::{avx2, avx512, sse2};
 
-/// A tier that this CPU has: it can be built only by [`Tier::detect`], [`Tier::available`] or by
-/// parsing a name, and all three ask the CPU first.
+/// A SIMD level of this CPU. It comes from [`Tier::detect`], [`Tier::available`] or a parsed name,
+/// which check that the CPU has it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Tier(Isa);
 

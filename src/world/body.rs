@@ -2,7 +2,7 @@
 
 use crate::bodies::{Groups, Motion};
 
-/// A body to be inserted.
+/// A body of a [`World`](crate::World): its shape, pose, motion, groups and contact margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Index into the world's shapes.
