@@ -1,6 +1,6 @@
 (* Theorems N and E without rounding: the support of an or-DOP that the code takes from its slabs bounds
    every point of it (weak duality), and an axis along which the gap exceeds both supports separates.
-   What rounding takes from this, and that the slabs' margin makes up for it, is in LEMMAS.md. *)
+   What rounding takes from this is in SupportRounded.v and OrDop.v. *)
 From Coq Require Import Reals Bool List Lra.
 From Sdop Require Import Geometry Pose.
 Import ListNotations.

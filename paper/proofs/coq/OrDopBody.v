@@ -111,16 +111,21 @@ Proof.
   rewrite E. unfold posed, plus, apply, minus, dot, pt. cbn [px py pz]. f_equal; ring.
 Qed.
 
-(* Bodies that the test of or-DOPs rejects, along slab normals or along edges, have no common point.
-   The pair test may be done in any mode; rows and tables are computed with gradual underflow. *)
-Theorem ordops_reject_disjoint (m : mode) (k : kind) (a b : ordop_body) :
+(* The same with any slabs that are the table's where the test reads them. *)
+Theorem ordops_with_slabs_disjoint (m : mode) (k : kind) (a b : ordop_body) (sa sb : slabs) :
   valid m -> sound_ordop a -> sound_ordop b ->
-  ordops_rejected m k (row_of_body a) (row_of_body b) (table_of_body a) (table_of_body b) ->
+  (forall member, In member (members k) -> sa member = table_of_body a member) ->
+  (forall member, In member (members k) -> sb member = table_of_body b member) ->
+  ordops_rejected m k (row_of_body a) (row_of_body b) sa sb ->
   forall p, ~ (fills k a p /\ fills k b p).
 Proof.
-  intros Hm Sa Sb Rejected p ((x & Bx & ->) & (y & By & E)).
+  intros Hm Sa Sb Ta Tb Rejected p ((x & Bx & ->) & (y & By & E)).
   destruct (between_held k a x Sa Bx) as (Ha & Na).
   destruct (between_held k b y Sb By) as (Hb & Nb).
+  assert (Ha' : holds_with (margin_of (extent a + norm (middle a))) k sa (coordinates a x))
+    by (intros member M; rewrite Ta by exact M; now apply Ha).
+  assert (Hb' : holds_with (margin_of (extent b + norm (middle b))) k sb (coordinates b y))
+    by (intros member M; rewrite Tb by exact M; now apply Hb).
   pose proof Sa as (Ba & Qa & (Ea & Ea') & Ca). pose proof Sb as (Bb & Qb & (Eb & Eb') & Cb).
   pose proof (norm_nonneg (middle a)). pose proof (norm_nonneg (middle b)).
   assert (Big : IZR (2 ^ 62) + IZR (2 ^ 62) <= IZR (2 ^ 100))
@@ -131,9 +136,17 @@ Proof.
     (extent b + norm (middle b)) ltac:(lra) ltac:(lra)) as Rb.
   apply (rejected_polytopes_disjoint m k _ _ _ _ _ _ (extent a + norm (middle a))
     (extent b + norm (middle b)) _ _ _ _ Hm ltac:(lra) ltac:(lra) Ra Rb Rejected
-    (coordinates a x) (coordinates b y) Na Nb Ha Hb).
+    (coordinates a x) (coordinates b y) Na Nb Ha' Hb').
   rewrite <- !posed_coordinates by assumption. exact E.
 Qed.
+
+(* Bodies that the test of or-DOPs rejects, along slab normals or along edges, have no common point.
+   The pair test may be done in any mode; rows and tables are computed with gradual underflow. *)
+Theorem ordops_reject_disjoint (m : mode) (k : kind) (a b : ordop_body) :
+  valid m -> sound_ordop a -> sound_ordop b ->
+  ordops_rejected m k (row_of_body a) (row_of_body b) (table_of_body a) (table_of_body b) ->
+  forall p, ~ (fills k a p /\ fills k b p).
+Proof. intros Hm Sa Sb. now apply ordops_with_slabs_disjoint. Qed.
 
 (* Slabs that end at vertices, or an ulp from them, keep points that near. *)
 Lemma tight_slabs_near (b : ordop_body) (x : point) :

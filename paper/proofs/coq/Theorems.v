@@ -1,7 +1,8 @@
 (* What the theorems rest on. .ci/proofs accepts the four axioms of README.md and no other. One list
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
-  Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody.
+  Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody
+  SameOrDop OrDopRun.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -42,6 +43,8 @@ Definition theorems := (
   SlabEnd.slab_end_covers,
   OrDopBody.ordops_reject_disjoint,
   OrDopBody.tight_slabs_near,
+  SameOrDop.run_rejects,
+  OrDopRun.run_ordops_reject_disjoint,
   Margins.place_within_moved,
   Margins.slab_with_margin,
   Refit.refit_contains
