@@ -11,7 +11,8 @@ use sdop::mesh::ReadOptions;
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
-use sdop_judge::every_way::rounds::{Ledger, Run, group};
+use sdop_judge::every_way::rounds::group;
+use sdop_judge::every_way::{Ledger, Run};
 use sdop_judge::ours::compare::{culler, settings};
 use sdop_judge::ours::hard::{
     Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name,

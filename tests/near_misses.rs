@@ -13,7 +13,7 @@ use sdop::bodies::Bodies;
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
-use sdop_judge::every_way::rounds::{Ledger, Run};
+use sdop_judge::every_way::{Ledger, Run};
 use sdop_judge::ours::arbitrary;
 use sdop_judge::ours::contact::{Contact, Placed};
 use sdop_judge::ours::draw::add;

@@ -1,8 +1,9 @@
-//! Rooms import downward only: read from the `crate::` paths of the sources. Which crate may name
-//! which is in their manifests; within a crate no two rooms import each other, since all stand in
-//! one order.
+//! Rooms import downward only, and no files import each other in a circle: read from the paths in
+//! the sources. Which crate may name which is in their manifests; within a crate no two rooms
+//! import each other, since all are in one order.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -70,14 +71,20 @@ const CRATES: [(&str, &[&str]); 3] = [
     ("benches/src", BENCH),
 ];
 
-/// The names that a list such as `{a, b::{c, d}}` or a path such as `a::b` begins with.
-fn heads(path: &str) -> Vec<String> {
-    let name = |text: &str| -> String {
-        let is_name = |c: &char| c.is_alphanumeric() || *c == '_';
-        text.trim_start().chars().take_while(is_name).collect()
-    };
-    let Some(list) = path.strip_prefix('{') else {
-        return vec![name(path)];
+/// A path's names.
+type Names = Vec<String>;
+
+/// The paths that a text begins with: `a::{b, c::d}` gives `a::b` and `a::c::d`.
+fn paths(text: &str) -> Vec<Names> {
+    let text = text.trim_start();
+    let Some(list) = text.strip_prefix('{') else {
+        let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_'));
+        let (name, rest) = text.split_at(end.unwrap_or(text.len()));
+        let longer = |path: Names| [vec![name.to_owned()], path].concat();
+        return match rest.strip_prefix("::") {
+            Some(rest) => paths(rest).into_iter().map(longer).collect(),
+            None => vec![vec![name.to_owned()]],
+        };
     };
     let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
     for (at, c) in list.char_indices() {
@@ -96,16 +103,66 @@ fn heads(path: &str) -> Vec<String> {
         }
     }
     let named = parts.into_iter().filter(|part| !part.trim().is_empty());
-    named.map(name).collect()
+    named.flat_map(paths).collect()
 }
 
-/// The rooms that a source names by `crate::`. What a macro names by `$crate::` is another room's
-/// when it is used.
-fn imports(source: &str) -> Vec<String> {
+/// A source without comments. What a macro names by `$crate::` is another room's when it is used.
+fn code(source: &str) -> String {
     let is_code = |line: &&str| !line.trim_start().starts_with("//");
     let code: Vec<&str> = source.lines().filter(is_code).collect();
-    let code = code.join("\n").replace("$crate::", "");
-    code.split("crate::").skip(1).flat_map(heads).collect()
+    code.join("\n").replace("$crate::", "")
+}
+
+/// The rooms that a source names by `crate::`.
+fn imports(source: &str) -> Vec<String> {
+    let code = code(source);
+    let named = code.split("crate::").skip(1).flat_map(paths);
+    named.filter_map(|path| path.into_iter().next()).collect()
+}
+
+/// What a module names in its crate, from the crate's root on; its unit tests left out.
+fn names(module: &[String], source: &str) -> Vec<Names> {
+    let code = code(source);
+    let code = code.split("#[cfg(test)]\nmod tests").next().unwrap();
+    let mut found: Vec<Names> = code.split("crate::").skip(1).flat_map(paths).collect();
+    for start in ["self::", "super::"] {
+        for (at, _) in code.match_indices(start) {
+            let path = code[at..].trim_start_matches("super::");
+            let up = (code.len() - at - path.len()) / "super::".len();
+            if code[..at].ends_with("super::") || up > module.len() {
+                continue;
+            }
+            let path = path.strip_prefix("self::").unwrap_or(path);
+            let from = &module[..module.len() - up];
+            found.extend(paths(path).into_iter().map(|path| [from, &path].concat()));
+        }
+    }
+    found
+}
+
+/// The modules that import each other in a circle, or are imported by such ones. What a module
+/// takes from those that it is in doesn't count.
+fn circle(sources: &BTreeMap<Names, String>) -> Vec<&Names> {
+    let imported = |(module, source): (&'_ Names, &String)| {
+        let file = |path: Names| {
+            let above = (0..=path.len()).rev().map(|length| path[..length].to_vec());
+            above.into_iter().find(|path| sources.contains_key(path))
+        };
+        let others = names(module, source).into_iter().filter_map(file);
+        let others = others.filter(|other| !module.starts_with(other));
+        others.collect::<BTreeSet<Names>>()
+    };
+    let imports: BTreeMap<&Names, _> = sources.iter().map(|one| (one.0, imported(one))).collect();
+    let mut left: Vec<&Names> = sources.keys().collect();
+    loop {
+        // Who imports nothing that is left is in no circle.
+        let is_held = |module: &&Names| left.iter().any(|other| imports[*module].contains(*other));
+        let held: Vec<&Names> = left.iter().copied().filter(is_held).collect();
+        if held.len() == left.len() {
+            return held;
+        }
+        left = held;
+    }
 }
 
 /// What is wrong with a room's imports.
@@ -143,6 +200,72 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
             found.push(path);
         }
     }
+}
+
+/// The module of a source: its path below the crate's sources.
+fn module(path: &Path) -> Names {
+    let whole = path.with_extension("");
+    let names = whole.iter().map(|name| name.to_str().unwrap().to_owned());
+    let is_own = |name: &String| !["mod", "lib", "main"].contains(&name.as_str());
+    names.filter(is_own).collect()
+}
+
+/// No files import each other in a circle.
+#[test]
+fn files_form_no_circle() {
+    for (folder, _) in CRATES {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let mut files = Vec::new();
+        sources(&root, &mut files);
+        let module = |file: &PathBuf| module(file.strip_prefix(&root).unwrap());
+        let read = |file: &PathBuf| (module(file), fs::read_to_string(file).unwrap());
+        let all = files.iter().map(read);
+        let all: BTreeMap<Names, String> = all
+            .filter(|(module, _)| !module.contains(&"tests".to_owned()))
+            .collect();
+        assert!(all.len() > 50, "{folder}: {}", all.len());
+        let circle = circle(&all);
+        assert!(circle.is_empty(), "{folder}: {circle:?}");
+    }
+}
+
+/// A circle is found however its imports are written.
+#[test]
+fn circles_are_found() {
+    let modules = |sources: &[(&str, &str)]| -> BTreeMap<Names, String> {
+        let one = |&(path, source): &(&str, &str)| (module(Path::new(path)), source.to_owned());
+        sources.iter().map(one).collect()
+    };
+    for sources in [
+        &[("a.rs", "use super::b::B;"), ("b.rs", "use crate::a;")][..],
+        &[
+            ("a/c.rs", "use super::super::b;"),
+            ("b.rs", "use crate::{d, a::{x, c::C}};"),
+            ("d.rs", ""),
+        ],
+        &[
+            ("a/mod.rs", "use self::c::C;"),
+            ("a/c.rs", "fn f() { super::e::g(); }"),
+            ("a/e.rs", "use super::c;"),
+        ],
+        &[
+            ("a.rs", "use super::b;"),
+            ("b.rs", "use super::c;"),
+            ("c.rs", "fn f() { crate::a::g() }"),
+        ],
+    ] {
+        assert!(circle(&modules(sources)).len() >= 2, "{sources:?}");
+    }
+    let line = [
+        ("a/mod.rs", "mod c;\nuse c::C;\nuse self::e::E;"),
+        (
+            "a/c.rs",
+            "use super::A;\nuse super::e::E;\n#[cfg(test)]\nmod tests { use super::super::b; }",
+        ),
+        ("a/e.rs", "// crate::a::c"),
+        ("b.rs", "use crate::a::{A, c::C};"),
+    ];
+    assert!(circle(&modules(&line)).is_empty());
 }
 
 #[test]

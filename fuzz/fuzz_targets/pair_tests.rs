@@ -10,7 +10,7 @@ use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
-use sdop_judge::every_way::rounds::{Ledger, Run};
+use sdop_judge::every_way::{Ledger, Run};
 use sdop_judge::ours::contact::{Contact, Kind, Placed};
 use sdop_judge::ours::draw::add;
 use sdop_judge::ours::ways::Rotation;

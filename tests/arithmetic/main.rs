@@ -9,6 +9,8 @@
 
 mod functions;
 mod inputs;
+#[path = "../support/limit.rs"]
+mod limit;
 mod ordops;
 mod small;
 

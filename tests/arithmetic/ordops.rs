@@ -13,6 +13,7 @@ use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 use super::functions::Case;
 use super::inputs::Inputs;
+use super::limit::limit;
 
 const SETS: [(usize, DirectionSet); 4] = [
     (6, DirectionSet::K6),
@@ -70,18 +71,8 @@ impl Pairs {
             }
             moved
         };
-        let (mut near, mut far) = (0.0f32, 16.0);
-        while near.next_up() < far {
-            // Halving the bits halves the number of floats between.
-            let middle = f32::from_bits(near.to_bits().midpoint(far.to_bits()));
-            *if set.apart(tier, overlap, [a, at(middle)]) {
-                &mut far
-            } else {
-                &mut near
-            } = middle;
-        }
-        let [touching, apart] =
-            [near, far].map(|distance| set.case(tier, overlap, [a, at(distance)]));
+        let limit = limit(|distance| set.apart(tier, overlap, [a, at(distance)]));
+        let [touching, apart] = limit.map(|distance| set.case(tier, overlap, [a, at(distance)]));
         self.waiting = Some(apart);
         touching
     }

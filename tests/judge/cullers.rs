@@ -9,7 +9,7 @@ use sdop::rounding::pose::{rotation, transform};
 use sdop::settings::Strategy;
 use sdop::volume::Shape;
 use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Groups, Motion};
-use sdop_judge::{Contestant, PairTest, Scene, WorldBox};
+use sdop_judge::{Contestant, Frame, Scene, WorldBox};
 
 /// Our own culler.
 pub struct Ours {
@@ -117,8 +117,7 @@ impl Contestant for BoxesOfAWorld {
 }
 
 /// Where a ball is, in f64, and its radius.
-fn ball(shapes: &[Shape], bodies: &Bodies, i: u32) -> ([f64; 3], f64) {
-    let i = i as usize;
+fn ball(shapes: &[Shape], bodies: &Bodies, i: usize) -> ([f64; 3], f64) {
     let ball = shapes[bodies.shape[i] as usize].ball;
     let pose = rotation(bodies.rotation[i]);
     let centre = transform(&pose, ball.centre, bodies.translation[i]);
@@ -126,31 +125,19 @@ fn ball(shapes: &[Shape], bodies: &Bodies, i: u32) -> ([f64; 3], f64) {
 }
 
 /// Balls in f64 with a margin: right.
-pub struct Balls {
-    pub shapes: Vec<Shape>,
-}
-
-impl PairTest for Balls {
-    fn overlap(&mut self, bodies: &Bodies, i: u32, j: u32) -> bool {
-        let ((a, ra), (b, rb)) = (ball(&self.shapes, bodies, i), ball(&self.shapes, bodies, j));
-        let size = a.iter().chain(&b).fold(ra + rb, |m: f64, x| m.max(x.abs()));
-        let d2: f64 = (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum();
-        d2.sqrt() <= ra + rb + 1e-13 * size
-    }
+pub fn balls_meet(shapes: &[Shape], frame: &Frame, pair: [usize; 2]) -> bool {
+    let [(a, ra), (b, rb)] = pair.map(|i| ball(shapes, &frame.bodies, i));
+    let size = a.iter().chain(&b).fold(ra + rb, |m: f64, x| m.max(x.abs()));
+    let d2: f64 = (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum();
+    d2.sqrt() <= ra + rb + 1e-13 * size
 }
 
 /// Balls in f32 without a margin: wrong by an ulp here and there.
-pub struct NarrowBalls {
-    pub shapes: Vec<Shape>,
-}
-
-impl PairTest for NarrowBalls {
-    fn overlap(&mut self, bodies: &Bodies, i: u32, j: u32) -> bool {
-        let ((a, ra), (b, rb)) = (ball(&self.shapes, bodies, i), ball(&self.shapes, bodies, j));
-        let d = [0, 1, 2].map(|axis| a[axis] as f32 - b[axis] as f32);
-        let r = ra as f32 + rb as f32;
-        d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= r * r
-    }
+pub fn balls_meet_without_margin(shapes: &[Shape], frame: &Frame, pair: [usize; 2]) -> bool {
+    let [(a, ra), (b, rb)] = pair.map(|i| ball(shapes, &frame.bodies, i));
+    let d = [0, 1, 2].map(|axis| a[axis] as f32 - b[axis] as f32);
+    let r = ra as f32 + rb as f32;
+    d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= r * r
 }
 
 /// What is wrong with a culler that reports all pairs.

@@ -4,9 +4,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sdop::settings::Strategy;
 use sdop_judge::answer::Trouble;
-use sdop_judge::{Claim, Conclusion, Outcome, Scene, Verdict, judge, run::judge_pair_test};
+use sdop_judge::{Claim, Conclusion, Outcome, Scene, Verdict, judge, judge_pair_test};
 
-use crate::cullers::{All, Balls, Boxes, BoxesOfAWorld, Flaw, NarrowBalls, Ours};
+use crate::cullers::{
+    All, Boxes, BoxesOfAWorld, Flaw, Ours, balls_meet, balls_meet_without_margin,
+};
 
 fn all(flaw: Flaw) -> impl Fn(&Scene<'_>) -> All + Sync {
     move |_| All {
@@ -93,10 +95,7 @@ fn a_culler_that_reports_less_than_its_claim_is_found_out() {
 
 #[test]
 fn balls_in_f64_with_a_margin_pass_and_in_f32_without_one_are_found_out() {
-    let right = judge_pair_test(|scene: &Scene<'_>| Balls {
-        shapes: scene.shapes.to_vec(),
-    });
-    let verdict = right
+    let verdict = judge_pair_test(balls_meet)
         .claims(Claim::Sphere)
         .seed(7)
         .extra_limit(0.1)
@@ -108,10 +107,10 @@ fn balls_in_f64_with_a_margin_pass_and_in_f32_without_one_are_found_out() {
         verdict.pairs().by_rounding,
         "{verdict}"
     );
-    let wrong = judge_pair_test(|scene: &Scene<'_>| NarrowBalls {
-        shapes: scene.shapes.to_vec(),
-    });
-    let verdict = wrong.claims(Claim::Sphere).run().unwrap();
+    let verdict = judge_pair_test(balls_meet_without_margin)
+        .claims(Claim::Sphere)
+        .run()
+        .unwrap();
     assert!(
         failures(&verdict)
             .iter()

@@ -7,6 +7,8 @@ use sdop::mesh::topology::Topology;
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
 use sdop::volume::{Hull, Shape, ShapeSpec};
 
+use crate::forms::BOX_FACES;
+
 const FORMATS: [MeshFormat; 5] = [
     MeshFormat::Tri,
     MeshFormat::Obj,
@@ -18,21 +20,6 @@ const FORMATS: [MeshFormat; 5] = [
 fn read(format: MeshFormat, text: impl AsRef<[u8]>) -> TriangleMesh {
     read_bytes("test", format, text.as_ref(), &ReadOptions::default()).unwrap()
 }
-
-const BOX: [[u32; 3]; 12] = [
-    [0, 2, 1],
-    [1, 2, 3],
-    [4, 5, 6],
-    [5, 7, 6],
-    [0, 1, 4],
-    [1, 5, 4],
-    [2, 6, 3],
-    [3, 6, 7],
-    [0, 4, 2],
-    [2, 4, 6],
-    [1, 3, 5],
-    [3, 7, 5],
-];
 
 /// A box's corners, x the fastest.
 fn corners(lo: [f64; 3], size: [f64; 3]) -> Vec<[f64; 3]> {
@@ -93,8 +80,11 @@ fn far_wall_keeps_its_form() {
     let words: Vec<_> = points.iter().map(|p| p.map(|x| format!("{x}"))).collect();
     for format in FORMATS {
         for real in ["float", "double"] {
-            let mesh = read(format, file(format, real, &words, &BOX));
-            let wanted: Vec<_> = BOX.iter().map(|t| t.map(|i| points[i as usize])).collect();
+            let mesh = read(format, file(format, real, &words, &BOX_FACES));
+            let wanted: Vec<_> = BOX_FACES
+                .iter()
+                .map(|t| t.map(|i| points[i as usize]))
+                .collect();
             assert_eq!(soup(&mesh), wanted, "{format:?}");
             assert_eq!(mesh.rounding, 0.0);
             let topology = Topology::of(&mesh);
@@ -152,10 +142,10 @@ fn near_coordinates_are_the_nearest_f32() {
             .filter(|w| nearest(w) != twice(w))
             .count();
         for format in FORMATS {
-            let mesh = read(format, file(format, "float", &words, &BOX));
+            let mesh = read(format, file(format, "float", &words, &BOX_FACES));
             assert_eq!((mesh.offset, mesh.rounding), ([0.0; 3], 0.0));
             let corners = |t: [u32; 3]| t.map(|i| mesh.vertices[i as usize]);
-            for (found, wanted_triangle) in mesh.triangles.iter().zip(BOX) {
+            for (found, wanted_triangle) in mesh.triangles.iter().zip(BOX_FACES) {
                 let wanted = wanted_triangle.map(|i| wanted[i as usize]);
                 assert_eq!(corners(*found), wanted, "{format:?}");
             }
@@ -179,7 +169,7 @@ fn moved_by(moved: f64) -> TriangleMesh {
         point[0] = far + (point[0] - 1.0) * size.round();
     }
     points[0][0] += off;
-    TriangleMesh::from_f64(&points, &BOX).unwrap()
+    TriangleMesh::from_f64(&points, &BOX_FACES).unwrap()
 }
 
 /// A mesh is far from two to the minus twenty on.
@@ -277,7 +267,7 @@ fn the_rounding_is_what_was_moved() {
 #[test]
 fn tiny_meshes_stay_where_they_are() {
     let points = corners([1.0e-200, 0.0, 0.0], [1.0e-60; 3]);
-    let mesh = TriangleMesh::from_f64(&points, &BOX).unwrap();
+    let mesh = TriangleMesh::from_f64(&points, &BOX_FACES).unwrap();
     assert_eq!(mesh.offset, [0.0; 3]);
     assert!(f64::from(mesh.rounding) >= 1.7e-60 && mesh.rounding < 1.0e-44);
 }

@@ -3,6 +3,8 @@
 
 mod decimate;
 mod far;
+#[path = "../support/forms.rs"]
+mod forms;
 mod obj;
 mod off;
 mod prop;

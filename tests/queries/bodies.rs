@@ -7,6 +7,7 @@ use sdop_reference::Pose;
 use sdop_reference::exact::meeting::meet;
 use sdop_reference::exact::query::{ExactLine, ball_meets_mesh, is_no_later, line_meets_mesh};
 
+use crate::forms::BOX_FACES;
 use crate::scenes::Random;
 use crate::{UNTURNED, contains, cube, mesh, reference, shapes, tiers};
 
@@ -142,21 +143,7 @@ fn ball_finds_meshes() {
 /// The box between two corners, about the first.
 fn box_mesh(size: [f32; 3]) -> sdop_reference::Shape {
     let corner = |n: u32| [0, 1, 2].map(|axis| (n >> axis & 1) as f32 * size[axis]);
-    let faces = [
-        [0, 2, 1],
-        [1, 2, 3],
-        [4, 5, 6],
-        [5, 7, 6],
-        [0, 1, 4],
-        [1, 5, 4],
-        [2, 6, 3],
-        [3, 6, 7],
-        [0, 4, 2],
-        [2, 4, 6],
-        [1, 3, 5],
-        [3, 7, 5],
-    ];
-    mesh((0..8).map(corner).collect(), faces.into())
+    mesh((0..8).map(corner).collect(), BOX_FACES.into())
 }
 
 /// Meshes that meet a box are found.

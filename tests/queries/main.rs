@@ -4,6 +4,8 @@
 
 mod bodies;
 mod boxes;
+#[path = "../support/forms.rs"]
+mod forms;
 mod lives;
 #[allow(dead_code, reason = "the suite of boxes uses the rest")]
 #[path = "../boxes/scenes.rs"]
@@ -13,6 +15,8 @@ mod sets;
 use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{BodyId, ProceduralShape, QueryIndex, Shape, Tier};
 
+use forms::FORMS;
+
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
 /// Meshes of all kinds: with faces on the axes, round, thin, and with a dent.
@@ -21,25 +25,9 @@ fn shapes(directions: DirectionSet) -> Vec<Shape> {
         directions,
         ..ShapeSpec::default()
     };
-    let forms = [
-        ProceduralShape::Box {
-            x: 1.0,
-            y: 2.0,
-            z: 1.5,
-        },
-        ProceduralShape::Icosphere {
-            radius: 1.0,
-            subdivisions: 1,
-        },
-        ProceduralShape::Needle {
-            length: 4.0,
-            radius: 0.25,
-            sides: 8,
-        },
-        ProceduralShape::default_of("l-shape").unwrap(),
-    ];
+    let dented = ProceduralShape::default_of("l-shape").unwrap();
     let build = |form: ProceduralShape| Shape::build(&form.build().unwrap(), &spec).unwrap();
-    forms.map(build).into()
+    FORMS.into_iter().chain([dented]).map(build).collect()
 }
 
 /// A cube of side 2 about its origin.

@@ -6,6 +6,8 @@
 mod exchange;
 mod excluded;
 mod far;
+#[path = "../support/forms.rs"]
+mod forms;
 mod lives;
 mod many;
 mod margins;
@@ -24,6 +26,8 @@ use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
 use sdop::volume::{Origin, Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Groups, Motion, PairLookup, World, WorldError};
+
+use forms::FORMS;
 
 struct Random(ChaCha8Rng);
 
@@ -62,26 +66,10 @@ fn motion(moves: bool) -> Motion {
 }
 
 fn shapes() -> Vec<Shape> {
-    let forms = [
-        ProceduralShape::Box {
-            x: 1.0,
-            y: 2.0,
-            z: 1.5,
-        },
-        ProceduralShape::Icosphere {
-            radius: 1.0,
-            subdivisions: 1,
-        },
-        ProceduralShape::Needle {
-            length: 4.0,
-            radius: 0.25,
-            sides: 8,
-        },
-    ];
     let build = |form: &ProceduralShape| {
         Shape::build(&form.build().unwrap(), &ShapeSpec::default()).unwrap()
     };
-    forms.iter().map(build).collect()
+    FORMS.iter().map(build).collect()
 }
 
 /// Every way to cull; strategies that spend or look get what they need.

@@ -17,6 +17,7 @@ use sdop::update::row::{O, Q, S, SHAPE, T};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
 use super::climb::Random;
+use super::limit::limit;
 use super::machine::F;
 use super::ordop::{self, Axis, Frames, Row, Table};
 
@@ -210,16 +211,7 @@ fn at_the_limit(shapes: &[Shape], count: usize, apart: impl Fn(&Body, &Body) -> 
             }
             moved
         };
-        let (mut near, mut far) = (0.0f32, 16.0);
-        while near.next_up() < far {
-            // Halving the bits halves the number of floats between.
-            let middle = f32::from_bits(near.to_bits().midpoint(far.to_bits()));
-            *if apart(&a, &at(middle)) {
-                &mut far
-            } else {
-                &mut near
-            } = middle;
-        }
+        let [near, far] = limit(|distance| apart(&a, &at(distance)));
         bodies.extend([a, at(near), a, at(far)]);
     }
     bodies

@@ -8,6 +8,8 @@ mod bounds;
 mod climb;
 mod exact;
 mod kernel;
+#[path = "../support/limit.rs"]
+mod limit;
 mod machine;
 mod ordop;
 mod poses;

@@ -4,8 +4,6 @@ use std::path::Path;
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
 
-use super::sweep;
-
 /// The size limit of files.
 #[derive(clap::Args)]
 pub struct ReadArgs {
@@ -51,6 +49,9 @@ pub fn read(path: &Path) -> miette::Result<String> {
 /// it runs.
 pub const COMMAND: &str = "SDOP_COMMAND";
 
+/// Flags that only share out work: those of [`SweepArgs`](super::sweep::SweepArgs).
+pub const SHARING: [&str; 2] = ["--shard", "--share-cores"];
+
 /// The command that repeats these results: `sdop record`'s, or this one. Absolute paths are
 /// replaced by `DIR`, and flags that only share out work are dropped.
 pub fn command() -> String {
@@ -63,7 +64,7 @@ pub fn command() -> String {
         if argument == "--shard" {
             arguments.next();
         }
-        if sweep::SHARING.iter().any(|flag| argument.starts_with(flag)) {
+        if SHARING.iter().any(|flag| argument.starts_with(flag)) {
             continue;
         }
         let absolute = Path::new(&argument).is_absolute();

@@ -15,10 +15,10 @@ use sdop_bench::report::{
 };
 
 use super::Outcome;
-use super::files::{COMMAND, write};
+use super::files::{COMMAND, SHARING, write};
 use super::output::{print, rows};
 use super::scene_args::MachineArgs;
-use super::sweep::{SHARING, SweepArgs};
+use super::sweep::SweepArgs;
 
 /// Run an experiment and store its measurements under data/record
 ///

@@ -12,7 +12,7 @@ use sdop_bench::mpi::Ranks;
 use sdop_bench::network::MpiNetwork;
 use sdop_bench::sweep::{Header, InOrder, Shard, Sweep, here, write_shard};
 
-use super::files::command;
+use super::files::{SHARING, command};
 use super::output::{print, progress};
 
 /// How units are shared.
@@ -27,9 +27,6 @@ pub struct SweepArgs {
     #[arg(long)]
     share_cores: bool,
 }
-
-/// The flags of [`SweepArgs`].
-pub const SHARING: [&str; 2] = ["--shard", "--share-cores"];
 
 /// Receives results in the order of units.
 type TakeResult<'a> = &'a mut dyn FnMut(usize, &str) -> miette::Result<()>;

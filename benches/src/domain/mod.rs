@@ -33,5 +33,6 @@ mod run;
 
 pub use cut::Cuts;
 pub use error::DomainError;
+pub use rank::BorderSeconds;
 pub use rank::{Rank, RankFrame};
-pub use run::{BorderSeconds, DomainSummary, RankLine, RankSeconds, run};
+pub use run::{DomainSummary, RankLine, RankSeconds, run};

@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
+use serde::Serialize;
+
 use super::body_columns::BodyColumns;
 use super::cut::Cuts;
 use super::error::{DomainError, agree};
 use super::ghosts::{BallReaches, GhostPlan};
-use super::run::BorderSeconds;
 use crate::effects::Effects;
 use crate::network::Network;
 use crate::scene::Scene;
@@ -34,6 +35,17 @@ pub struct Rank<'a, N> {
     pub(super) next: u32,
     pub(super) pairs: Vec<[u32; 2]>,
     pub(super) work: BorderCosts,
+}
+
+/// Wall time that borders add to [`Seconds`]. Sums over frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct BorderSeconds {
+    /// Finding, sending and taking up ghosts, and telling own pairs from others'.
+    pub ghosts: f64,
+    /// Finding owners, moving bodies to them, and the culler's change to another set.
+    pub migration: f64,
+    /// Waiting for the slowest rank.
+    pub waiting: f64,
 }
 
 /// What borders cost a rank, besides what its culler counts. Sums over frames.

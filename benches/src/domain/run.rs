@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::error::DomainError;
-use super::rank::Rank;
+use super::rank::{BorderSeconds, Rank};
 use crate::effects::EffectReport;
 use crate::hash::{PairsDigest, PairsHash, volumes_sha256};
 use crate::network::{Network, tell_first};
@@ -15,17 +15,6 @@ use sdop::settings::{TestedVolume, Updates};
 /// Up to so many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted;
 /// beyond, there is the digest alone.
 const MOST_GATHERED_BODIES: usize = 1 << 20;
-
-/// Wall time that borders add to [`Seconds`]. Sums over frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct BorderSeconds {
-    /// Finding, sending and taking up ghosts, and telling own pairs from others'.
-    pub ghosts: f64,
-    /// Finding owners, moving bodies to them, and the culler's change to another set.
-    pub migration: f64,
-    /// Waiting for the slowest rank.
-    pub waiting: f64,
-}
 
 /// What one rank says of a run. Sums over frames, except for bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -1,7 +1,7 @@
 //! The experiments `cost/quiet` and `cost/loaded`: `sdop cost` on all scenes like the paper's, on
 //! an idle machine and on a loaded one.
 
-use super::experiment::ExperimentStep;
+use super::step::ExperimentStep;
 
 /// The same steps for each scene, which are named once.
 macro_rules! costs {

@@ -1,6 +1,6 @@
 //! The experiments with the filter in physics engines, `examples/rapier` and `examples/bullet`.
 
-use super::experiment::ExperimentStep;
+use super::step::ExperimentStep;
 
 /// A line per run: the file that it becomes, and its arguments.
 macro_rules! runs {

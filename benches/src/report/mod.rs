@@ -18,13 +18,15 @@ mod needs;
 pub mod pages;
 mod peers;
 mod provenance;
+mod step;
 mod store;
 mod table;
 
 pub use compare::{MeasuredChange, RecordComparison, compare};
 pub use digits::{Quantities, Quantity};
-pub use experiment::{Experiment, ExperimentStep, experiments};
+pub use experiment::experiments;
 pub use manifest::{FILE, Manifest, ManifestError};
 pub use provenance::{CodeVersion, Load, caches};
+pub use step::{Experiment, ExperimentStep};
 pub use store::{Store, StoreError};
 pub use table::{Table, TableError};

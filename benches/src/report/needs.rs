@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::experiment::{Experiment, ExperimentStep};
 use super::manifest::inputs;
+use super::step::{Experiment, ExperimentStep};
 
 impl Experiment {
     /// Programs and packages beyond this program, of all steps, in words.

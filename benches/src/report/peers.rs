@@ -1,6 +1,6 @@
 //! The experiments of the comparison with other engines.
 
-use super::experiment::{Experiment, ExperimentStep, PAPER_500};
+use super::step::{Experiment, ExperimentStep, PAPER_500};
 
 const MILLION: &[&str] = &["data/scenes/uniform-1m.toml"];
 

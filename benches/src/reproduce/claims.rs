@@ -4,8 +4,9 @@
 //! usual box and for both F.
 
 use super::check::{ClaimCheck, PaperClaim};
-use super::experiment::{PaperScene, Results, STRATEGIES};
+use super::experiment::Results;
 use super::immediate::{Handing, HandingTimes};
+use super::plan::{PaperScene, STRATEGIES};
 use super::rates::{OTHER_FRAME_SECONDS, ratio};
 use super::readings::{Reading, TABLE_1_STRATEGIES};
 use super::{Estimate, paper_name};

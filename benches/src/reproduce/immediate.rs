@@ -6,7 +6,7 @@
 //! first. Here a pair loop in scalar code hands on after every pair, after sixteen, or at the end;
 //! nothing else differs.
 
-use super::experiment::PaperScene;
+use super::plan::PaperScene;
 use crate::measure::turns::{Regime, Turns, median, next_turn};
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};

@@ -12,6 +12,7 @@ pub mod closed_form;
 mod experiment;
 pub mod immediate;
 pub mod paper;
+mod plan;
 pub mod rates;
 pub mod readings;
 pub mod sensitivity;
@@ -20,9 +21,8 @@ mod survival;
 pub mod units;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
-pub use experiment::{
-    ExperimentPlan, PaperScene, ReproduceError, Results, STRATEGIES, StrategyRun, run_scene,
-};
+pub use experiment::{Results, StrategyRun, run_scene};
+pub use plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES};
 pub use survival::Survival;
 
 use sdop::settings::Strategy;

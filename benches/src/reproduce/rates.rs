@@ -7,7 +7,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::Estimate;
-use super::experiment::{Results, STRATEGIES};
+use super::experiment::Results;
+use super::plan::STRATEGIES;
 use sdop::settings::Strategy;
 
 /// Per-frame costs F of everything else, in seconds.

@@ -12,8 +12,8 @@ use std::num::NonZeroU32;
 use serde::Serialize;
 use toml::Spanned;
 
-use super::experiment::{ExperimentPlan, ReproduceError};
 use super::paper::{TABLE_1, TABLE_1_BODIES};
+use super::plan::{ExperimentPlan, ReproduceError};
 use crate::effects::walls;
 use crate::measure::culling::Culling;
 use crate::measure::variant::Variant;

@@ -8,11 +8,9 @@ use std::sync::{Mutex, PoisonError};
 use miette::{IntoDiagnostic as _, miette};
 use serde::{Deserialize, Serialize};
 
-use super::experiment::{
-    ExperimentPlan, PaperScene, ReproduceError, Results, STRATEGIES, SURVIVAL_SCENE, StrategyRun,
-    run_pass, variants,
-};
+use super::experiment::{Results, StrategyRun, run_pass, variants};
 use super::immediate::{self, HandingTimes};
+use super::plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES, SURVIVAL_SCENE};
 use super::sensitivity::{self, TestCounts};
 use super::survival::Survival;
 use crate::cost::calibrate::{Calibration, Effort};
@@ -261,6 +259,23 @@ impl Sweep for Experiments {
 
     fn timed(&self, _: usize) -> bool {
         true
+    }
+}
+
+impl ExperimentPlan {
+    /// Runs everything except the interpretations, in this process. `done` is called as often as
+    /// [`ExperimentPlan::steps`] says.
+    ///
+    /// # Errors
+    /// Scene files that can't be read or don't suit the strategies.
+    pub fn run(&self, mut done: impl FnMut()) -> Result<Results, ReproduceError> {
+        let experiments = Experiments::new(self, false)?;
+        let mut results = experiments.nothing_yet();
+        for unit in 0..experiments.units() {
+            results.add(experiments.find(unit)?);
+            done();
+        }
+        Ok(results)
     }
 }
 

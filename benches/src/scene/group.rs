@@ -1,12 +1,13 @@
 //! A group of bodies in a scene file, with its keys checked against each other.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::Spanned;
 
 use super::error::SceneError;
 use super::file::{GroupSpec, Placement, SceneFile, Seeding};
-use super::library::BodyForm;
+use crate::number::Real;
 use crate::random::Stream;
 use sdop::volume::Origin;
 
@@ -25,6 +26,18 @@ pub(super) enum DrawPurpose {
     Rotation,
     Velocity,
     Spin,
+}
+
+/// The sizes of a procedural shape, as the scene file has them.
+pub(super) type ShapeSizes = BTreeMap<Spanned<String>, Spanned<Real>>;
+
+/// What a group's bodies look like, as the scene file has it.
+#[derive(Clone, Copy)]
+pub(super) enum BodyForm<'a> {
+    /// A mesh file.
+    File(&'a Spanned<String>),
+    /// A procedural shape.
+    Procedural(&'a Spanned<String>, &'a ShapeSizes),
 }
 
 /// A checked group: what it looks like and how many bodies it has.

@@ -1,6 +1,6 @@
 //! The shapes of a scene: each mesh is read once, and built once for every radius that occurs.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -8,24 +8,12 @@ use toml::Spanned;
 
 use super::error::{SceneError, SceneText};
 use super::file::SceneFile;
-use super::group::BodyGroup;
-use crate::number::{Factors, Real};
+use super::group::{BodyForm, BodyGroup, ShapeSizes};
+use crate::number::Factors;
 use sdop::choice::suggest;
 use sdop::mesh::{MeshError, ProceduralShape, ReadOptions, TriangleMesh, read, shapes::ShapeError};
 use sdop::settings::CullSettings;
 use sdop::volume::{Origin, Shape, ShapeSpec};
-
-/// The sizes of a procedural shape, as the scene file has them.
-pub(super) type ShapeSizes = BTreeMap<Spanned<String>, Spanned<Real>>;
-
-/// What a group's bodies look like, as the scene file has it.
-#[derive(Clone, Copy)]
-pub(super) enum BodyForm<'a> {
-    /// A mesh file.
-    File(&'a Spanned<String>),
-    /// A procedural shape.
-    Procedural(&'a Spanned<String>, &'a ShapeSizes),
-}
 
 /// Meshes and shapes made so far.
 #[derive(Default)]

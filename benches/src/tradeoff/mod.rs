@@ -26,7 +26,8 @@ pub mod vary;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate};
 pub use result::{Tradeoff, VariantResult};
-pub use study::{Findings, TradeoffPlan};
+pub use study::Findings;
+pub use units::TradeoffPlan;
 
 use std::path::PathBuf;
 

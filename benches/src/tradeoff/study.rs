@@ -1,6 +1,6 @@
 //! Joins the results of the units of a comparison.
 
-use std::path::PathBuf;
+use miette::IntoDiagnostic as _;
 
 use super::Estimate;
 use super::budget::{BudgetRow, ClockRow};
@@ -21,26 +21,6 @@ use crate::cost::table;
 use crate::measure::conditions::Conditions;
 use crate::measure::counts::Volume;
 use crate::measure::turns::Regime;
-use sdop::simd::Tier;
-
-/// The amount of work.
-#[derive(Clone, Debug)]
-pub struct TradeoffPlan {
-    /// Number of seeds from the scene's on, with one run each.
-    pub seeds: u64,
-    /// Judged frames per run.
-    pub samples: u32,
-    /// Random pairs per shape.
-    pub pairs: u32,
-    /// Consecutive frames for time-critical culling.
-    pub window: u32,
-    /// One in this number of them is judged.
-    pub stride: usize,
-    /// The SIMD tier.
-    pub tier: Tier,
-    /// The directory in which truths are stored.
-    pub cache: Option<PathBuf>,
-}
 
 /// The results of units so far.
 #[derive(Debug, Default)]
@@ -60,7 +40,7 @@ pub struct Findings {
 
 impl Findings {
     /// Adds the results of a unit; units come in their order.
-    pub(super) fn add(&mut self, found: StudyPart) {
+    fn add(&mut self, found: StudyPart) {
         match found {
             StudyPart::Compared(compared) => self.compared = Some(compared),
             StudyPart::Seed(counts) => self.seeds.push(counts),
@@ -74,6 +54,15 @@ impl Findings {
             StudyPart::Variation(variation) => self.variations.extend(variation),
             StudyPart::Safety(rows) => self.safety = rows,
         }
+    }
+
+    /// Reads a unit's result; units come in their order.
+    ///
+    /// # Errors
+    /// The text is not the result of a unit.
+    pub fn take(&mut self, result: &str) -> miette::Result<()> {
+        self.add(serde_json::from_str(result).into_diagnostic()?);
+        Ok(())
     }
 
     /// The comparison. `None` if units are missing or belong to another one. `before` are the

@@ -4,6 +4,7 @@
 //! them.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use miette::IntoDiagnostic as _;
@@ -15,7 +16,6 @@ use super::density::{self, Density};
 use super::interest;
 use super::safety::{self, SafetyRow};
 use super::shapes::{self, ShapeSurvival};
-use super::study::{Findings, TradeoffPlan};
 use super::timing::{PASSES, Windows};
 use super::truth::{ExactJudge, NarrowPhase, Sample, samples};
 use super::variant::{self, Variant};
@@ -26,6 +26,7 @@ use crate::cost::pass::{Pass, pass};
 use crate::measure::machine::Machine;
 use crate::scene::{Scene, SceneFile};
 use crate::sweep::{Header, Sweep, digest};
+use sdop::simd::Tier;
 use sdop::volume::Shape;
 
 /// The name in its files.
@@ -40,6 +41,25 @@ const EFFORT: Effort = Effort {
     turns: 1,
     builds: 5,
 };
+
+/// The amount of work.
+#[derive(Clone, Debug)]
+pub struct TradeoffPlan {
+    /// Number of seeds from the scene's on, with one run each.
+    pub seeds: u64,
+    /// Judged frames per run.
+    pub samples: u32,
+    /// Random pairs per shape.
+    pub pairs: u32,
+    /// Consecutive frames for time-critical culling.
+    pub window: u32,
+    /// One in this number of them is judged.
+    pub stride: usize,
+    /// The SIMD tier.
+    pub tier: Tier,
+    /// The directory in which truths are stored.
+    pub cache: Option<PathBuf>,
+}
 
 /// What is compared, how thoroughly, and on what kind of machine: times of different machines can't
 /// be joined.
@@ -398,16 +418,5 @@ impl Sweep for Comparison {
             | TradeoffUnit::Variation(_)
             | TradeoffUnit::Safety => true,
         }
-    }
-}
-
-impl Findings {
-    /// Reads a unit's result; units come in their order.
-    ///
-    /// # Errors
-    /// The text is not the result of a unit.
-    pub fn take(&mut self, result: &str) -> miette::Result<()> {
-        self.add(serde_json::from_str(result).into_diagnostic()?);
-        Ok(())
     }
 }

@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
 use sdop::bodies::Bodies;
-use sdop_judge::every_way::rounds::{Ledger, RoundError, Run};
+use sdop_judge::every_way::{Ledger, RoundError, Run};
 use sdop_judge::ours::answers::{Answers, Predicate};
 use sdop_judge::ours::judged::Shapes;
 use sdop_judge::ours::ways::{Rotation, rows};

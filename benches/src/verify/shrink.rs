@@ -9,7 +9,7 @@ use crate::scene::SceneFile;
 use sdop::files;
 use sdop::settings::CullSettings;
 use sdop_judge::Frame;
-use sdop_judge::every_way::rounds::Failure;
+use sdop_judge::every_way::Failure;
 use sdop_judge::ours::compare::settings;
 use sdop_judge::report::{case_file, scene};
 use sdop_judge::shrink;

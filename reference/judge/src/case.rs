@@ -67,6 +67,11 @@ impl Frame {
     }
 }
 
+/// The group of a case's name: all but its number.
+pub(crate) fn group_of(name: &str) -> &str {
+    name.rsplit_once('/').map_or(name, |(group, _)| group)
+}
+
 /// The bodies of these numbers, in this order.
 #[must_use]
 pub fn picked(bodies: &Bodies, which: &[usize]) -> Bodies {
@@ -125,9 +130,7 @@ impl Case {
     /// The group: the name without its number.
     #[must_use]
     pub fn group(&self) -> &str {
-        self.name
-            .rsplit_once('/')
-            .map_or(&self.name, |(group, _)| group)
+        group_of(&self.name)
     }
 
     /// The case with these bodies of each frame alone, in this order; its set of bodies doesn't

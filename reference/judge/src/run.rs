@@ -6,13 +6,14 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 use sdop::choice::nearest;
+use sdop::volume::Shape;
 
-use super::case::Case;
+use super::case::{Case, Frame};
 use super::catalogue::{CaseId, CatalogueError, select};
 use super::claim::Claim;
 use super::score::{Judged, Outcome, judge_case};
 use super::shrink::shrink;
-use super::subject::{Made, PairTest, Pairwise, Scene, Subject};
+use super::subject::{Function, Made, Pairwise, Scene, Subject};
 use super::verdict::{CaseVerdict, Verdict};
 use crate::contestant::Contestant;
 use crate::ours::judged::InvalidInput;
@@ -103,13 +104,27 @@ where
     }
 }
 
-/// Judges a test of single pairs, made anew for each case by `make`.
-pub fn judge_pair_test<F, T>(make: F) -> Judge<Made<impl Fn(&Scene<'_>) -> Pairwise<T> + Sync>>
+/// Judges a culler that keeps nothing between frames: a function of the shapes and of a frame. The
+/// frame has the bodies' poses and boxes. Pairs are i < j, each once.
+pub fn judge_function<F>(cull: F) -> Judge<Function<F>>
 where
-    F: Fn(&Scene<'_>) -> T + Sync,
-    T: PairTest,
+    F: Fn(&[Shape], &Frame) -> Vec<[u32; 2]> + Sync,
 {
-    judge(move |scene: &Scene<'_>| Pairwise::new(make(scene)))
+    Judge {
+        subject: Function(cull),
+        options: Options::default(),
+    }
+}
+
+/// Judges a test of single pairs: whether two bodies of a frame overlap, as far as it can tell.
+pub fn judge_pair_test<T>(overlap: T) -> Judge<Pairwise<T>>
+where
+    T: Fn(&[Shape], &Frame, [usize; 2]) -> bool + Sync,
+{
+    Judge {
+        subject: Pairwise(overlap),
+        options: Options::default(),
+    }
 }
 
 impl<S: Subject> Judge<S> {

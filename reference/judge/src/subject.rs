@@ -1,4 +1,4 @@
-//! The judged culler: a Rust type, a test of single pairs, or (in [`super::process`]) a program.
+//! The judged culler: a Rust type, a function, or (in [`super::process`]) a program.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -8,6 +8,7 @@ use super::claim::Claim;
 use crate::contestant::{Contestant, WorldBox};
 use sdop::bodies::Bodies;
 use sdop::volume::Shape;
+use sdop_reference::broad_phase::all_pairs;
 
 /// The input of a culler's constructor: the first frame of a case.
 #[derive(Clone, Copy, Debug)]
@@ -40,20 +41,24 @@ where
     C: Contestant,
 {
     fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
-        let mut answers = Vec::new();
-        let run = catch_unwind(AssertUnwindSafe(|| self.run(case, &mut answers)));
-        match run {
-            Ok(Ok(())) => Ok(answers),
-            Ok(Err(stop)) => Err(stop),
-            Err(payload) => {
-                let text = payload.downcast_ref::<String>().map(String::as_str);
-                let text = text.or(payload.downcast_ref::<&str>().copied());
-                Err(Stop::Trouble(Trouble::Crashed {
-                    how: format!("panicked: {}", text.unwrap_or("without a message")),
-                    answered: answers.len(),
-                    said: String::new(),
-                }))
-            }
+        guarded(|answers| self.run(case, answers))
+    }
+}
+
+/// The answers that `run` collects; a panic is an error of the case.
+fn guarded(run: impl FnOnce(&mut Vec<Answer>) -> Result<(), Stop>) -> Result<Vec<Answer>, Stop> {
+    let mut answers = Vec::new();
+    match catch_unwind(AssertUnwindSafe(|| run(&mut answers))) {
+        Ok(Ok(())) => Ok(answers),
+        Ok(Err(stop)) => Err(stop),
+        Err(payload) => {
+            let text = payload.downcast_ref::<String>().map(String::as_str);
+            let text = text.or(payload.downcast_ref::<&str>().copied());
+            Err(Stop::Trouble(Trouble::Crashed {
+                how: format!("panicked: {}", text.unwrap_or("without a message")),
+                answered: answers.len(),
+                said: String::new(),
+            }))
         }
     }
 }
@@ -115,46 +120,37 @@ fn prepared(culler: &mut impl Contestant, frame: &Frame) -> Result<(), &'static 
     }
 }
 
-/// A test of single pairs.
-pub trait PairTest {
-    /// Whether two bodies of the frame overlap, as far as this test can tell.
-    fn overlap(&mut self, bodies: &Bodies, i: u32, j: u32) -> bool;
-}
+/// A culler that keeps nothing between frames: a function of a case's shapes and of a frame.
+pub struct Function<F>(pub F);
 
-/// A pair test run over all pairs, which makes a culler of it.
-pub struct Pairwise<T> {
-    test: T,
-    pairs: Vec<[u32; 2]>,
-}
-
-impl<T: PairTest> Pairwise<T> {
-    /// All pairs by this test.
-    pub fn new(test: T) -> Self {
-        Self {
-            test,
-            pairs: Vec::new(),
-        }
+impl<F> Subject for Function<F>
+where
+    F: Fn(&[Shape], &Frame) -> Vec<[u32; 2]> + Sync,
+{
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+        guarded(|answers| {
+            answers.extend(case.frames.iter().map(|frame| Answer {
+                pairs: (self.0)(&case.shapes, frame),
+                ns: None,
+            }));
+            Ok(())
+        })
     }
 }
 
-impl<T: PairTest> Contestant for Pairwise<T> {
-    fn frame(&mut self, bodies: &Bodies) {
-        self.pairs.clear();
-        for j in 0..bodies.len() as u32 {
-            for i in 0..j {
-                let moves = bodies.dynamic[i as usize] || bodies.dynamic[j as usize];
-                if moves && self.test.overlap(bodies, i, j) {
-                    self.pairs.push([i, j]);
-                }
-            }
-        }
-    }
+/// A test of single pairs, run over all pairs, which makes a culler of it.
+pub struct Pairwise<T>(pub T);
 
-    fn pairs(&self) -> Vec<[u32; 2]> {
-        self.pairs.clone()
-    }
-
-    fn change(&mut self, _bodies: &Bodies, _was: &[Option<u32>]) -> bool {
-        true // it keeps nothing between frames
+impl<T> Subject for Pairwise<T>
+where
+    T: Fn(&[Shape], &Frame, [usize; 2]) -> bool + Sync,
+{
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+        let cull = |shapes: &[Shape], frame: &Frame| {
+            let overlap = |&[i, j]: &[u32; 2]| (self.0)(shapes, frame, [i as usize, j as usize]);
+            let pairs = all_pairs(&frame.bodies.dynamic).map(|(i, j)| [i, j]);
+            pairs.filter(overlap).collect()
+        };
+        Function(cull).answer(case)
     }
 }

@@ -7,7 +7,7 @@ use sdop_reference::exact::{meeting, ordop, sphere};
 use super::case::Frame;
 use super::claim::Claim;
 use crate::contestant::WorldBox;
-use crate::ours::judged::{InvalidInput, slabs};
+use crate::ours::judged::{InvalidInput, body, slabs};
 use sdop::volume::{Hull, Shape};
 
 /// Judges pairs of one claim.
@@ -105,12 +105,7 @@ impl Truth {
     }
 
     fn body(&self, frame: &Frame, i: u32) -> Result<reference::Body<'_>, InvalidInput> {
-        let (bodies, i) = (&frame.bodies, i as usize);
-        Ok(reference::Body {
-            shape: &self.shapes[bodies.shape[i] as usize],
-            pose: reference::Pose::new(bodies.rotation[i], bodies.translation[i])?,
-            dynamic: bodies.dynamic[i],
-        })
+        body(&self.shapes, &frame.bodies, i as usize)
     }
 }
 

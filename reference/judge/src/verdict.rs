@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::answer::Trouble;
+use super::case::group_of;
 use super::claim::Claim;
 use super::score::{Count, Miss, Outcome};
 use super::shrink::Smallest;
@@ -32,9 +33,7 @@ impl CaseVerdict {
     /// The group: the name without its number.
     #[must_use]
     pub fn group(&self) -> &str {
-        self.name
-            .rsplit_once('/')
-            .map_or(&self.name, |(group, _)| group)
+        group_of(&self.name)
     }
 
     /// Whether the program could not even be started.

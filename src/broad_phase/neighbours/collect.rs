@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::Volume;
+use super::chunk::Chunk;
 use super::effort::{CANDIDATES_PER_REPORT, SearchEffort};
-use super::list::Chunk;
 use crate::broad_phase::{
     BLOCK_BODIES, BallTest, Block, FirstTest, MOST_CANDIDATES, SlotBodies, SlotTest,
 };

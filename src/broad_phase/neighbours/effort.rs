@@ -3,7 +3,38 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use super::list::SearchLimits;
+/// The most pairs per body of a list with the widest skin, apart from a constant for small scenes.
+/// In denser crowds the reported pairs dominate the time, and a list would take more memory than
+/// everything else.
+const PAIRS_PER_BODY: usize = 8;
+const SPARE_PAIRS: u64 = 256;
+
+/// The limit of candidates that the search for a list may test: this many times those of the grid
+/// without a skin, plus some per body. Skins stay below it ([`policy`](super::policy)), unless the
+/// skin's floor exceeds the bodies' size.
+const GROWTH_OF_CANDIDATES: u64 = 3;
+const CANDIDATES_PER_BODY: u64 = 48;
+
+/// The limits of a list and of the search for it.
+#[derive(Clone, Copy, Debug)]
+pub struct SearchLimits {
+    /// Pairs.
+    pub pairs: u64,
+    /// Candidates.
+    pub candidates: u64,
+}
+
+impl SearchLimits {
+    /// The limits for a list of `bodies` bodies, for which the widest skin gives `spare` times as
+    /// many pairs and the grid without a skin has `candidates` candidates.
+    pub fn of(bodies: usize, candidates: u64, spare: f64) -> Self {
+        let pairs = (PAIRS_PER_BODY * bodies) as f64 / spare;
+        Self {
+            pairs: pairs as u64 + SPARE_PAIRS,
+            candidates: GROWTH_OF_CANDIDATES * candidates + CANDIDATES_PER_BODY * bodies as u64,
+        }
+    }
+}
 
 /// Candidates after which a thread adds its counts to those of all.
 pub const CANDIDATES_PER_REPORT: u64 = 1024;

@@ -19,6 +19,7 @@
 //! Lists don't pay if bodies move by a large part of their radius per frame or have many
 //! neighbours. Such frames are left to the grid, decided by counts alone ([`policy`]).
 
+mod chunk;
 mod collect;
 mod drift;
 mod effort;

@@ -4,7 +4,7 @@
 mod coverage;
 
 use sdop_judge::Conclusion;
-use sdop_judge::every_way::rounds::{Judged, Ledger};
+use sdop_judge::every_way::{Judged, Ledger};
 use sdop_judge::ours::Predicate;
 use sdop_judge::ours::boxes::BoxLedger;
 use sdop_judge::ours::matrix::Matrix;

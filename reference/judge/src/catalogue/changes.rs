@@ -33,14 +33,10 @@ pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Draw
     let shapes = vec![cube(rng)?, needle()?];
     let axis = number as usize % 3;
     let early = [0, 1].map(|side| 2 * rng.random_range(0..ROWS / 2) + side);
-    let place = |row: usize| {
-        let mut place: [f32; 3] = std::array::from_fn(|_| rng.random_range(-0.5..0.5));
-        place[(axis + 1) % 3] += 16.0 * row as f32; // few rows
-        place
-    };
+    let places = places(axis, ROWS, rng);
     let rows = Rows {
         axis,
-        places: (0..ROWS).map(place).collect(),
+        places,
         early,
     };
     let frames = (0..FRAMES).map(|n| match kind {
@@ -49,6 +45,16 @@ pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Draw
     });
     let frames = frames.collect();
     Ok(Drawn { shapes, frames })
+}
+
+/// Where rows are, far from each other, whose changes are along an axis.
+pub(super) fn places(axis: usize, rows: usize, rng: &mut impl Rng) -> Vec<[f32; 3]> {
+    let place = |row: usize| {
+        let mut place: [f32; 3] = std::array::from_fn(|_| rng.random_range(-0.5..0.5));
+        place[(axis + 1) % 3] += 16.0 * row as f32; // few rows
+        place
+    };
+    (0..rows).map(place).collect()
 }
 
 /// A cube whose sides are a little shorter than 2.

@@ -5,9 +5,9 @@
 //! some of the moving bodies to their partners, from either side along one axis. A culler that
 //! keeps stale data misses a pair.
 
-use rand::{Rng, RngExt};
+use rand::Rng;
 
-use super::changes::{ALONG, AWAY, NEAR, REACH, UNTURNED, cube, needle};
+use super::changes::{ALONG, AWAY, NEAR, REACH, UNTURNED, cube, needle, places};
 use super::{CatalogueError, Drawn};
 use crate::case::Frame;
 use sdop::bodies::Bodies;
@@ -45,12 +45,7 @@ struct Placed {
 pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
     let shapes = vec![cube(rng)?, needle()?];
     let axis = number as usize % 3;
-    let place = |row: usize| {
-        let mut place: [f32; 3] = std::array::from_fn(|_| rng.random_range(-0.5..0.5));
-        place[(axis + 1) % 3] += 16.0 * row as f32; // few rows
-        place
-    };
-    let places: Vec<[f32; 3]> = (0..ROWS).map(place).collect();
+    let places = places(axis, ROWS, rng);
     let mut frames: Vec<Frame> = Vec::new();
     let mut before: Vec<usize> = Vec::new();
     for n in 0..FRAMES {

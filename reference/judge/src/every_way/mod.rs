@@ -1,5 +1,10 @@
-//! Our culler under judgement: rounds over every way that it culls ([`rounds`]), and as a subject
-//! like any other program ([`subject`]).
+//! Our culler under judgement: in every way that it culls ([`run`]), over rounds of seeds and hard
+//! cases ([`rounds`]), and as a subject like any other program ([`subject`]).
 
+pub mod ledger;
 pub mod rounds;
+pub mod run;
 pub mod subject;
+
+pub use ledger::{Failure, Judged, Ledger};
+pub use run::{RoundError, Run};

@@ -9,7 +9,6 @@ use crate::ours::compare::{culler, settings};
 use crate::ours::ways::{Mode, Rotation, ways};
 use crate::subject::Subject;
 use sdop::bodies::Aabb;
-use sdop::boxes::BoxCuller;
 use sdop::culler::CullError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::volume::{Axes, DirectionSet};
@@ -110,8 +109,7 @@ fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists, CullError
 
 /// The given boxes by one finder.
 fn boxes(case: &Case, cell: BoxCell, mode: Mode) -> Result<Lists, CullError> {
-    let builder = BoxCuller::builder().finder(cell.finder).tier(mode.tier);
-    let mut culler = builder.threads(mode.threads).worth_waking(0).build()?;
+    let mut culler = cell.culler(mode)?;
     let aabb = |&[x0, y0, z0, x1, y1, z1]: &WorldBox| Aabb::new([x0, y0, z0], [x1, y1, z1]);
     let list = |frame: &Frame| {
         let boxes: Vec<Aabb> = frame.boxes.iter().map(aabb).collect();

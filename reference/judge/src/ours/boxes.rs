@@ -39,6 +39,16 @@ pub struct BoxCell {
 }
 
 impl BoxCell {
+    /// The culler of this cell; its tier and number of threads are the mode's.
+    ///
+    /// # Errors
+    /// Threads that the system refuses.
+    pub fn culler(&self, mode: Mode) -> Result<BoxCuller, CullError> {
+        let of = BoxCuller::builder().finder(self.finder);
+        let of = of.tier(mode.tier).threads(mode.threads);
+        of.worth_waking(0).build()
+    }
+
     /// Every cell, and a mode of it: given boxes have no update mode.
     pub fn all(rotation: &Rotation) -> impl Iterator<Item = (Self, Mode)> {
         let modes = rotation.modes().iter();
@@ -186,9 +196,7 @@ pub fn judge(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<BoxLedger, Cul
         ..BoxLedger::default()
     };
     for (cell, mode) in BoxCell::all(rotation) {
-        let of = BoxCuller::builder().finder(cell.finder);
-        let of = of.tier(mode.tier).threads(mode.threads).worth_waking(0);
-        let mut culler = of.build()?;
+        let mut culler = cell.culler(mode)?;
         let mut wrong = 0;
         for (n, (boxes, wanted)) in frames.iter().zip(&wanted).enumerate() {
             let differing = difference(&culler.cull(boxes)?.sorted(), wanted);

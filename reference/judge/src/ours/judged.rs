@@ -63,7 +63,8 @@ impl Shapes {
     }
 }
 
-fn body<'a>(
+/// A body as the reference takes it.
+pub(crate) fn body<'a>(
     shapes: &'a [reference::Shape],
     bodies: &Bodies,
     i: usize,

@@ -1,0 +1,106 @@
+//! What a verification run has judged: sums over frames, and the first failures.
+
+use std::collections::BTreeMap;
+
+use sdop_reference::exact::Tally;
+
+use crate::case::Case;
+use crate::ours::answers::{Answers, Predicate};
+use crate::ours::boxes::BoxLedger;
+use crate::ours::compare::Count;
+use crate::ours::matrix::Matrix;
+use crate::ours::ways::Mode;
+use sdop::settings::{CullSettings, Overlap, Strategy};
+
+/// Failures that a ledger keeps.
+pub(super) const MOST_FAILURES: usize = 8;
+
+/// What lists are counted by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Judged {
+    /// The strategy.
+    pub strategy: Strategy,
+    /// The overlap test, for strategies that have one.
+    pub overlap: Option<Overlap>,
+}
+
+/// Everything that was judged: sums over frames.
+#[derive(Clone, Debug, Default)]
+pub struct Ledger {
+    /// Answers by predicate: pairs that overlap, and which stage decided.
+    pub predicates: [(u64, Tally); Predicate::ALL.len()],
+    /// Lists against answers; a pair counts once for each finder that listed it.
+    pub rows: BTreeMap<Judged, Count>,
+    /// Pairs missed or found by one finder alone, with all that is needed to see it again.
+    pub failures: Vec<Failure>,
+    /// In which cells lists were judged.
+    pub matrix: Matrix,
+    /// Lists of given boxes.
+    pub boxes: BoxLedger,
+}
+
+/// A missed pair, or one on which a finder disagrees with all-pairs.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// The culler's settings.
+    pub settings: CullSettings,
+    /// How it was computed.
+    pub mode: Mode,
+    /// The frames up to the one with the pair.
+    pub case: Case,
+    /// The pair.
+    pub pair: [u32; 2],
+    /// Whether the exact answers ask for it; otherwise all-pairs has it and this list not, or the
+    /// other way round.
+    pub missed: bool,
+}
+
+impl Ledger {
+    /// Counts a frame's answers.
+    pub fn note(&mut self, answers: &Answers) {
+        for ((overlaps, tally), predicate) in self.predicates.iter_mut().zip(Predicate::ALL) {
+            *overlaps += answers.of(predicate).iter().filter(|x| **x).count() as u64;
+            tally.add(&answers.tally(predicate));
+        }
+    }
+
+    /// Counts one list.
+    pub fn count(&mut self, settings: &CullSettings, count: &Count) {
+        let row = Judged {
+            strategy: settings.strategy,
+            overlap: settings
+                .strategy
+                .scheme()
+                .has_overlap_test()
+                .then_some(settings.overlap),
+        };
+        self.rows.entry(row).or_default().add(count);
+    }
+
+    /// Adds another ledger. A few failures are enough.
+    pub fn add(&mut self, other: Self) {
+        for (mine, (overlaps, tally)) in self.predicates.iter_mut().zip(other.predicates) {
+            mine.0 += overlaps;
+            mine.1.add(&tally);
+        }
+        for (row, count) in other.rows {
+            self.rows.entry(row).or_default().add(&count);
+        }
+        self.matrix.add(&other.matrix);
+        self.boxes.add(other.boxes);
+        self.failures.extend(other.failures);
+        self.failures.truncate(MOST_FAILURES);
+    }
+
+    /// Missed pairs in all.
+    #[must_use]
+    pub fn missed(&self) -> u64 {
+        self.rows.values().map(|count| count.missed).sum()
+    }
+
+    /// Pairs on which a list and that of all-pairs differ, in all.
+    #[must_use]
+    pub fn differing(&self) -> u64 {
+        self.rows.values().map(|count| count.differ).sum()
+    }
+}

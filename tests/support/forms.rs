@@ -1,0 +1,42 @@
+//! Forms that several suites use.
+
+#![allow(
+    dead_code,
+    reason = "each test binary uses its own part of this support"
+)]
+
+use sdop::mesh::ProceduralShape;
+
+/// Meshes of three kinds: with faces on the axes, round, and thin.
+pub const FORMS: [ProceduralShape; 3] = [
+    ProceduralShape::Box {
+        x: 1.0,
+        y: 2.0,
+        z: 1.5,
+    },
+    ProceduralShape::Icosphere {
+        radius: 1.0,
+        subdivisions: 1,
+    },
+    ProceduralShape::Needle {
+        length: 4.0,
+        radius: 0.25,
+        sides: 8,
+    },
+];
+
+/// The triangles of a box whose corners are numbered with x the fastest.
+pub const BOX_FACES: [[u32; 3]; 12] = [
+    [0, 2, 1],
+    [1, 2, 3],
+    [4, 5, 6],
+    [5, 7, 6],
+    [0, 1, 4],
+    [1, 5, 4],
+    [2, 6, 3],
+    [3, 6, 7],
+    [0, 4, 2],
+    [2, 4, 6],
+    [1, 3, 5],
+    [3, 7, 5],
+];
