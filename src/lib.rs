@@ -10,6 +10,7 @@
 //! |---|---|
 //! | a fixed set of posed meshes | [`Culler`] |
 //! | posed meshes that come and go | [`World`]: ids, groups, margins, f64 translations, events |
+//! | bodies of several shapes, such as robots | [`compound`] in a [`World`]: pairs of parts |
 //! | boxes, all of them new in each frame | [`BoxCuller`]: exactly the boxes that meet |
 //! | boxes that come and go | [`BoxWorld`]: the same, with ids, groups and events |
 //! | a volume, a line or another set to compare with a world | [`QueryIndex`] |
@@ -120,6 +121,8 @@ pub mod bodies;
 pub mod boxes;
 #[cfg(feature = "c")]
 pub mod c;
+#[cfg(feature = "shapes")]
+pub mod compound;
 pub mod counters;
 pub mod culler;
 #[cfg(feature = "shapes")]

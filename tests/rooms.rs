@@ -29,6 +29,7 @@ const LIBRARY: &[&str] = &[
     "world",
     "boxes",
     "query",
+    "compound",
     "c",
 ];
 const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST, "every_way"];

@@ -45,8 +45,8 @@ pub struct TriangleMesh {
     /// The origin of `vertices` in the file's coordinates: zero unless the mesh is far from its
     /// origin.
     pub offset: [f64; 3],
-    /// An upper bound on the distance of a far mesh's vertices from their f64 points. Volumes are
-    /// grown by it.
+    /// An upper bound on the distance of the vertices of a far mesh, or of several meshes as one,
+    /// from their f64 points. Volumes are grown by it.
     pub rounding: f32,
 }
 

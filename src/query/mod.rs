@@ -49,9 +49,14 @@ pub use shape::QueryShape;
 pub use source::QuerySource;
 pub use volume::{Line, QueryError, QueryVolume};
 
+#[cfg(feature = "shapes")]
+pub(crate) use shape::PosedShape;
+#[cfg(feature = "shapes")]
+pub(crate) use source::renew;
+
 /// A line as the tests need it: the points from + s·speed for s from 0 to `limit`.
 #[derive(Clone, Copy, Debug)]
-struct Track {
+pub(crate) struct Track {
     from: [f64; 3],
     speed: [f64; 3],
     limit: f64,

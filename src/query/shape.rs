@@ -75,6 +75,14 @@ impl QueryShape {
             && self.pose_offset == pose_offset
     }
 
+    /// Whether it has the ball, reach and place of a shape, whose slabs may have other axes.
+    pub(crate) fn has_size_of(&self, shape: &Shape) -> bool {
+        self.centre == shape.ball.centre.map(f64::from)
+            && self.radius == f64::from(shape.ball.radius)
+            && self.reach == f64::from(shape.reach)
+            && self.pose_offset == shape.pose_offset
+    }
+
     /// No point is farther from the origin of the vertices.
     pub(super) fn reach(&self) -> f64 {
         self.reach
@@ -103,6 +111,32 @@ impl QueryShape {
             translation,
             margin: f64::from(margin) + error,
         }
+    }
+
+    /// This shape as a part of a body: its margin is that of the body, plus the distance that
+    /// composed poses are off.
+    pub(crate) fn as_part(
+        &self,
+        (rotation, translation): ([f32; 4], [f64; 3]),
+        margin: f32,
+        error: f64,
+    ) -> PosedShape<'_> {
+        let posed = self.at(rotation, translation, margin);
+        PosedShape {
+            margin: posed.margin + error,
+            ..posed
+        }
+    }
+
+    /// The ball about it, as seen from the point that poses place.
+    pub(crate) fn ball(&self) -> ([f64; 3], f64) {
+        let centre = [0, 1, 2].map(|axis| self.centre[axis] + self.pose_offset[axis]);
+        (centre, self.radius)
+    }
+
+    /// At least the distance of a point from the one that poses place.
+    pub(crate) fn radius_about_pose(&self) -> f64 {
+        self.reach + self.pose_offset.iter().map(|x| x.abs()).sum::<f64>()
     }
 
     /// No less than e·x for each point x.
@@ -185,7 +219,7 @@ impl PosedBodies {
 
 /// A body at its pose.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PosedShape<'a> {
+pub(crate) struct PosedShape<'a> {
     pub shape: &'a QueryShape,
     pub rotation: Rotation,
     /// Of the vertices' origin.

@@ -96,7 +96,7 @@ fn is_unchanged(index: &QueryIndex, id: BodyId, former: Body, body: Body) -> boo
 
 /// Copies the shapes of a world, and returns which have changed.
 #[cfg(feature = "shapes")]
-fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
+pub(crate) fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
     let mut renewed = Vec::new();
     for (number, volumes) in world.shape_volumes().enumerate() {
         if shapes.len() == number {

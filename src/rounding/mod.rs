@@ -16,6 +16,7 @@
 //! has found in 10⁷ steps (`benches/criterion/worst_case.rs`; a shorter search is in the tests).
 
 pub mod border;
+pub mod compose;
 pub mod cube;
 pub mod pose;
 pub mod query;

@@ -107,6 +107,39 @@ fn an_index_follows_bodies() {
         index.update(&world);
         assert_same(&index, &world, random);
     }
+    for id in ids {
+        world.remove(id).unwrap();
+    }
+    index.update(&world);
+    assert!(index.is_empty());
+    assert_same(&index, &world, random);
+}
+
+/// A body that is equal to the removed one whose slot it has is another body.
+#[test]
+fn twin_in_a_slot_has_its_own_id() {
+    let mut bodies = World::new(vec![cube()]).unwrap();
+    let mut boxes = BoxWorld::new();
+    let aabb = Aabb::new([-1.0; 3], [1.0; 3]);
+    let gone = (
+        bodies.insert(Body::default()).unwrap(),
+        boxes.insert(aabb).unwrap(),
+    );
+    let [mut of_bodies, mut of_boxes] = [QueryIndex::new(), QueryIndex::new()];
+    of_bodies.update(&bodies);
+    of_boxes.update(&boxes);
+    bodies.remove(gone.0).unwrap();
+    boxes.remove(gone.1).unwrap();
+    bodies.cull().unwrap(); // frees the slots
+    boxes.cull().unwrap();
+    let twin = bodies.insert(Body::default()).unwrap();
+    assert_eq!(twin.slot(), gone.0.slot());
+    of_bodies.update(&bodies);
+    assert_eq!(of_bodies.touching(&aabb.into()).unwrap(), [twin]);
+    let twin = boxes.insert(aabb).unwrap();
+    assert_eq!(twin.slot(), gone.1.slot());
+    of_boxes.update(&boxes);
+    assert_eq!(of_boxes.touching(&aabb.into()).unwrap(), [twin]);
 }
 
 /// The shape of a number may be replaced while all bodies stay.

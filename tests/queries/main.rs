@@ -4,6 +4,7 @@
 
 mod bodies;
 mod boxes;
+mod corners;
 #[path = "../support/forms.rs"]
 mod forms;
 mod lives;

@@ -7,7 +7,7 @@ use sdop_reference::Pose;
 use sdop_reference::exact::meeting::meet;
 
 use crate::scenes::{Kind, Random, boxes};
-use crate::{reference, shapes, tiers};
+use crate::{UNTURNED, cube, reference, shapes, tiers};
 
 fn box_world(boxes: &[Aabb]) -> BoxWorld {
     let mut world = BoxWorld::new();
@@ -97,6 +97,25 @@ fn sets_find_meeting_meshes() {
         assert!(required > 50, "{required}");
         assert!(found.len() <= 2 * required, "{required} of {}", found.len());
     }
+}
+
+/// One set is far from the world's origin, the other reaches from there to it.
+#[test]
+fn sets_of_other_origins_meet() {
+    let world = |places: &[f64]| {
+        let mut world = World::new(vec![cube()]).unwrap();
+        for &x in places {
+            world.insert(Body::at(0, UNTURNED, [x, 0.5, 0.0])).unwrap();
+        }
+        let mut index = QueryIndex::new();
+        index.update(&world);
+        (index, world.ids().collect::<Vec<_>>())
+    };
+    let far = 1.0e9 + 0.25;
+    let (near_each_other, a) = world(&[far, far + 30.0]);
+    let (wide, b) = world(&[0.0, far + 1.5]);
+    assert_eq!(near_each_other.pairs_with(&wide), [[a[0], b[1]]]);
+    assert_eq!(wide.pairs_with(&near_each_other), [[b[1], a[0]]]);
 }
 
 /// Boxes against meshes are what each box finds as a query.

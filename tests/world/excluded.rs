@@ -104,6 +104,32 @@ fn excluded_pairs_are_left_out_of_every_way() {
     assert!(counted > 40, "{counted} ways");
 }
 
+/// A pair is lost and comes back although no body has changed.
+#[test]
+fn exclusions_alone_change_pairs() {
+    let mut counted = 0;
+    for way in ways().into_iter().filter(|way| !is_spending(way)) {
+        let mut random = Random(ChaCha8Rng::seed_from_u64(50));
+        let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
+        let mut model = Model::default();
+        for _ in 0..60 {
+            let mut body = random.body(3);
+            body.translation = body.translation.map(|x| 0.5 * x);
+            model.bodies.insert(world.insert(body).unwrap(), body);
+        }
+        model.check(&mut world, &way);
+        for pair in model.reported.clone().into_iter().take(4) {
+            let [a, b] = pair;
+            assert!(world.exclude(a, b).unwrap() && model.excluded.insert(pair));
+            model.check(&mut world, &way);
+            assert!(world.include(b, a).unwrap() && model.excluded.remove(&pair));
+            model.check(&mut world, &way);
+            counted += 1;
+        }
+    }
+    assert!(counted > 80, "{counted} pairs");
+}
+
 #[test]
 fn restored_worlds_exclude_the_same_pairs() {
     let way = &CullSettings::all_pairs();

@@ -8,7 +8,7 @@ Open Scope R_scope.
 
 Local Notation g := gradual64.
 
-(* src/volume/basis.rs: three orthogonal vectors of one length, from 1/4 to 2. *)
+(* src/volume/basis.rs: Basis::from_integer_quaternion. Three orthogonal vectors of one length. *)
 Definition basis_of_length (b : matrix) (n : R) : Prop :=
   / 4 <= n <= 2 /\ square (row0 b) = n * n /\ square (row1 b) = n * n /\ square (row2 b) = n * n /\
   dot (row0 b) (row1 b) = 0 /\ dot (row0 b) (row2 b) = 0 /\ dot (row1 b) (row2 b) = 0.

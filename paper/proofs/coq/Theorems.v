@@ -2,7 +2,7 @@
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
   Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody
-  SameOrDop OrDopRun.
+  SameOrDop OrDopRun Cubes CubeLists Binning.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -45,6 +45,11 @@ Definition theorems := (
   OrDopBody.tight_slabs_near,
   SameOrDop.run_rejects,
   OrDopRun.run_ordops_reject_disjoint,
+  Cubes.cubes_lose_none,
+  Cubes.cubes_add_none,
+  CubeLists.cube_lists_hold,
+  Binning.polytope_in_ball,
+  Binning.far_ordops_separated,
   Margins.place_within_moved,
   Margins.slab_with_margin,
   Refit.refit_contains

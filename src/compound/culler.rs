@@ -1,0 +1,186 @@
+//! The pairs of parts of a world's pairs.
+
+use super::part_set::{PartSet, PosedParts};
+use super::{Compound, CompoundError};
+use crate::query::{QueryShape, renew};
+use crate::simd::in_default_mode;
+use crate::world::{Body, BodyId, World};
+
+/// Two parts of two bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PartPair {
+    /// The bodies, the lower slot first.
+    pub bodies: [BodyId; 2],
+    /// The number of each body's part. A body whose shape is no compound has the part 0.
+    pub parts: [u32; 2],
+}
+
+/// Finds the pairs of parts within the pairs of bodies that a [`World`] reports. See the
+/// [module](super).
+///
+/// Costs time for pairs of bodies of which one has changed since the last call, and a comparison
+/// for each other pair.
+#[derive(Clone, Debug, Default)]
+pub struct PartCuller {
+    compounds: Vec<Option<Compound>>,
+    /// The world's shapes at the last call.
+    shapes: Vec<Option<QueryShape>>,
+    /// The parts of each shape number.
+    sets: Vec<Option<PartSet>>,
+    bodies: Vec<BodyPair>,
+    pairs: Vec<PartPair>,
+    are_found: bool,
+}
+
+/// A pair of bodies as they were tested, and the end of their pairs of parts in the list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct BodyPair {
+    ids: [BodyId; 2],
+    bodies: [Body; 2],
+    end: usize,
+}
+
+impl PartCuller {
+    /// A culler without compounds: every shape is one part.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Says which parts a shape of the world has. The world's shape of that number has to be
+    /// [`Compound::shape`].
+    pub fn set_parts(&mut self, shape: u32, compound: Compound) {
+        let number = shape as usize;
+        if self.compounds.len() <= number {
+            self.compounds.resize(number + 1, None);
+        }
+        self.compounds[number] = Some(compound);
+        self.are_found = false;
+    }
+
+    /// From now on, the world's shape of that number is one part. Use it before a compound is
+    /// replaced by another shape.
+    pub fn remove_parts(&mut self, shape: u32) {
+        if let Some(compound) = self.compounds.get_mut(shape as usize) {
+            *compound = None;
+            self.are_found = false;
+        }
+    }
+
+    /// Finds the pairs of parts in the pairs of the world's last [`cull`](World::cull), with its
+    /// bodies as they are now: call it after each cull. Returns them sorted by the slots of the
+    /// bodies and then by parts. Two bodies that are one part each are tested by the world alone.
+    ///
+    /// # Errors
+    /// A shape of the world isn't that of its compound. [`Self::pairs`] are those of the call
+    /// before.
+    pub fn cull(&mut self, world: &World) -> Result<&[PartPair], CompoundError> {
+        in_default_mode(|| self.bring_shapes(world).map(|()| self.find(world)))?;
+        Ok(&self.pairs)
+    }
+
+    /// The pairs of the last call of [`Self::cull`].
+    #[must_use]
+    pub fn pairs(&self) -> &[PartPair] {
+        &self.pairs
+    }
+
+    /// The pairs of bodies of which some parts may touch, sorted by slots.
+    pub fn body_pairs(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
+        let mut start = 0;
+        let has_parts = move |pair: &&BodyPair| std::mem::replace(&mut start, pair.end) < pair.end;
+        self.bodies.iter().filter(has_parts).map(|pair| pair.ids)
+    }
+
+    /// Brings the parts of each shape number up to date.
+    fn bring_shapes(&mut self, world: &World) -> Result<(), CompoundError> {
+        let renewed = renew(&mut self.shapes, world);
+        self.are_found &= !renewed.contains(&true);
+        if self.are_found {
+            return Ok(());
+        }
+        for (number, compound) in (0..).zip(&self.compounds) {
+            let Some(compound) = compound else { continue };
+            let shape = self.shapes.get(number as usize).and_then(Option::as_ref);
+            if shape.is_none_or(|shape| !shape.has_size_of(compound.shape())) {
+                return Err(CompoundError::OtherShape {
+                    shape: number,
+                    compound: compound.shape().name.clone(),
+                });
+            }
+        }
+        let compound = |number: usize| self.compounds.get(number).and_then(Option::as_ref);
+        let numbered = self.shapes.iter().enumerate();
+        let sets = numbered.map(|(number, shape)| match compound(number) {
+            Some(compound) => Some(compound.parts.clone()),
+            None => shape.clone().map(PartSet::alone),
+        });
+        self.sets = sets.collect();
+        self.bodies.clear();
+        self.pairs.clear();
+        self.are_found = true;
+        Ok(())
+    }
+
+    /// Finds the pairs of parts of all pairs of bodies. Pairs of bodies that have not changed keep
+    /// theirs: both lists are sorted by slots.
+    fn find(&mut self, world: &World) {
+        let former_bodies = std::mem::take(&mut self.bodies);
+        let former_pairs = std::mem::take(&mut self.pairs);
+        let mut former = former_bodies.iter().peekable();
+        let mut start = 0;
+        let (mut first, mut second, mut placed) = (None, None, None);
+        for ids in world.pairs() {
+            let [Ok(a), Ok(b)] = ids.map(|id| world.body(id)) else {
+                continue; // removed since the cull
+            };
+            while let Some(gone) = former.next_if(|pair| pair.ids < ids) {
+                start = gone.end;
+            }
+            let known = former.next_if(|pair| pair.ids == ids);
+            let range = start..known.map_or(start, |pair| pair.end);
+            start = range.end;
+            if known.is_some_and(|pair| pair.bodies == [a, b]) {
+                self.pairs.extend_from_slice(&former_pairs[range]);
+            } else if let [Some(set), Some(other)] =
+                [a, b].map(|body| self.sets[body.shape as usize].as_ref())
+            {
+                let mut take = |parts| self.pairs.push(PartPair { bodies: ids, parts });
+                if set.len() == 1 && other.len() == 1 {
+                    take([0, 0]);
+                } else {
+                    // Pairs with the same first body follow each other.
+                    if placed.replace(ids[0]) != Some(ids[0]) {
+                        place(&mut first, set, a, a.translation);
+                    }
+                    let second = place(&mut second, other, b, a.translation);
+                    if let Some(first) = &mut first {
+                        first.each_pair(second, take);
+                    }
+                }
+            }
+            let end = self.pairs.len();
+            self.bodies.push(BodyPair {
+                ids,
+                bodies: [a, b],
+                end,
+            });
+        }
+    }
+}
+
+/// Places the parts of a body in memory that others have used before.
+fn place<'a, 'b>(
+    memory: &'b mut Option<PosedParts<'a>>,
+    set: &'a PartSet,
+    body: Body,
+    origin: [f64; 3],
+) -> &'b mut PosedParts<'a> {
+    match memory {
+        Some(parts) => {
+            parts.reset(set, body, origin);
+            parts
+        }
+        None => memory.insert(PosedParts::new(set, body, origin)),
+    }
+}

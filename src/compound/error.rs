@@ -1,0 +1,55 @@
+//! Errors of compounds.
+
+use crate::bodies::contract::ContractError;
+use crate::mesh::MeshError;
+use crate::volume::VolumeError;
+
+/// Why a compound can't be built or its parts can't be culled.
+#[derive(Debug, thiserror::Error)]
+pub enum CompoundError {
+    /// A compound without parts.
+    #[error("compound `{compound}` has no parts")]
+    NoParts {
+        /// The compound's name.
+        compound: String,
+    },
+    /// The shape or the pose of a part is invalid.
+    #[error("part {} of compound `{compound}`: {} {}", .source.body, .source.quantity, .source.value)]
+    Part {
+        /// The compound's name.
+        compound: String,
+        /// What is wrong; its body is the number of the part.
+        source: ContractError,
+    },
+    /// The parts reach farther from the body's origin than 2⁶⁰.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The parts reach farther from the body's origin than 2⁶⁰.
+    #[error(transparent)]
+    Volume(#[from] VolumeError),
+    /// The world has another shape under the number, or none.
+    #[error("shape {shape} of the world is not the shape of compound `{compound}`")]
+    OtherShape {
+        /// The number of the shape.
+        shape: u32,
+        /// The compound's name.
+        compound: String,
+    },
+}
+
+impl CompoundError {
+    /// How to mend it.
+    #[must_use]
+    pub fn help(&self) -> String {
+        let help = match self {
+            Self::NoParts { .. } => "give it one part at least",
+            Self::Part { source, .. } => source.help(),
+            Self::Mesh(error) => return error.help(),
+            Self::Volume(error) => error.help(),
+            Self::OtherShape { .. } => {
+                "give the world `compound.shape()` under this number, or `remove_parts`"
+            }
+        };
+        help.to_owned()
+    }
+}

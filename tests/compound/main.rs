@@ -1,0 +1,184 @@
+//! Bodies of several shapes against exact truth: no two parts that meet are missed, and a culler
+//! that has followed a world reports what a new one would.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod corners;
+mod lives;
+mod misuse;
+mod robots;
+#[allow(dead_code, reason = "the suite of boxes uses the rest")]
+#[path = "../boxes/scenes.rs"]
+mod scenes;
+mod volumes;
+
+use sdop::compound::{Compound, Part, PartCuller, PartPair};
+use sdop::volume::{DirectionSet, ShapeSpec};
+use sdop::{Body, BodyId, ProceduralShape, Shape, World};
+use sdop_reference::WidePose;
+
+use crate::scenes::Random;
+
+const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
+/// The squared norm of the quaternions of bodies in tests with exact truth. Local translations are
+/// multiples of it, so that turned ones are in whole steps.
+const SQUARE: i64 = 105;
+
+/// A step of all translations.
+const STEP: f64 = 1.0 / 1024.0;
+
+const DIRECTIONS: [DirectionSet; 4] = [
+    DirectionSet::K6,
+    DirectionSet::K14,
+    DirectionSet::K18,
+    DirectionSet::K26,
+];
+
+/// A quaternion of whole numbers with the squared norm [`SQUARE`].
+fn whole_rotation(random: &mut Random) -> [i64; 4] {
+    loop {
+        let q = [(); 4].map(|()| random.below(21) as i64 - 10);
+        if q.iter().map(|x| x * x).sum::<i64>() == SQUARE {
+            return q;
+        }
+    }
+}
+
+/// |q|² times the rotation matrix.
+fn turn([x, y, z, w]: [i64; 4]) -> [[i64; 3]; 3] {
+    let [xx, yy, zz, ww] = [x * x, y * y, z * z, w * w];
+    [
+        [xx - yy - zz + ww, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), yy - xx - zz + ww, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), zz - xx - yy + ww],
+    ]
+}
+
+fn apply(turn: [[i64; 3]; 3], v: [i64; 3]) -> [i64; 3] {
+    turn.map(|row| (0..3).map(|i| row[i] * v[i]).sum())
+}
+
+/// The product of quaternions of which one has whole components below 2⁴ and the other f32
+/// components on a grid of 2⁻²³, or below 2²⁴: exact in f64.
+fn product([x, y, z, w]: [f64; 4], [a, b, c, d]: [f64; 4]) -> [f64; 4] {
+    [
+        w * a + x * d + y * c - z * b,
+        w * b - x * c + y * d + z * a,
+        w * c + x * b - y * a + z * d,
+        w * d - x * a - y * b - z * c,
+    ]
+}
+
+/// The exact pose of a part of a body with a whole quaternion, and its translation.
+fn composed(body: &Body, part: &Part) -> (WidePose, [f64; 3]) {
+    let q = product(body.rotation.map(f64::from), part.rotation.map(f64::from));
+    let steps = part.translation.map(|x| {
+        let steps = x / STEP;
+        assert_eq!(steps, steps.round());
+        assert_eq!(steps as i64 % SQUARE, 0);
+        steps as i64 / SQUARE
+    });
+    let whole = body.rotation.map(|x| x as i64);
+    assert_eq!(whole.map(|x| x as f32), body.rotation);
+    let turned = apply(turn(whole), steps);
+    let t = [0, 1, 2].map(|axis| {
+        let sum = body.translation[axis] + turned[axis] as f64 * STEP;
+        assert_eq!(
+            sum - body.translation[axis],
+            turned[axis] as f64 * STEP,
+            "exact"
+        );
+        sum
+    });
+    (WidePose::new(q, t).unwrap(), t)
+}
+
+/// Meshes of all kinds: with faces on the axes, round, thin, and with a dent.
+fn shapes(directions: DirectionSet) -> Vec<Shape> {
+    let forms = [
+        ProceduralShape::Box {
+            x: 1.0,
+            y: 2.0,
+            z: 1.5,
+        },
+        ProceduralShape::Icosphere {
+            radius: 0.75,
+            subdivisions: 1,
+        },
+        ProceduralShape::Needle {
+            length: 3.0,
+            radius: 0.25,
+            sides: 8,
+        },
+        ProceduralShape::default_of("l-shape").unwrap(),
+    ];
+    let build = |form: ProceduralShape| {
+        let spec = ShapeSpec {
+            directions,
+            ..ShapeSpec::default()
+        };
+        Shape::build(&form.build().unwrap(), &spec).unwrap()
+    };
+    forms.map(build).into()
+}
+
+/// The mesh of a shape as the reference has it; of its volumes nothing is asked.
+fn reference(shape: &Shape) -> sdop_reference::Shape {
+    let ball = sdop_reference::Ball {
+        centre: [0.0; 3],
+        radius: 1.0,
+    };
+    let slabs = sdop_reference::Slabs {
+        directions: sdop_reference::DirectionSet::K6,
+        basis: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        lo: vec![-1.0; 3],
+        hi: vec![1.0; 3],
+    };
+    let (vertices, triangles) = (shape.vertices.clone(), shape.triangles.clone());
+    sdop_reference::Shape::new(ball, slabs, vertices, triangles).unwrap()
+}
+
+/// Parts as the links of a tree: each at an end of an earlier one, turned by any angle.
+fn tree(count: usize, shapes: usize, random: &mut Random) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    for number in 0..count {
+        let from = match number {
+            0 => [0.0; 3],
+            _ => parts[random.below(number)].translation,
+        };
+        let way = [(); 3].map(|()| (random.below(29) as i64 - 14) * SQUARE);
+        parts.push(Part {
+            shape: random.below(shapes) as u32,
+            rotation: match number % 4 {
+                0 => UNTURNED,
+                _ => [(); 4].map(|()| random.within(1.0)),
+            },
+            translation: [0, 1, 2].map(|axis| from[axis] + way[axis] as f64 * STEP),
+        });
+    }
+    parts
+}
+
+/// The pairs that a new culler reports.
+fn afresh(world: &World, compounds: &[(u32, Compound)]) -> Vec<PartPair> {
+    let mut culler = PartCuller::new();
+    for (shape, compound) in compounds {
+        culler.set_parts(*shape, compound.clone());
+    }
+    culler.cull(world).unwrap().to_vec()
+}
+
+fn pair(a: BodyId, b: BodyId, parts: [u32; 2]) -> PartPair {
+    if a < b {
+        PartPair {
+            bodies: [a, b],
+            parts,
+        }
+    } else {
+        let [i, j] = parts;
+        PartPair {
+            bodies: [b, a],
+            parts: [j, i],
+        }
+    }
+}

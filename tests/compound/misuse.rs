@@ -1,0 +1,81 @@
+//! Invalid compounds, and worlds that have other shapes.
+
+use sdop::compound::CompoundError;
+
+use super::*;
+
+fn refusal(parts: &[Part]) -> String {
+    let error = Compound::build("arm", &shapes(DirectionSet::K18), parts).unwrap_err();
+    assert!(!error.help().is_empty());
+    error.to_string()
+}
+
+#[test]
+fn invalid_parts_are_named() {
+    let part = Part::default();
+    assert_eq!(refusal(&[]), "compound `arm` has no parts");
+    let shape = Part { shape: 4, ..part };
+    assert_eq!(
+        refusal(&[part, shape]),
+        "part 1 of compound `arm`: shape 4 of 4"
+    );
+    let rotation = [0.0; 4];
+    let still = Part { rotation, ..part };
+    let said = refusal(&[part, part, still]);
+    assert!(
+        said.starts_with("part 2 of compound `arm`: rotation"),
+        "{said}"
+    );
+    let translation = [0.0, f64::NAN, 0.0];
+    let nowhere = Part {
+        translation,
+        ..part
+    };
+    let said = refusal(&[nowhere]);
+    assert!(
+        said.starts_with("part 0 of compound `arm`: translation"),
+        "{said}"
+    );
+    let translation = [2.0_f64.powi(60), 0.0, 0.0];
+    let far = Part {
+        translation,
+        ..part
+    };
+    assert!(
+        refusal(&[part, far]).contains("2⁶⁰"),
+        "{}",
+        refusal(&[part, far])
+    );
+}
+
+#[test]
+fn other_shapes_are_refused() {
+    let shapes = shapes(DirectionSet::K18);
+    let along = |x| Part {
+        translation: [x, 0.0, 0.0],
+        ..Part::default()
+    };
+    let compound = Compound::build("arm", &shapes, &[along(0.0), along(1.5)]).unwrap();
+    assert_eq!(compound.parts(), 2);
+    let mut world = World::new(vec![shapes[0].clone(), compound.shape().clone()]).unwrap();
+    let mut culler = PartCuller::new();
+    for (number, is_right) in [(0, false), (1, true), (2, false)] {
+        culler.set_parts(number, compound.clone());
+        let outcome = culler.cull(&world);
+        match outcome {
+            Err(error) => {
+                assert!(!is_right && matches!(error, CompoundError::OtherShape { .. }));
+                let wanted =
+                    format!("shape {number} of the world is not the shape of compound `arm`");
+                assert_eq!(error.to_string(), wanted);
+            }
+            Ok(_) => assert!(is_right),
+        }
+        culler.remove_parts(number);
+    }
+    culler.set_parts(1, compound);
+    world.replace_shape(1, &shapes[0]).unwrap();
+    assert!(culler.cull(&world).is_err());
+    culler.remove_parts(1);
+    assert!(culler.cull(&world).is_ok());
+}
