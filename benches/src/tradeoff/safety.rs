@@ -87,7 +87,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
                 labels.push((arithmetic, Some(tier)));
             }
         }
-        let mut found = vec![FoundPairs::default(); contestants.len()];
+        let mut found = vec![ContestantPairs::default(); contestants.len()];
         let mut turns = Turns::default();
         for (_, poses) in windows(scene, count, turn_frames(scene.bodies.len()))? {
             // The reference accepts all poses of the contract.
@@ -151,7 +151,7 @@ type Frames = Vec<Vec<[u32; 2]>>;
 
 /// The pairs of one contestant, and the seconds of its warm frames.
 #[derive(Clone, Default)]
-struct FoundPairs {
+struct ContestantPairs {
     frames: Frames,
     seconds: Vec<f64>,
 }
@@ -159,7 +159,7 @@ struct FoundPairs {
 fn safety_row(
     strategy: Strategy,
     (arithmetic, tier): &(Arithmetic, Option<Tier>),
-    found: &FoundPairs,
+    found: &ContestantPairs,
     plain: &Frames,
 ) -> SafetyRow {
     let beyond = |some: &Frames, others: &Frames| {

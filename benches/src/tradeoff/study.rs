@@ -13,7 +13,7 @@ use super::result::{Tradeoff, VariantResult};
 use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
-use super::units::{ComparedVariants, Counts, Settings, UnitResult};
+use super::units::{ComparedVariants, Counts, Settings, StudyPart};
 use super::variant::Variant;
 use super::vary::Variation;
 use crate::cost::pass::Pass;
@@ -40,19 +40,19 @@ pub struct Findings {
 
 impl Findings {
     /// Adds the results of a unit; units come in their order.
-    fn add(&mut self, found: UnitResult) {
+    fn add(&mut self, found: StudyPart) {
         match found {
-            UnitResult::Compared(compared) => self.compared = Some(compared),
-            UnitResult::Seed(counts) => self.seeds.push(counts),
-            UnitResult::Budgets(rows) => self.budgets = rows,
-            UnitResult::Shape(shape) => self.shapes.push(shape),
-            UnitResult::Pass(pass) => self.passes.push(pass),
-            UnitResult::NarrowPhase(seconds) => self.narrow_phase = seconds,
-            UnitResult::Clock(rows) => self.clock = rows,
-            UnitResult::Interest(times) => self.interest = times,
-            UnitResult::Density(density) => self.densities.extend(density),
-            UnitResult::Variation(variation) => self.variations.extend(variation),
-            UnitResult::Safety(rows) => self.safety = rows,
+            StudyPart::Compared(compared) => self.compared = Some(compared),
+            StudyPart::Seed(counts) => self.seeds.push(counts),
+            StudyPart::Budgets(rows) => self.budgets = rows,
+            StudyPart::Shape(shape) => self.shapes.push(shape),
+            StudyPart::Pass(pass) => self.passes.push(pass),
+            StudyPart::NarrowPhase(seconds) => self.narrow_phase = seconds,
+            StudyPart::Clock(rows) => self.clock = rows,
+            StudyPart::Interest(times) => self.interest = times,
+            StudyPart::Density(density) => self.densities.extend(density),
+            StudyPart::Variation(variation) => self.variations.extend(variation),
+            StudyPart::Safety(rows) => self.safety = rows,
         }
     }
 

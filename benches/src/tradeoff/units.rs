@@ -128,7 +128,7 @@ enum TradeoffUnit {
 /// The result of a unit.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) enum UnitResult {
+pub(super) enum StudyPart {
     Compared(ComparedVariants),
     Seed(Counts),
     Budgets(Vec<BudgetRow>),
@@ -217,20 +217,20 @@ impl Comparison {
         }
     }
 
-    fn find(&self, unit: TradeoffUnit) -> Result<UnitResult, TradeoffError> {
+    fn find(&self, unit: TradeoffUnit) -> Result<StudyPart, TradeoffError> {
         let (file, scene, tier) = (&self.file, &self.scene, self.plan.tier);
         Ok(match unit {
-            TradeoffUnit::Compared => UnitResult::Compared(self.compared()),
-            TradeoffUnit::Seed(seed) => UnitResult::Seed(self.counts(seed)?),
-            TradeoffUnit::Budgets => UnitResult::Budgets(self.budgets()?),
+            TradeoffUnit::Compared => StudyPart::Compared(self.compared()),
+            TradeoffUnit::Seed(seed) => StudyPart::Seed(self.counts(seed)?),
+            TradeoffUnit::Budgets => StudyPart::Budgets(self.budgets()?),
             TradeoffUnit::Shape(number) => {
                 let shape = &self.shapes[number];
-                UnitResult::Shape(shapes::survival(shape, self.plan.pairs, tier)?)
+                StudyPart::Shape(shapes::survival(shape, self.plan.pairs, tier)?)
             }
-            TradeoffUnit::Pass(seed) => UnitResult::Pass(self.pass(seed)?),
+            TradeoffUnit::Pass(seed) => StudyPart::Pass(self.pass(seed)?),
             TradeoffUnit::NarrowPhase => {
                 let judge = ExactJudge::new(&scene.shapes)?;
-                UnitResult::NarrowPhase(judge.price_of_spheres(
+                StudyPart::NarrowPhase(judge.price_of_spheres(
                     scene,
                     &scene.bodies,
                     tier,
@@ -239,18 +239,18 @@ impl Comparison {
             }
             TradeoffUnit::Clock => {
                 let frames = self.plan.window.min(scene.frames);
-                UnitResult::Clock(budget::by_clock(scene, tier, frames)?)
+                StudyPart::Clock(budget::by_clock(scene, tier, frames)?)
             }
             TradeoffUnit::Interest => {
-                UnitResult::Interest(interest::times(scene, tier, self.plan.samples)?)
+                StudyPart::Interest(interest::times(scene, tier, self.plan.samples)?)
             }
             TradeoffUnit::Density(factor) => {
-                UnitResult::Density(density::at(file, factor, tier, self.samples_of_changed())?)
+                StudyPart::Density(density::at(file, factor, tier, self.samples_of_changed())?)
             }
             TradeoffUnit::Variation(change) => {
-                UnitResult::Variation(vary::varied(file, change, tier, self.samples_of_changed())?)
+                StudyPart::Variation(vary::varied(file, change, tier, self.samples_of_changed())?)
             }
-            TradeoffUnit::Safety => UnitResult::Safety(safety::compare(scene, self.plan.samples)?),
+            TradeoffUnit::Safety => StudyPart::Safety(safety::compare(scene, self.plan.samples)?),
         })
     }
 

@@ -86,14 +86,14 @@ fn corners(ends: &WorldBox) -> String {
 
 /// The overlap of two boxes along an axis, in real arithmetic rounded once, and which of them ends
 /// there.
-struct Along {
+struct AxisOverlap {
     axis: usize,
     depth: f64,
     /// The box that ends and the one that starts, as 0 or 1.
     ends: usize,
 }
 
-impl Along {
+impl AxisOverlap {
     fn of(boxes: &[WorldBox; 2], axis: usize) -> Self {
         let between = |ends: usize| {
             let (end, start) = (boxes[ends][axis + 3], boxes[1 - ends][axis]);
@@ -127,7 +127,7 @@ impl Along {
 
 /// Every axis on which two boxes only touch, or the one on which they overlap least.
 fn axes(boxes: &[WorldBox; 2], pair: [u32; 2]) -> Vec<String> {
-    let mut all = [0, 1, 2].map(|axis| Along::of(boxes, axis));
+    let mut all = [0, 1, 2].map(|axis| AxisOverlap::of(boxes, axis));
     all.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     let touching = all.iter().filter(|along| along.depth == 0.0).count();
     let shown = all.iter().take(touching.max(1));

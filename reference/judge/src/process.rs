@@ -39,9 +39,9 @@ impl Program {
         self.wire.encode(case).map_err(start)
     }
 
-    fn start(&self) -> Result<Running, Trouble> {
+    fn start(&self) -> Result<RunningProgram, Trouble> {
         let start = |e: std::io::Error| Trouble::Start { why: e.to_string() };
-        Running::start(&self.command).map_err(start)
+        RunningProgram::start(&self.command).map_err(start)
     }
 
     /// What it has for a case of so many bytes.
@@ -65,7 +65,7 @@ impl Subject for Program {
 /// replaced, so that a case's end is never taken for the next one's beginning.
 pub struct Service {
     program: Program,
-    idle: Mutex<Vec<Running>>,
+    idle: Mutex<Vec<RunningProgram>>,
 }
 
 impl Service {
@@ -76,7 +76,7 @@ impl Service {
         Self { program, idle }
     }
 
-    fn idle(&self) -> std::sync::MutexGuard<'_, Vec<Running>> {
+    fn idle(&self) -> std::sync::MutexGuard<'_, Vec<RunningProgram>> {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -98,7 +98,7 @@ impl Subject for Service {
 }
 
 /// A process with threads that feed and read it. Dropping it ends it and all that it has started.
-struct Running {
+struct RunningProgram {
     child: Child,
     input: Option<Sender<Vec<u8>>>,
     output: Receiver<Vec<u8>>,
@@ -107,7 +107,7 @@ struct Running {
     bytes: usize,
 }
 
-impl Running {
+impl RunningProgram {
     fn start(command: &str) -> std::io::Result<Self> {
         let mut child = shell(command)
             .stdin(Stdio::piped())
@@ -170,11 +170,11 @@ impl Running {
             let line = match self.line(deadline, most) {
                 Ok(Some(line)) => line,
                 Ok(None) => break,
-                Err(Unread::Flood) => return Err(Trouble::Flood { bytes: most }.into()),
-                Err(Unread::Late) if answers.len() == frames => {
+                Err(LineError::Flood) => return Err(Trouble::Flood { bytes: most }.into()),
+                Err(LineError::Late) if answers.len() == frames => {
                     return Err(Trouble::Hanging { seconds }.into());
                 }
-                Err(Unread::Late) => {
+                Err(LineError::Late) => {
                     let frame = answers.len();
                     return Err(Trouble::Timeout { frame, seconds }.into());
                 }
@@ -220,7 +220,7 @@ impl Running {
     }
 
     /// The next line; `None` at the end of the output.
-    fn line(&mut self, deadline: Instant, most: usize) -> Result<Option<Vec<u8>>, Unread> {
+    fn line(&mut self, deadline: Instant, most: usize) -> Result<Option<Vec<u8>>, LineError> {
         let mut searched = 0;
         loop {
             if let Some(end) = self.buffer[searched..]
@@ -234,7 +234,7 @@ impl Running {
             let left = deadline.saturating_duration_since(Instant::now());
             match self.output.recv_timeout(left) {
                 Ok(chunk) => self.buffer.extend(chunk),
-                Err(RecvTimeoutError::Timeout) => return Err(Unread::Late),
+                Err(RecvTimeoutError::Timeout) => return Err(LineError::Late),
                 Err(RecvTimeoutError::Disconnected) if self.buffer.is_empty() => return Ok(None),
                 Err(RecvTimeoutError::Disconnected) => {
                     return Ok(Some(std::mem::take(&mut self.buffer)));
@@ -242,7 +242,7 @@ impl Running {
             }
             self.bytes += self.buffer.len() - searched;
             if self.bytes > most {
-                return Err(Unread::Flood);
+                return Err(LineError::Flood);
             }
         }
     }
@@ -266,7 +266,7 @@ impl Running {
     }
 }
 
-impl Drop for Running {
+impl Drop for RunningProgram {
     fn drop(&mut self) {
         // The group first: the shell's children are in it. It is this process's own, so it can't be
         // another's.
@@ -279,8 +279,8 @@ impl Drop for Running {
     }
 }
 
-/// The reason why there is no line.
-enum Unread {
+/// Why no line was read.
+enum LineError {
     Late,
     Flood,
 }

@@ -14,7 +14,7 @@ use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes}
 use sdop::volume::{Axes, Origin, Shape, ShapeSpec};
 
 /// A file's name and what is in it.
-pub type Named = (String, Vec<u8>);
+pub type NamedFile = (String, Vec<u8>);
 
 /// A counter-example as a case file (`.ndjson`, with the pairs that were reported, for `sdop view`
 /// and `sdop check`) and, where a scene can state it, as one that `sdop run` takes (`.toml`, and
@@ -22,7 +22,7 @@ pub type Named = (String, Vec<u8>);
 ///
 /// # Errors
 /// A mesh that can't be written: none that was read.
-pub fn counter_example(smallest: &Smallest) -> std::io::Result<Vec<Named>> {
+pub fn counter_example(smallest: &Smallest) -> std::io::Result<Vec<NamedFile>> {
     let mut files = vec![case_file(smallest)?];
     if let Some(axes) = axes_of_scene(&smallest.case) {
         let k = smallest.case.shapes[0].ordop.directions;
@@ -36,7 +36,7 @@ pub fn counter_example(smallest: &Smallest) -> std::io::Result<Vec<Named>> {
 ///
 /// # Errors
 /// As [`counter_example`].
-pub fn case_file(smallest: &Smallest) -> std::io::Result<Named> {
+pub fn case_file(smallest: &Smallest) -> std::io::Result<NamedFile> {
     let case = ndjson::encode(&smallest.case, &smallest.pairs)?;
     Ok((format!("{STEM}.ndjson"), case))
 }
@@ -83,7 +83,7 @@ fn mesh_of(shape: &Shape) -> TriangleMesh {
 /// A case's first frame as a scene file and the meshes that it names: where meshes have their
 /// origins, and the table that says how to cull. Formatting into a String cannot fail.
 #[must_use]
-pub fn scene(case: &Case, origin: &str, cull: &str) -> Vec<Named> {
+pub fn scene(case: &Case, origin: &str, cull: &str) -> Vec<NamedFile> {
     let mut text = format!("name = \"{STEM}\"\nframes = 1\n");
     let bodies = &case.frames[0].bodies;
     for i in 0..bodies.len() {

@@ -42,11 +42,11 @@ pub fn shrink(subject: &dyn Subject, case: &Case, time: Duration) -> Option<Smal
 /// Pairs by frame, sorted.
 pub type Lists = Vec<Vec<[u32; 2]>>;
 
-/// What is wrong with a case, and what is reported of it, frame by frame; `None` when nothing is.
-pub type Wrong<'a> = &'a dyn Fn(&Case) -> Option<(Miss, Lists)>;
+/// Returns what a culler misses in a case, and its pairs frame by frame; `None` if it misses none.
+pub type FailureCheck<'a> = &'a dyn Fn(&Case) -> Option<(Miss, Lists)>;
 
 /// Makes a case smaller while something is wrong with it, for so long at most.
-pub fn shrink_while(case: &Case, time: Duration, wrong: Wrong<'_>) -> Option<Smallest> {
+pub fn shrink_while(case: &Case, time: Duration, wrong: FailureCheck<'_>) -> Option<Smallest> {
     let (miss, pairs) = wrong(case)?;
     let mut search = Search {
         wrong,
@@ -83,7 +83,7 @@ pub fn shrink_while(case: &Case, time: Duration, wrong: Wrong<'_>) -> Option<Sma
 }
 
 struct Search<'a> {
-    wrong: Wrong<'a>,
+    wrong: FailureCheck<'a>,
     deadline: Instant,
     case: Case,
     pairs: Vec<Vec<[u32; 2]>>,

@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::catalogue::{CatalogueError, Group, groups};
-use super::report::Named;
+use super::report::NamedFile;
 use super::truth::Truth;
 use crate::json;
 use crate::ours::judged::InvalidInput;
@@ -56,7 +56,7 @@ pub enum VectorError {
 ///
 /// # Errors
 /// None that the catalogue's own groups cause.
-pub fn files() -> Result<Vec<Named>, VectorError> {
+pub fn files() -> Result<Vec<NamedFile>, VectorError> {
     let mut files = Vec::new();
     for group in groups()? {
         let cases = (0..CASES)

@@ -166,7 +166,7 @@ impl Args {
 ///
 /// # Errors
 /// A file that can't be read or is not a case.
-pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::Read> {
+pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::StoredCase> {
     if path
         .extension()
         .is_some_and(|extension| extension == "aabbs")
@@ -177,7 +177,7 @@ pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::Read> {
         let case = broadmark::read(&bytes).into_diagnostic()?;
         let pairs = vec![None; case.frames.len()];
         let lacks = None;
-        return Ok(ndjson::Read { case, pairs, lacks });
+        return Ok(ndjson::StoredCase { case, pairs, lacks });
     }
     let file = File::open(path)
         .into_diagnostic()

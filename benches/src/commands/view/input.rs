@@ -11,7 +11,7 @@ use sdop_bench::view::ShownRun;
 use sdop_judge::answer::{Answer, Stop, sorted};
 use sdop_judge::ours::hard::Group;
 use sdop_judge::record::RecordError;
-use sdop_judge::wire::{Wire, ndjson::Read};
+use sdop_judge::wire::{Wire, ndjson::StoredCase};
 use sdop_judge::{Case, Claim};
 
 use crate::commands::check::{said, text};
@@ -115,7 +115,7 @@ fn is_claimed(path: &Path, most: u64) -> Option<bool> {
 /// A case with the pairs that its file has or that `answers` has; a line, and the answers, have at
 /// most `most` bytes.
 fn judged((path, most): (&Path, u64), answers: Option<&Path>) -> miette::Result<ShownRun> {
-    let Read { case, pairs, .. } = read_case(path, most)?;
+    let StoredCase { case, pairs, .. } = read_case(path, most)?;
     let given = match answers {
         None => {
             let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });

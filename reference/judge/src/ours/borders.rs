@@ -18,7 +18,7 @@ use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec, VolumeError};
 
 /// Chooses a number below the given one, which is at least 1.
-pub type Choose<'a> = &'a mut dyn FnMut(u32) -> u32;
+pub type NumberChoice<'a> = &'a mut dyn FnMut(u32) -> u32;
 
 /// Bars about their own origins, unturned, at rest.
 #[derive(Clone, Debug)]
@@ -139,7 +139,7 @@ impl Borders {
     }
 
     /// A scene.
-    pub fn draw(choose: Choose<'_>) -> Self {
+    pub fn draw(choose: NumberChoice<'_>) -> Self {
         Draw { choose }.scene()
     }
 }
@@ -203,7 +203,7 @@ impl Plan {
 }
 
 struct Draw<'a> {
-    choose: Choose<'a>,
+    choose: NumberChoice<'a>,
 }
 
 impl Draw<'_> {

@@ -21,14 +21,14 @@ choices! {
     }
 }
 
-/// What a program says to a frame.
+/// A program's answer to a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Said {
+pub enum ProgramAnswer {
     /// Its pairs.
     Answer(Answer),
-    /// That those of the frame before still hold.
+    /// The pairs of the previous frame still hold.
     Same,
-    /// That it can't do this case, and why.
+    /// It skips this case, with its reason.
     Skipped(String),
 }
 
@@ -48,7 +48,7 @@ impl Wire {
     ///
     /// # Errors
     /// An invalid line, or one about another frame.
-    pub fn decode(self, expected: usize, line: &[u8]) -> Result<Said, Trouble> {
+    pub fn decode(self, expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trouble> {
         match self {
             Self::Ndjson => ndjson::decode(expected, line),
             Self::Text => text::decode(expected, line),
@@ -60,15 +60,15 @@ impl Wire {
 ///
 /// # Errors
 /// That it skips the case, or that an answer before the first still holds.
-pub fn book(answers: &mut Vec<Answer>, said: Said, line: &[u8]) -> Result<(), Stop> {
+pub fn book(answers: &mut Vec<Answer>, said: ProgramAnswer, line: &[u8]) -> Result<(), Stop> {
     match said {
-        Said::Answer(answer) => answers.push(answer),
-        Said::Same => {
+        ProgramAnswer::Answer(answer) => answers.push(answer),
+        ProgramAnswer::Same => {
             let last = answers.last().cloned();
             let last = last.ok_or_else(|| malformed(0, line, "no frame comes before the first"))?;
             answers.push(Answer { ns: None, ..last });
         }
-        Said::Skipped(why) => {
+        ProgramAnswer::Skipped(why) => {
             let answered = std::mem::take(answers);
             return Err(Stop::Skipped { why, answered });
         }

@@ -10,7 +10,7 @@ use std::io::BufRead;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{Said, malformed};
+use super::{ProgramAnswer, malformed};
 use crate::answer::{Answer, Trouble};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
@@ -22,19 +22,19 @@ use sdop::bodies::contract::check_bodies;
 use sdop::files::read_line;
 use sdop::volume::Shape;
 
-/// A record's first line with what a case has on top.
+/// A record's first line with the additional fields of a case.
 #[derive(Serialize)]
 struct CaseHeader {
     #[serde(flatten)]
     record: Header,
     #[serde(flatten)]
-    about: About,
+    about: CaseFields,
 }
 
-/// What a case's first line has on top of a record's. It is read on its own, because a number of a
-/// flattened structure would be rounded twice, to f64 and then to f32.
+/// The data of a case's first line that a record's doesn't have. It is read separately, because a
+/// number of a flattened structure would be rounded twice, to f64 and then to f32.
 #[derive(Serialize, Deserialize)]
-struct About {
+struct CaseFields {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     flag: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -91,7 +91,7 @@ pub(crate) fn encode(case: &Case, reported: &[Vec<[u32; 2]>]) -> serde_json::Res
             frames: Some(case.frames.len() as u32),
             ..Header::new(&case.name, 0, &case.shapes, first)
         },
-        about: About {
+        about: CaseFields {
             flag: case.flag.clone(),
             source: case.source.clone(),
             claims: std::iter::once(claim).chain(others).collect(),
@@ -127,12 +127,12 @@ fn changed(bodies: &Bodies, was: &[Option<u32>]) -> Vec<ChangedBody> {
 }
 
 /// A case as read from a file, with the pairs that its frames have.
-pub struct Read {
+pub struct StoredCase {
     /// The case.
     pub case: Case,
     /// The pairs of each frame that has some.
     pub pairs: Vec<Option<Vec<[u32; 2]>>>,
-    /// Which frames aren't there, in words, if some aren't.
+    /// Which frames are missing, in words, if some are.
     pub lacks: Option<String>,
 }
 
@@ -140,7 +140,7 @@ pub struct Read {
 ///
 /// # Errors
 /// An invalid line, with its number and what is wrong.
-pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
+pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
     let lines = std::iter::from_fn(|| {
         let mut line = Vec::new();
         match read_line(&mut input, most, &mut line) {
@@ -156,7 +156,7 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
     };
     let first = first.map_err(|e| format!("line 1: {e}"))?;
     let header: Header = parse(1, &first)?;
-    let About {
+    let CaseFields {
         flag,
         source,
         claims,
@@ -249,7 +249,7 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<Read, String> {
     );
     let lacks = (there == 0 || there < wanted)
         .then(|| format!("the record has {there} of its {} frames", wanted.max(1)));
-    Ok(Read { case, pairs, lacks })
+    Ok(StoredCase { case, pairs, lacks })
 }
 
 fn parse<T: for<'a> Deserialize<'a>>(number: usize, line: &[u8]) -> Result<T, String> {
@@ -295,10 +295,10 @@ struct SameLine {
     same: bool,
 }
 
-pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
+pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trouble> {
     match serde_json::from_slice::<AnswerLine>(line) {
         Ok(AnswerLine { frame, pairs, ns }) if frame == expected as u64 => {
-            Ok(Said::Answer(Answer { pairs, ns }))
+            Ok(ProgramAnswer::Answer(Answer { pairs, ns }))
         }
         Ok(AnswerLine { frame, .. }) => Err(Trouble::OutOfTurn {
             expected,
@@ -309,7 +309,11 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
 }
 
 /// Says what is wrong with a line, or that it skips the case.
-fn diagnose(expected: usize, line: &[u8], error: &serde_json::Error) -> Result<Said, Trouble> {
+fn diagnose(
+    expected: usize,
+    line: &[u8],
+    error: &serde_json::Error,
+) -> Result<ProgramAnswer, Trouble> {
     let value: Value = match serde_json::from_slice(line) {
         Ok(value) => value,
         Err(_)
@@ -324,12 +328,12 @@ fn diagnose(expected: usize, line: &[u8], error: &serde_json::Error) -> Result<S
     if let Ok(SameLine { frame, same: true }) = SameLine::deserialize(&value) {
         let found = frame;
         if found == expected as u64 {
-            return Ok(Said::Same);
+            return Ok(ProgramAnswer::Same);
         }
         return Err(Trouble::OutOfTurn { expected, found });
     }
     if let Some(why) = value.get("skipped") {
-        return Ok(Said::Skipped(
+        return Ok(ProgramAnswer::Skipped(
             why.as_str().map_or_else(|| why.to_string(), str::to_owned),
         ));
     }

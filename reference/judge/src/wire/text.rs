@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Said, malformed};
+use super::{ProgramAnswer, malformed};
 use crate::answer::{Answer, Trouble};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
@@ -120,12 +120,12 @@ fn word(name: &str) -> String {
 }
 
 /// `frame N COUNT I J …`, with `ns TIME` at the end if it likes, or `skip REASON`.
-pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
+pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trouble> {
     let wrong = |why: String| malformed(expected, line, why);
     let text = str::from_utf8(line).map_err(|e| wrong(e.to_string()))?;
     let mut words = text.split_whitespace();
     match words.next() {
-        Some("skip") => return Ok(Said::Skipped(words.collect::<Vec<_>>().join(" "))),
+        Some("skip") => return Ok(ProgramAnswer::Skipped(words.collect::<Vec<_>>().join(" "))),
         Some("frame" | "same") => {}
         _ => {
             return Err(wrong(format!(
@@ -145,7 +145,7 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
         return Err(Trouble::OutOfTurn { expected, found });
     }
     if text.trim_start().starts_with("same") {
-        return Ok(Said::Same);
+        return Ok(ProgramAnswer::Same);
     }
     let count = number("count of pairs")?;
     let mut pairs = Vec::new();
@@ -161,7 +161,7 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<Said, Trouble> {
         Some("ns") => words.next().and_then(|word| word.parse().ok()),
         Some(word) => return Err(wrong(format!("`{word}` follows the {count} pairs"))),
     };
-    Ok(Said::Answer(Answer { pairs, ns }))
+    Ok(ProgramAnswer::Answer(Answer { pairs, ns }))
 }
 
 #[cfg(test)]
@@ -172,7 +172,7 @@ mod tests {
     fn answers_are_read_and_what_is_none_is_refused() {
         let pairs = |line: &str| decode(3, line.as_bytes());
         let answer = |pairs: &[[u32; 2]], ns| {
-            Ok(Said::Answer(Answer {
+            Ok(ProgramAnswer::Answer(Answer {
                 pairs: pairs.to_vec(),
                 ns,
             }))
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(
             [pairs("same 3"), pairs("same 2")],
             [
-                Ok(Said::Same),
+                Ok(ProgramAnswer::Same),
                 Err(Trouble::OutOfTurn {
                     expected: 3,
                     found: 2
@@ -194,7 +194,7 @@ mod tests {
         );
         assert_eq!(
             pairs("skip no such thing"),
-            Ok(Said::Skipped("no such thing".to_owned()))
+            Ok(ProgramAnswer::Skipped("no such thing".to_owned()))
         );
         assert_eq!(
             pairs("frame 2 0"),
