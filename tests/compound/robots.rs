@@ -106,7 +106,9 @@ fn meeting_parts_are_reported() {
             let found = afresh(&scene.world, &scene.compounds);
             assert!(found.is_sorted_by(|a, b| a < b), "sorted, and each once");
             let wanted = scene.truth();
-            let missed = wanted.iter().find(|pair| found.binary_search(pair).is_err());
+            let missed = wanted
+                .iter()
+                .find(|pair| found.binary_search(pair).is_err());
             assert_eq!(missed, None, "missed");
             assert!(wanted.len() > 100, "{} pairs", wanted.len());
             assert!(
