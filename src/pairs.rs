@@ -5,7 +5,7 @@ mod runs;
 mod sort;
 
 pub(crate) use partners::{PartnerPairs, Partners};
-pub(crate) use runs::{Run, Runs};
+pub(crate) use runs::{ROOM, Run, Runs};
 pub(crate) use sort::PairSorter;
 
 use crate::simd::MAX_WIDTH;

@@ -6,11 +6,14 @@
 //! proportion to its length. When many rooms are free, the owner of the lists moves them next to
 //! each other ([`Runs::compact`]), so that memory follows the present lists.
 
+use std::slice::ChunksExact;
+
 use super::bytes;
 use crate::simd::{CACHE_LINE, prefetch};
 
 /// The smallest room of a list that is not empty, in entries.
-const LEAST_ROOM: u32 = 4;
+pub(crate) const ROOM: usize = 4;
+const LEAST_ROOM: u32 = ROOM as u32;
 
 /// A list shrinks to half of its room when it fills at most one in this many entries of it.
 const SHRINK_DIVISOR: u32 = 4;
@@ -82,6 +85,14 @@ impl<T: Copy + Default> Runs<T> {
         &self.items[first..first + run.len()]
     }
 
+    /// The entries of a list in rooms of the smallest size. Those after its last one are any.
+    #[inline(always)]
+    pub fn rooms(&self, run: Run) -> ChunksExact<'_, T> {
+        let first = self.first(run);
+        let end = first + run.len().next_multiple_of(ROOM);
+        self.items[first..end].chunks_exact(ROOM)
+    }
+
     /// Prefetches the first entries of a list, unless it is empty.
     #[inline(always)]
     pub fn prefetch(&self, run: Run) {
@@ -110,10 +121,12 @@ impl<T: Copy + Default> Runs<T> {
         let (start, end) = (self.skipped, self.items.len());
         let offset = self.items.as_ptr().align_offset(CACHE_LINE);
         self.skipped = if offset < per_line { offset } else { 0 };
-        self.items
-            .resize(end.max(end + self.skipped - start), T::default());
-        self.items.copy_within(start..end, self.skipped);
-        self.items.truncate(end + self.skipped - start);
+        if self.skipped != start {
+            let end_now = end + self.skipped - start;
+            self.items.resize(end.max(end_now), T::default());
+            self.items.copy_within(start..end, self.skipped);
+            self.items.truncate(end_now);
+        }
     }
 
     /// Makes room for at least `len` entries of an empty list.

@@ -55,7 +55,7 @@ impl BoxLevel {
     }
 
     /// The name of the cell of a box of this level.
-    pub fn home(&self, aabb: &Aabb) -> u64 {
+    pub fn home(&self, aabb: &Aabb) -> u32 {
         self.name(aabb.min.map(|x| self.cell(f64::from(x))))
     }
 
@@ -69,7 +69,7 @@ impl BoxLevel {
 
     /// Calls `take` with the name of each cell of a range.
     #[inline(always)]
-    pub fn each_name(&self, range: &CellRange, mut take: impl FnMut(u64)) {
+    pub fn each_name(&self, range: &CellRange, mut take: impl FnMut(u32)) {
         let [x, y, z] = range.map(|[first, last]| (first, last.abs_diff(first)));
         for dz in 0..=z.1 {
             for dy in 0..=y.1 {
@@ -81,10 +81,10 @@ impl BoxLevel {
         }
     }
 
-    /// A number that hardly any other cell has; never 0. Cells with the same number share their
+    /// A number that few other cells have; never 0. Cells with the same number share their
     /// boxes, which only costs time.
     #[inline(always)]
-    pub fn name(&self, cell: [i64; 3]) -> u64 {
+    pub fn name(&self, cell: [i64; 3]) -> u32 {
         const FACTORS: [u64; 3] = [
             0x9e37_79b9_7f4a_7c15,
             0xc2b2_ae3d_27d4_eb4f,
@@ -95,7 +95,7 @@ impl BoxLevel {
             sum.wrapping_add((x as u64).wrapping_mul(factor))
         });
         let mixed = (mixed ^ mixed >> 32).wrapping_mul(0xd6e8_feb8_6659_fd93);
-        (mixed ^ mixed >> 29).max(1)
+        ((mixed >> 32) as u32).max(1)
     }
 }
 

@@ -9,7 +9,7 @@ mod levels;
 
 use self::levels::{Levels, cell_count};
 use crate::bodies::{Aabb, Groups, PairRules};
-use crate::pairs::{Run, Runs};
+use crate::pairs::{ROOM, Run, Runs};
 use crate::simd::prefetch;
 
 /// The table of cells is enlarged when more than this share of it is used.
@@ -33,11 +33,12 @@ struct CellEntry {
     tags: u32,
 }
 
-/// A cell of the table.
+/// A cell of the table, within a cache line.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(align(16))]
 struct Cell {
     /// See [`BoxLevel::name`](levels::BoxLevel::name); 0 if there is no cell.
-    name: u64,
+    name: u32,
     boxes: Run,
 }
 
@@ -45,7 +46,7 @@ struct Cell {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct HomeCell {
     /// The cell's name, or 0.
-    cell: u64,
+    cell: u32,
     level: u16,
 }
 
@@ -166,7 +167,7 @@ impl BoxIndex {
 
     /// The position of a cell in the table, or where it would be inserted.
     #[inline(always)]
-    fn find(&self, name: u64) -> usize {
+    fn find(&self, name: u32) -> usize {
         let mask = self.cells.len() - 1;
         let mut at = name as usize & mask;
         loop {
@@ -250,14 +251,19 @@ impl BoxIndex {
         let (mut work, mut first) = (search.runs.len(), 0);
         for (seeker, &(end, is_everywhere)) in seekers.iter().zip(&search.ends) {
             let start = found.len();
+            let hits = &mut search.hits;
+            hits.count = 0;
             if is_everywhere {
                 for cell in &self.cells {
-                    work += self.look_into(cell.boxes, seeker, rules, found);
+                    work += self.look_into(cell.boxes, &seeker.aabb, hits);
                 }
             }
             for &run in &search.runs[std::mem::replace(&mut first, end)..end] {
-                work += self.look_into(run, seeker, rules, found);
+                work += self.look_into(run, &seeker.aabb, hits);
             }
+            let met = &hits.slots_and_tags[..hits.count];
+            let allowed = met.iter().filter(|met| seeker.may_meet(**met, rules));
+            found.extend(allowed.map(|[slot, _]| slot));
             sort_each_once(found, start);
             ends.push(found.len());
         }
@@ -284,32 +290,58 @@ impl BoxIndex {
         search.ends.push((search.names.len(), false));
     }
 
+    /// Appends the boxes of a cell that meet this one, with their tags. Nearly all cells have few
+    /// boxes, so there is no branch that depends on how many, or on which of them meet.
     #[inline(always)]
-    fn look_into(
-        &self,
-        run: Run,
-        seeker: &IndexedBox,
-        rules: PairRules<'_>,
-        found: &mut Vec<u32>,
-    ) -> usize {
-        let Aabb { min, max } = seeker.aabb;
-        for entry in self.boxes.get(run) {
-            let on = |axis: usize| (min[axis] <= entry.max[axis]) & (entry.min[axis] <= max[axis]);
-            if on(0) & on(1) & on(2) && seeker.may_meet(entry, rules) {
-                found.push(entry.slot);
+    fn look_into(&self, run: Run, aabb: &Aabb, hits: &mut Hits) -> usize {
+        let Aabb { min, max } = *aabb;
+        hits.make_room(run.len() + ROOM);
+        let (mut count, entries) = (hits.count, &mut hits.slots_and_tags[..]);
+        for (start, room) in (0..).step_by(ROOM).zip(self.boxes.rooms(run)) {
+            for (at, entry) in (start..).zip(room) {
+                let on = |axis: usize| {
+                    u32::from(min[axis] <= entry.max[axis])
+                        & u32::from(entry.min[axis] <= max[axis])
+                };
+                entries[count] = [entry.slot, entry.tags];
+                count += (on(0) & on(1) & on(2) & u32::from(at < run.len())) as usize;
             }
         }
+        hits.count = count;
         run.len()
+    }
+}
+
+/// The boxes that meet a seeker.
+#[derive(Clone, Debug, Default)]
+struct Hits {
+    /// The first `count` are in use.
+    slots_and_tags: Vec<[u32; 2]>,
+    count: usize,
+}
+
+impl Hits {
+    #[inline(always)]
+    fn make_room(&mut self, more: usize) {
+        if self.slots_and_tags.len() < self.count + more {
+            self.grow(more);
+        }
+    }
+
+    #[cold]
+    fn grow(&mut self, more: usize) {
+        self.slots_and_tags.resize(2 * (self.count + more), [0; 2]);
     }
 }
 
 /// Buffers of searches, kept from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Search {
-    names: Vec<u64>,
+    names: Vec<u32>,
     runs: Vec<Run>,
     /// The end of each seeker's cells, and whether all cells are searched.
     ends: Vec<(usize, bool)>,
+    hits: Hits,
 }
 
 impl Search {
@@ -334,13 +366,14 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
 }
 
 impl IndexedBox {
-    /// Whether a pair with this box is reported if the boxes meet.
-    fn may_meet(&self, other: &CellEntry, rules: PairRules<'_>) -> bool {
-        let are_fixed = self.tags & other.tags & FIXED_TAG != 0;
-        let collide = (self.tags | other.tags) & GROUPED_TAG == 0
-            || rules.groups[self.slot as usize].collide(rules.groups[other.slot as usize]);
-        let may_meet = other.slot != self.slot && !are_fixed && collide;
-        may_meet && !rules.excluded.contains(self.slot, other.slot)
+    /// Whether a pair with another box, of which slot and tags are given, is reported if the boxes
+    /// meet.
+    fn may_meet(&self, [slot, tags]: [u32; 2], rules: PairRules<'_>) -> bool {
+        let are_fixed = self.tags & tags & FIXED_TAG != 0;
+        let collide = (self.tags | tags) & GROUPED_TAG == 0
+            || rules.groups[self.slot as usize].collide(rules.groups[slot as usize]);
+        let may_meet = slot != self.slot && !are_fixed && collide;
+        may_meet && !rules.excluded.contains(self.slot, slot)
     }
 }
 
