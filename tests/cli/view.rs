@@ -390,7 +390,10 @@ fn case_is_shown_with_answers() {
     }
     let scene = "data/scenes/paper-50.toml";
     let message = refusal(&["view", scene, "--answers", text(&answers)]);
-    assert!(message.contains("--answers needs a case or record"), "{message}");
+    assert!(
+        message.contains("--answers needs a case or record"),
+        "{message}"
+    );
     let message = refusal(&["view", text(&case), "--strategy", "sphere"]);
     assert!(message.contains("its poses are given"), "{message}");
 }
