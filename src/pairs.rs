@@ -6,7 +6,7 @@ mod sort;
 
 pub(crate) use partners::{PartnerPairs, Partners};
 pub(crate) use runs::{ROOM, Run, Runs};
-pub(crate) use sort::PairSorter;
+pub(crate) use sort::{PairSorter, key, pair_of};
 
 use crate::simd::MAX_WIDTH;
 

@@ -29,6 +29,8 @@ pub struct PartCuller {
     sets: Vec<Option<PartSet>>,
     bodies: Vec<BodyPair>,
     pairs: Vec<PartPair>,
+    /// Both lists of the call before; the next call fills their memory again.
+    former: (Vec<BodyPair>, Vec<PartPair>),
     are_found: bool,
 }
 
@@ -125,8 +127,11 @@ impl PartCuller {
     /// Finds the pairs of parts of all pairs of bodies. Pairs of bodies that have not changed keep
     /// theirs: both lists are sorted by slots.
     fn find(&mut self, world: &World) {
-        let former_bodies = std::mem::take(&mut self.bodies);
-        let former_pairs = std::mem::take(&mut self.pairs);
+        std::mem::swap(&mut self.bodies, &mut self.former.0);
+        std::mem::swap(&mut self.pairs, &mut self.former.1);
+        self.bodies.clear();
+        self.pairs.clear();
+        let (former_bodies, former_pairs) = &self.former;
         let mut former = former_bodies.iter().peekable();
         let mut start = 0;
         let (mut first, mut second, mut placed) = (None, None, None);

@@ -21,6 +21,16 @@ pub(crate) struct PairSorter {
     keys: Vec<u64>,
 }
 
+/// A pair as one number, in the order of pairs.
+pub(crate) fn key([first, second]: [u32; 2]) -> u64 {
+    u64::from(first) << 32 | u64::from(second)
+}
+
+/// The pair of a [`key`].
+pub(crate) fn pair_of(key: u64) -> [u32; 2] {
+    [(key >> 32) as u32, key as u32]
+}
+
 impl PairSorter {
     /// Bytes that the buffers hold.
     pub fn bytes(&self) -> usize {
@@ -58,6 +68,7 @@ impl PairList {
         for &first in self.first() {
             places[first as usize] += 1;
         }
+        let has_long_list = places.iter().any(|&count| count > MOST_BY_INSERTION as u32);
         let mut start = 0;
         for place in &mut *places {
             start += std::mem::replace(place, start);
@@ -66,13 +77,16 @@ impl PairList {
         keys.resize(self.len, 0);
         for [i, j] in self.iter() {
             let place = &mut places[i as usize];
-            keys[*place as usize] = u64::from(i) << 32 | u64::from(j);
+            keys[*place as usize] = key([i, j]);
             *place += 1;
+        }
+        if has_long_list {
+            sort_long_lists(keys, places);
         }
         sort_nearly_sorted(keys);
         let columns = self.first.iter_mut().zip(&mut self.second);
         for (&key, (first, second)) in keys.iter().zip(columns) {
-            (*first, *second) = ((key >> 32) as u32, key as u32);
+            [*first, *second] = pair_of(key);
         }
     }
 
@@ -110,8 +124,21 @@ impl PairList {
     }
 }
 
-/// Sorts keys of which each is near its place. The first pass has no branch that depends on them,
-/// and leaves few keys that have to move.
+/// Sorts those lists of keys, of which the ends are given, that are too long for insertion: a body
+/// as large as the ground meets nearly all others.
+#[cold]
+fn sort_long_lists(keys: &mut [u64], ends: &[u32]) {
+    let mut start = 0;
+    for end in ends.iter().map(|&end| end as usize) {
+        if end - start > MOST_BY_INSERTION {
+            keys[start..end].sort_unstable();
+        }
+        start = end;
+    }
+}
+
+/// Sorts keys of which each is fewer than [`MOST_BY_INSERTION`] places from its own. The first pass
+/// has no branch that depends on them, and leaves few keys that have to move.
 fn sort_nearly_sorted(keys: &mut [u64]) {
     let Some((&first, _)) = keys.split_first() else {
         return;
@@ -132,6 +159,7 @@ fn sort_nearly_sorted(keys: &mut [u64]) {
             keys[at] = keys[at - 1];
             at -= 1;
         }
+        debug_assert!(end - at < MOST_BY_INSERTION, "{} places", end - at);
         keys[at] = key;
     }
 }
@@ -157,6 +185,22 @@ mod tests {
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
     use super::*;
+
+    /// One body that meets nearly all others costs no insertion of each.
+    #[test]
+    fn long_lists_of_few_pairs_are_sorted() {
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let mut partners: Vec<u32> = (8..3000).collect();
+        for at in 1..partners.len() {
+            partners.swap(at, random.next_u32() as usize % (at + 1));
+        }
+        let of_ground = partners.iter().map(|&partner| [7, partner]);
+        let others = (8..2900).map(|body| [body, body + 1]);
+        let mut list: PairList = others.chain(of_ground).collect();
+        let wanted = list.sorted();
+        list.sort(3000, &mut PairSorter::default());
+        assert!(list.iter().eq(wanted));
+    }
 
     #[test]
     fn lists_are_sorted_by_both_numbers() {

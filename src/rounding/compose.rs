@@ -5,7 +5,7 @@
 //! quaternions and the translation R(q)tₚ + t. The second is computed in f64 with the bound of
 //! [`OFFSET_ERROR`](super::pose::OFFSET_ERROR). The first is rounded to f32 again, so that every
 //! volume and test has a pose as its bounds assume, and the part is grown by the distance that its
-//! points may move ([`TURN_ERROR`]). Theorem V of `paper/proofs/LEMMAS.md`.
+//! points may move ([`TURN_ERROR`]). Theorem D of `paper/proofs/LEMMAS.md`.
 
 use super::exp2;
 

@@ -4,10 +4,9 @@ use std::iter::Peekable;
 use std::sync::Arc;
 
 use super::BodyId;
-use super::found_order::{key, pair_of};
 use super::pair_log::{PairIds, WorldPairs};
 use super::reported::Reported;
-use crate::pairs::Partners;
+use crate::pairs::{Partners, key, pair_of};
 
 /// Changes are listed if they are at most about one in this number of pairs of both culls.
 const LISTED_SHARE: usize = 2;
@@ -149,11 +148,7 @@ fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> 
     let [begun, ended] = if std::ptr::eq(before, now) {
         Default::default()
     } else {
-        let aligned = are_of_one_time.then(|| Reported::changes_in_found_order(before, now));
-        match aligned.flatten() {
-            Some(changes) => changes,
-            None => changes_in_order(before, now, are_of_one_time, most)?,
-        }
+        changes_in_order(before, now, are_of_one_time, most)?
     };
     // Bodies are looked up at the end, because that misses the caches.
     let named = |keys: Vec<u64>, reported: &Reported| {

@@ -42,7 +42,6 @@ mod error;
 mod events;
 #[cfg(feature = "shapes")]
 mod excluded;
-mod found_order;
 mod ids;
 mod live_pairs;
 #[cfg(feature = "shapes")]

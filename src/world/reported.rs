@@ -1,9 +1,8 @@
-//! The pairs of one cull: in the order in which they were found until they are first read, sorted
-//! from then on. A caller who reads events alone needs no sorted list.
+//! The pairs of one cull: in the order in which they were found until they or their events are
+//! first read, sorted from then on.
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use super::found_order;
 use crate::pairs::{PairList, PairSorter};
 
 /// The pairs of one cull by slot, with the generations of slots at that time.
@@ -88,15 +87,6 @@ impl Reported {
             self.generation.clone()
         };
         Self::sorted(slots, generation)
-    }
-
-    /// The keys of the pairs that have begun and ended from one cull to a later one, if neither is
-    /// sorted yet and both were found in nearly the same order.
-    pub(super) fn changes_in_found_order(before: &Self, now: &Self) -> Option<[Vec<u64>; 2]> {
-        // The older list is locked first, wherever two are.
-        let (before_list, now_list) = (lock(&before.found), lock(&now.found));
-        let are_unread = before_list.len() == before.len && now_list.len() == now.len;
-        are_unread.then(|| found_order::changes(&before_list, &now_list))?
     }
 }
 

@@ -1,6 +1,7 @@
 //! A run as a page: one HTML file that shows it without network, `sdop view`.
 //!
-//! > record, scene or hard case → [`ShownRun`] → pairs with their flags ([`pairs`]), meshes to draw ([`detail`]), T ([`terms`]) → [`Page`]
+//! > record, scene or hard case → [`ShownRun`] → pairs with their flags ([`pairs`]), meshes to
+//! > draw ([`detail`]), T ([`terms`]) → [`Page`]
 //!
 //! The page is `web/dist/page.html`, made from the TypeScript in `web/` and committed, with a run's
 //! data at its mark: a JSON header and blocks of little-endian numbers in base64 ([`page`]). Poses
