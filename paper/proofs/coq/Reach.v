@@ -333,8 +333,10 @@ Proof.
   destruct (world_ball_contains gradual gradual64 V V64 _ _ _ _ Qa' Fa Ta Xa Ya) as (A0 & A1).
   destruct (world_ball_contains gradual gradual64 V V64 _ _ _ _ Qb' Fb Tb Xb Yb) as (B0 & B1).
   unfold sphere in H. cbn [inflation pose32 pose64 gradually] in H.
-  set (ballA := world_ball _ _ _ _ _ _) in *.
-  set (ballB := world_ball _ _ (Rejected.turn (bin k b)) _ _ _) in *.
+  set (ballA := world_ball gradual gradual64 (Rejected.turn (bin k a)) (place (bin k a))
+    (centre (shape (bin k a))) (radius (shape (bin k a)))) in *.
+  set (ballB := world_ball gradual gradual64 (Rejected.turn (bin k b)) (place (bin k b))
+    (centre (shape (bin k b))) (radius (shape (bin k b)))) in *.
   cbn [bin Rejected.turn place shape centre radius] in *.
   assert (Far : radius ballA + radius ballB + room < distance (centre ballA) (centre ballB)).
   { apply Rnot_le_lt. intro N.

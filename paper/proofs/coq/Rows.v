@@ -11,7 +11,7 @@ Definition moved (c s : cell) : cell :=
 Definition reversed (s : cell) : cell := {| cx := - cx s; cy := - cy s; cz := - cz s |}.
 Definition is_step (s : cell) : Prop := -1 <= cx s <= 1 /\ -1 <= cy s <= 1 /\ -1 <= cz s <= 1.
 Lemma same_cell (a b : cell) : {a = b} + {a <> b}.
-Proof. decide equality; apply Z.eq_dec. Qed.
+Proof. decide equality; apply Z.eq_dec. Defined.
 Definition origin : cell := {| cx := 0; cy := 0; cz := 0 |}.
 
 (* src/broad_phase/grid/cells.rs: FORWARD_ROWS; near.rs: the next cell, and rows of three. *)
@@ -26,23 +26,29 @@ Proof.
   repeat (destruct H as [<- | H]); [.. | destruct H]; cbn; split; try lia; discriminate.
 Qed.
 
-Ltac cases H := let x := fresh in
-  assert (x : forall i, -1 <= i <= 1 -> i = -1 \/ i = 0 \/ i = 1) by lia;
-  destruct (x _ (proj1 H)) as [? | [? | ?]], (x _ (proj1 (proj2 H))) as [? | [? | ?]],
-    (x _ (proj2 (proj2 H))) as [? | [? | ?]]; clear x.
-
 (* Of a step and its reverse one is among them, and not both. *)
+Definition every_step : list cell :=
+  flat_map (fun x => flat_map (fun y => map (fun z => {| cx := x; cy := y; cz := z |}) [-1; 0; 1])
+    [-1; 0; 1]) [-1; 0; 1].
+Definition is_taken (s : cell) : bool := if in_dec same_cell s steps then true else false.
+
+Lemma every_step_halved :
+  forallb (fun s => if same_cell s origin then true
+    else eqb (is_taken s) (negb (is_taken (reversed s)))) every_step = true.
+Proof. vm_compute. reflexivity. Qed.
+
 Lemma half_of_steps (s : cell) :
   is_step s -> s <> origin -> (In s steps <-> ~ In (reversed s) steps).
 Proof.
-  intros H N. destruct s as [x y z]. unfold is_step in H. cbn in H.
-  cases H; subst; unfold reversed; cbn; (split; [intros I J | intro J]);
-    repeat match goal with
-    | I : _ \/ _ |- _ => destruct I as [I | I]
-    | I : False |- _ => destruct I
-    | I : @eq cell _ _ |- _ => try discriminate I; clear I
-    end;
-    try (exfalso; apply N; reflexivity); try (intuition (discriminate || reflexivity)).
+  intros H N. pose proof every_step_halved as E. rewrite forallb_forall in E.
+  assert (I : In s every_step).
+  { destruct s as [x y z]. unfold is_step in H. cbn [cx cy cz] in H. unfold every_step.
+    apply in_flat_map. exists x. split; [cbn; lia |]. apply in_flat_map. exists y.
+    split; [cbn; lia |]. apply in_map_iff. exists z. split; [reflexivity | cbn; lia]. }
+  specialize (E s I). destruct (same_cell s origin); [contradiction |].
+  unfold is_taken in E.
+  destruct (in_dec same_cell s steps), (in_dec same_cell (reversed s) steps); cbn in E;
+    try discriminate; tauto.
 Qed.
 
 (* Cells::lay_out_box, Cells::index: u32 without wrapping, as smt/slots.py has it. *)

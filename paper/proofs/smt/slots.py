@@ -178,7 +178,8 @@ def box_runs(wrong):
     the first entry of a row before it, and the end of the third."""
     last, reach, cell, row = (word(name) for name in ["last", "reach", "cell", "row"])
     table = last.wide() + reach.wide() + (1 if wrong else 2)
-    given = [last <= (1 << 31), reach <= (1 << 31), cell <= last, row <= reach, number(1, 32) < row]
+    most = 6 * MOST_BODIES + 512  # Cells::fit
+    given = [last.wide() + reach.wide() <= most, cell <= last, row <= reach, number(1, 32) < row]
     at = (cell + row).wide()
     return given, all_of(cell.wide() + 2 <= table, at > 0, at + 2 <= table)
 
