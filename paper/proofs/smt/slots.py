@@ -156,7 +156,7 @@ def wrapped_table(wrong):
 
 def wrapped_runs(wrong):
     """near.rs: Grid::wrapped; across.rs. One run or two are the entries of cells next to each other
-    along a row, wherever the table ends, and `starts`, one longer than the table, has their ends."""
+    along a row, wherever the table ends; `starts`, one longer than the table, has their ends."""
     mask, cell, row, span, entry = (word(name) for name in ["mask", "cell", "row", "span", "entry"])
     table = mask.wide() + 1
     at = ((cell + row - 1) & mask).wide()
@@ -168,7 +168,7 @@ def wrapped_runs(wrong):
     cells = [all_of(number(i, 32) < span, entry.equals((cell + row - 1 + i) & mask))
              for i in range(WRAPPED_SPAN)]
     given = [is_power_of_two(table), number(63, 32) <= mask, mask <= (1 << 30) - 1, cell <= mask,
-             number(1, 32) <= span, span <= WRAPPED_SPAN, entry <= mask if not wrong else entry <= mask + 1]
+             number(1, 32) <= span, span <= WRAPPED_SPAN, entry <= mask]
     bounds = all_of(first_end <= table, any_of(end <= table, end - table <= table))
     return given, all_of(same(in_runs, any_of(*cells)), bounds)
 
