@@ -358,9 +358,9 @@ Proof.
   apply decision with (X := px way) (Y := py way) (Z := pz way) (P := P);
     try apply difference_above; try apply gradual_valid.
   - unfold P. rewrite floor_value. lra.
-  - change (square way <= (P + slack) * (P + slack)). rewrite <- norm_square.
+  - change (square way <= (P + room) * (P + room)). rewrite <- norm_square.
     pose proof (norm_nonneg way). unfold distance in Near. fold way in Near.
-    apply Rmult_le_compat; unfold slack; lra.
+    pose proof slack_in_room. apply Rmult_le_compat; lra.
   - rewrite gradual_add. assert (L : 0 <= la + lb) by (unfold u in *; lra).
     pose proof (nearest32_below _ L) as B. unfold P. rewrite floor_value. unfold u in *. lra.
 Qed.
