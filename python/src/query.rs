@@ -35,9 +35,9 @@ pub struct QueryIndex(Mutex<sdop::QueryIndex>);
 #[derive(FromPyObject)]
 enum AnyWorld<'py> {
     #[pyo3(annotation = "World")]
-    Bodies(PyRef<'py, World>),
+    Bodies(Bound<'py, World>),
     #[pyo3(annotation = "BoxWorld")]
-    Boxes(PyRef<'py, BoxWorld>),
+    Boxes(Bound<'py, BoxWorld>),
 }
 
 /// Rows of a query's number and a body's id, and the hits' parameters.
@@ -57,11 +57,11 @@ impl QueryIndex {
     fn update(&self, py: Python<'_>, world: AnyWorld<'_>) {
         match &world {
             AnyWorld::Bodies(world) => {
-                let world = &world.0;
+                let world = &world.get().0;
                 locked(py, &self.0, |index| index.update(&*lock(world)));
             }
             AnyWorld::Boxes(world) => {
-                let world = &world.0;
+                let world = &world.get().0;
                 locked(py, &self.0, |index| index.update(&*lock(world)));
             }
         }
