@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use sdop::mesh::ReadOptions;
 use sdop::{Axes, DirectionSet, Origin, ShapeSpec, TriangleMesh};
-use sdop_judge::ours::judged::Shapes;
+use sdop_judge::ours::reference_shapes::Shapes;
 use sdop_reference as reference;
 
 use super::arrays::{matrix, whole_rows, wide_rows};
