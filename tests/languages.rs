@@ -99,7 +99,7 @@ fn queries_have_pythons_hash() {
         radius: f64::from(i % 9),
     });
     let answers = index.touching_all(&balls.collect::<Vec<_>>()).unwrap();
-    let rows = (0..).zip(answers.iter());
+    let (rows, numbers) = ((0..).zip(answers.iter()), &numbers);
     let rows: Vec<_> = rows
         .flat_map(|(query, found)| found.iter().flat_map(move |id| [query, numbers[id]]))
         .collect();
