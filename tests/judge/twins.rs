@@ -318,7 +318,7 @@ impl Contestant for Listed {
 }
 
 #[test]
-fn lists_that_are_kept_too_long_are_caught() {
+fn overdue_lists_are_caught() {
     let run = |group: &str, renewal| {
         let make = move |_: &Scene<'_>| Listed {
             renewal,
