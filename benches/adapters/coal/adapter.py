@@ -21,7 +21,7 @@ class Adapter(ObjectCuller):
             it = coal.CollisionObject(shape)
             put_in = self.manager.registerObject
         else:
-            it.setCollisionGeometry(shape)
+            it.setCollisionGeometry(shape, True)
             put_in = self.manager.update
         it.setTranslation(centre)
         it.computeAABB()

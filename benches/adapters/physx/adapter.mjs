@@ -5,10 +5,11 @@ import initialise from "physx-js-webidl";
 import { CaseSkipped, centresAndHalves, serve } from "../wire.mjs";
 
 const px = await initialise();
-const version = px.PHYSICS_VERSION;
-const foundation = px.CreateFoundation(version, new px.PxDefaultAllocator(), new px.PxDefaultErrorCallback());
+const top = px.PxTopLevelFunctions.prototype;
+const version = top.PHYSICS_VERSION;
+const foundation = top.CreateFoundation(version, new px.PxDefaultAllocator(), new px.PxDefaultErrorCallback());
 const scale = new px.PxTolerancesScale();
-const physics = px.CreatePhysics(version, foundation, scale);
+const physics = top.CreatePhysics(version, foundation, scale);
 const material = physics.createMaterial(0.5, 0.5, 0);
 const [at, turn] = [new px.PxVec3(0, 0, 0), new px.PxQuat(0, 0, 0, 1)];
 const pose = new px.PxTransform(at, turn);
@@ -38,8 +39,8 @@ await serve("physx-js-webidl", ({ boxes, objects, gone, kept }) => {
 
 function empty() {
   const desc = new px.PxSceneDesc(scale);
-  desc.cpuDispatcher = px.DefaultCpuDispatcherCreate(0);
-  desc.filterShader = px.DefaultFilterShader();
+  desc.cpuDispatcher = top.DefaultCpuDispatcherCreate(0);
+  desc.filterShader = top.DefaultFilterShader();
   const scene = physics.createScene(desc);
   px.destroy(desc);
   return scene;
