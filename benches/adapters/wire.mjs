@@ -42,7 +42,7 @@ function asked(found, bodies) {
   return [...seen.values()];
 }
 
-/** Gives each body of the new set the library's object that it had, and lists those of the others. */
+/** Carries the objects of bodies that stay to their new numbers, and lists those of the others. */
 function change(head, bodies) {
   const stay = new Set(bodies.map(({ was }) => was));
   head.gone.push(...head.objects.filter((object, number) => object !== undefined && !stay.has(number)));

@@ -95,6 +95,11 @@ def centres_and_halves(boxes: Array, dtype: type = np.float64) -> tuple[Array, A
     return centres, halves
 
 
+def cover(kept: Array, halves: Array) -> bool:
+    """Whether half sides that a library has are those of a box, or larger by rounding alone."""
+    return bool(((kept >= halves) & (kept <= halves * (1.0 + 2.0**-20))).all())
+
+
 def serve(make: type[Culler], package: str) -> None:
     """Answers cases on standard input, in the encoding ndjson, until it ends. With `--version`,
     prints the version of a package."""

@@ -1,5 +1,5 @@
-// Jolt by its WebAssembly port: BroadPhaseQuery.CollideAABox, with a box shape per body in one system
-// for all frames. Each body may have an object layer of its own, by which pairs are filtered.
+// Jolt by its WebAssembly port: BroadPhaseQuery.CollideAABox, with a box shape per body in one
+// system for all frames. Filters are object layers, one per body.
 
 import initialise from "jolt-physics/wasm-compat";
 import { CaseSkipped, centresAndHalves, serve } from "../wire.mjs";

@@ -9,7 +9,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import numpy as np
 import pybullet
-from wire import ObjectCuller, centres_and_halves, serve
+from wire import ObjectCuller, centres_and_halves, cover, serve
 
 WORLD = None if "--version" in sys.argv else pybullet.connect(pybullet.DIRECT)
 CONTACTS = "contacts" in sys.argv
@@ -22,9 +22,17 @@ class Adapter(ObjectCuller):
         super().__init__(scene)
         pybullet.resetSimulation()
 
+    def frame(self, boxes):
+        if self.given.get("restore"):
+            pybullet.restoreState(self.saved)
+        pairs = super().frame(boxes)
+        if self.given.get("save"):
+            self.saved = pybullet.saveState()
+        return pairs
+
     def placed(self, it, box):
         (centre,), (half,) = centres_and_halves(box[None], np.float32)
-        if it is not None and (it[1] == half).all():
+        if it is not None and cover(it[1], half):
             pybullet.resetBasePositionAndOrientation(it[0], centre.tolist(), [0, 0, 0, 1])
             return it
         if it is not None:

@@ -7,7 +7,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import fcl
 import numpy as np
-from wire import CaseSkipped, ObjectCuller, centres_and_halves, serve
+from wire import CaseSkipped, ObjectCuller, centres_and_halves, cover, serve
 
 
 class Adapter(ObjectCuller):
@@ -25,7 +25,7 @@ class Adapter(ObjectCuller):
 
     def placed(self, it, box):
         (centre,), (half,) = centres_and_halves(box[None])
-        if it is not None and (it[1] == half).all():
+        if it is not None and cover(it[1], half):
             it[0].setTranslation(centre + 0.0)
             self.manager.update(it[0])
             return it

@@ -1,5 +1,5 @@
-// rapier by its WebAssembly port: World.collidersWithAabbIntersectingAabb, with a cuboid per body in
-// one world for all frames, which is saved and restored when the judge says so.
+// rapier by its WebAssembly port: World.collidersWithAabbIntersectingAabb, with a cuboid per body
+// in one world for all frames, which is saved and restored when the judge says so.
 
 import rapier from "@dimforge/rapier3d-compat";
 import { centresAndHalves, serve } from "../wire.mjs";

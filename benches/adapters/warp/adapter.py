@@ -1,5 +1,5 @@
-"""warp on the CPU: a Bvh of given boxes, refitted while their number stays, and one query for each of
-them."""
+"""warp on the CPU: a Bvh of given boxes, refitted while their number stays, and one query for each
+of them."""
 
 import sys
 from pathlib import Path

@@ -114,7 +114,11 @@ impl Claims {
     /// command.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut claims: Self = toml::from_str(text).map_err(|error| error.to_string())?;
-        claims.adapter = claims.adapter.into_iter().flat_map(Adapter::split).collect();
+        claims.adapter = claims
+            .adapter
+            .into_iter()
+            .flat_map(Adapter::split)
+            .collect();
         let is_unknown = |adapter: &&Adapter| !claims.run.contains_key(&adapter.language);
         match claims.adapter.iter().find(is_unknown) {
             None => Ok(claims),

@@ -6,8 +6,8 @@
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 
-use super::{Board, Row};
 use super::speed::{SELF_REPORTED, Speed};
+use super::{Board, Row};
 use crate::report::digits::thousands;
 use crate::view::Page;
 
