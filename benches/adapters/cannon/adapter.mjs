@@ -20,6 +20,7 @@ await serve("cannon-es", ({ boxes, bodies, groups, excluded, objects, gone, kept
   });
   const numbers = new Map(objects.map((body, number) => [body, number]));
   const [first, second] = [[], []];
+  kept.world.broadphase.dirty = true; // as its own step does after it has moved bodies
   kept.world.broadphase.collisionPairs(kept.world, first, second);
   return first.map((body, n) => [numbers.get(body), numbers.get(second[n])]);
 });
