@@ -4,7 +4,7 @@
 use super::PeriodicError;
 use super::images::{ImageWorld, PlacedBody, Placement};
 use super::periods::Periods;
-use crate::rounding::period::{MOST_PERIODS, shifted, wrap};
+use crate::rounding::period::{shifted, wrap};
 use crate::rounding::query::largest;
 use crate::rounding::{exp2, up};
 use crate::world::{Body, BodyId, World, WorldError, WorldPairs, compose};

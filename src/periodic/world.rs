@@ -251,6 +251,10 @@ impl<W: ImageWorld> Periodic<W> {
             }
         }
         self.bodies[slot] = placed;
+        self.note(slot);
+    }
+
+    fn note(&mut self, slot: usize) {
         if !std::mem::replace(&mut self.is_changed[slot], true) {
             self.changed.push(slot as u32);
         }
@@ -258,9 +262,8 @@ impl<W: ImageWorld> Periodic<W> {
 
     /// Places the images of all bodies that have changed.
     fn place_changed(&mut self) -> Result<(), WorldError> {
-        if self.are_all_changed {
-            self.changed = self.slots_of_bodies().map(|slot| slot as u32).collect();
-            self.are_all_changed = false;
+        if std::mem::take(&mut self.are_all_changed) {
+            (0..self.images.len()).for_each(|slot| self.note(slot));
         }
         for number in 0..self.changed.len() {
             let slot = self.changed[number] as usize;

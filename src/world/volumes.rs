@@ -11,13 +11,10 @@ pub(crate) use super::offset::compose;
 pub(crate) type ShapeVolumes<'a> = (&'a OrDop, &'a ShapeFrame, [f64; 3]);
 
 impl World {
-    /// The ball about a shape: its centre relative to the point that poses place, and its radius.
+    /// The ball about a present shape: its centre relative to the point that poses place, and its
+    /// radius.
     pub(crate) fn ball(&self, shape: u32) -> ([f64; 3], f64) {
-        let shape = shape as usize;
-        let (_, frame) = self.culler.volumes(self.models[shape]);
-        let (centre, offset) = (frame.centre(), self.shapes[shape].pose_offset);
-        let centre = [0, 1, 2].map(|axis| f64::from(centre[axis]) + offset[axis]);
-        (centre, frame.radius().into())
+        self.shapes[shape as usize].ball
     }
 
     /// The volumes of each shape number, or `None` if it is free.

@@ -51,7 +51,7 @@ fn rounded_images_touch() {
         let shape = cube(side as f32);
         let offset = (random.below(81) as f64 - 40.0) * step;
         let low = -half + offset;
-        let high = low + period - side;
+        let high = half + (offset - side);
         let exact = (low + half == offset) && (high - half == offset - side);
         if !exact {
             continue;

@@ -66,7 +66,8 @@ fn drift(at: &mut [f64; 3], periods: [Option<f64>; 3], random: &mut Random) {
 #[test]
 fn boxes_meet_as_laid_out() {
     let mut random = Random(4);
-    for (periods, sizes) in subsets([6.0, 7.0, 8.0]).zip([[8, 64], [64, 65]].into_iter().cycle()) {
+    for (periods, sizes) in subsets([6.0, 7.0, 8.0]).zip([[8, 250], [128, 129]].into_iter().cycle())
+    {
         let n = 600;
         let shifts = shifts(periods);
         let mut at: Vec<[f64; 3]> = (0..n)

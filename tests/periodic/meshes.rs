@@ -22,7 +22,12 @@ fn shapes(directions: DirectionSet) -> Vec<Shape> {
             radius: 0.5,
             subdivisions: 1,
         },
-        ProceduralShape::default_of("l-shape").unwrap(),
+        ProceduralShape::LShape {
+            x: 1.0,
+            y: 0.75,
+            arm: 0.25,
+            thickness: 0.5,
+        },
     ];
     let spec = ShapeSpec {
         directions,
