@@ -52,7 +52,7 @@ impl ImageWorld for World {
         }
         let (centre, radius) = self.ball(body.shape);
         let (middle, error) = compose(body.rotation, wrapped, centre);
-        // Twice the bound for the sum that is the centre, twice again for roundings of the sum here.
+        // Twice the bound for the sum that is the centre, and again for roundings of the sum here.
         let radius = radius + f64::from(body.margin) + 4.0 * error;
         for (axis, period) in periods.iter() {
             let half = (radius + PLACE_ERROR * period) * SIZE_FACTOR;

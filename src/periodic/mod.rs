@@ -1,8 +1,8 @@
 //! Worlds in which space repeats along some axes: molecular dynamics, grains in a periodic cell,
 //! tilings.
 //!
-//! [`PeriodicWorld`] has posed meshes, [`PeriodicBoxes`] boxes with ends in f64. Each of the axes x,
-//! y and z may have a period. A body may be anywhere, also many periods away, and has images
+//! [`PeriodicWorld`] has posed meshes, [`PeriodicBoxes`] boxes with ends in f64. Each of the axes
+//! x, y and z may have a period. A body may be anywhere, also many periods away, and has images
 //! everywhere: copies moved by whole periods. A pair is reported if any image of the one may touch
 //! the other, once, with the number of periods by which the second body is moved to do so
 //! ([`PeriodicPair::image`]).

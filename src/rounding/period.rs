@@ -17,13 +17,13 @@ pub const PERIOD_LIMITS: [f64; 2] = [exp2(-56), exp2(56)];
 /// a few periods more, are an `i32`.
 pub const MOST_PERIODS: f64 = exp2(28);
 
-/// 2⁻⁵²: the error of [`shifted`], in periods and per period that it shifts by, and one more. With ε
-/// = 2⁻⁵³, the product n·p is off by ε|n|p at most, the sum of that and |x| ≤ p/2 by ε(|n| + ½ +
+/// 2⁻⁵²: the error of [`shifted`], in periods and per period that it shifts by, and one more. With
+/// ε = 2⁻⁵³, the product n·p is off by ε|n|p at most, the sum of that and |x| ≤ p/2 by ε(|n| + ½ +
 /// ε|n|)p.
 pub const SHIFT_ERROR: f64 = exp2(-52);
 
-/// x as rest + n·period, without an error: n is whole, and |rest| is at most half of the period. |x|
-/// is at most [`MOST_PERIODS`] periods.
+/// x as rest + n·period, without an error: n is whole, and |rest| is at most half of the period.
+/// |x| is at most [`MOST_PERIODS`] periods.
 #[must_use]
 pub fn wrap(x: f64, period: f64) -> (f64, i32) {
     let half = 0.5 * period;
