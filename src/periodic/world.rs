@@ -172,7 +172,8 @@ impl<W: ImageWorld> Periodic<W> {
     /// # Errors
     /// A body that has been removed.
     pub fn exclude(&mut self, a: BodyId, b: BodyId) -> Result<bool, PeriodicError> {
-        (self.slot(a)?, self.slot(b)?);
+        self.slot(a)?;
+        self.slot(b)?;
         Ok(self.world.set_excluded([a, b], true)?)
     }
 
@@ -181,7 +182,8 @@ impl<W: ImageWorld> Periodic<W> {
     /// # Errors
     /// A body that has been removed.
     pub fn include(&mut self, a: BodyId, b: BodyId) -> Result<bool, PeriodicError> {
-        (self.slot(a)?, self.slot(b)?);
+        self.slot(a)?;
+        self.slot(b)?;
         Ok(self.world.set_excluded([a, b], false)?)
     }
 
@@ -289,8 +291,8 @@ impl<W: ImageWorld> Periodic<W> {
         let near = self.near_borders(&place);
         let mut former = std::mem::take(&mut self.ghosts[slot]);
         let mut placed = Vec::new();
-        let axes = (1..8_u8).filter(|axes| axes & !near == 0);
-        let outcome = axes.into_iter().try_for_each(|axes| {
+        let mut axes = (1..8_u8).filter(|axes| axes & !near == 0);
+        let outcome = axes.try_for_each(|axes| {
             let image = Image::new(id, axes, &place);
             let ghost = match former.pop() {
                 Some(ghost) => {
