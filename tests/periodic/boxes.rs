@@ -153,7 +153,7 @@ fn histories_give_exact_pairs() {
             }
         }
     }
-    assert!(all > 30_000 && 2 * across > all, "{across} of {all}");
+    assert!(all > 10_000 && 2 * across > all, "{across} of {all}");
 }
 
 /// Other periods are other pairs, and where a box is too large for them nothing changes.
