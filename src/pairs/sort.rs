@@ -188,7 +188,7 @@ mod tests {
 
     /// One body that meets nearly all others costs no insertion of each.
     #[test]
-    fn long_lists_of_few_pairs_are_sorted() {
+    fn short_lists_of_long_runs_sort() {
         let mut random = ChaCha8Rng::seed_from_u64(2);
         let mut partners: Vec<u32> = (8..3000).collect();
         for at in 1..partners.len() {

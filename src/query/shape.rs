@@ -3,7 +3,7 @@
 //! Supports are bounded from the slabs alone, by the multipliers of `overlap/ordop/support.rs`
 //! (lemma L7), here for one direction at a time and about the body's origin.
 
-use super::Track;
+use super::LineTrack;
 use crate::bodies::Aabb;
 use crate::bodies::contract::{ContractError, check_pose};
 use crate::rounding::pose::{self, Rotation, rotate_of};
@@ -316,7 +316,7 @@ impl PosedShape<'_> {
     }
 
     /// A parameter no greater than any at which a line may touch it, if it may.
-    pub fn crossed_by(&self, track: &Track) -> Option<f64> {
+    pub fn crossed_by(&self, track: &LineTrack) -> Option<f64> {
         let (from, far) = into_body(&self.rotation, track.from, self.translation);
         let speed = turn_back(&self.rotation, track.speed);
         let out = self.margin + slack(far + self.size());

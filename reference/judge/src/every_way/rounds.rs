@@ -8,11 +8,11 @@ use super::ledger::Ledger;
 use super::run::{RoundError, Run};
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes;
-use crate::ours::draw::{ContactSpec, crowd, probe};
+use crate::ours::configurations::Rotation;
 use crate::ours::forms::{self, Form};
-use crate::ours::hard::Group;
-use crate::ours::judged::Shapes;
-use crate::ours::ways::Rotation;
+use crate::ours::hard::HardCaseGroup;
+use crate::ours::reference_shapes::Shapes;
+use crate::ours::seeded_draws::{ContactSpec, crowd, probe};
 use sdop::bodies::Bodies;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet};
@@ -46,7 +46,7 @@ pub fn judge_and_check(
 
 /// What a seed draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum SeedSource {
     /// A probe among partners that nearly touch it.
     Near,
     /// A crowd in a box, uniform.
@@ -82,7 +82,7 @@ pub const CROWD: usize = 150;
 /// # Errors
 /// As [`judge_and_check`].
 pub fn round(
-    source: Source,
+    source: SeedSource,
     seed: u64,
     (k, axes): (DirectionSet, Axes),
     rotation: &Rotation,
@@ -91,12 +91,12 @@ pub fn round(
     rng.set_stream(1 + source as u64);
     let shapes = forms::build(&pool(), 1, k, axes, &mut rng)?;
     let frame = match source {
-        Source::Near => {
+        SeedSource::Near => {
             let shape = seed as usize % shapes.built.len();
             probe(&shapes, &contacts(seed), shape, PROBE_PARTNERS, &mut rng)
         }
         // About a tenth of the pairs' spheres overlap.
-        Source::Random => crowd(&shapes, CROWD, 6.5, &mut rng),
+        SeedSource::Random => crowd(&shapes, CROWD, 6.5, &mut rng),
     };
     let volumes = &Predicate::ALL[..7];
     // Both sources of one seed take modes that are far apart.
@@ -143,7 +143,7 @@ fn contacts(seed: u64) -> ContactSpec {
 /// As [`judge_and_check`], and groups that can't be made.
 pub fn group(
     number: usize,
-    group: &Group,
+    group: &HardCaseGroup,
     (k, axes): (DirectionSet, Axes),
     rotation: &Rotation,
 ) -> Result<Ledger, RoundError> {
