@@ -69,7 +69,7 @@ fn world(shape: Shape) -> (World, HashMap<BodyId, u32>) {
     let mut insert = |i: u32| {
         let (rotation, translation) = pose(i);
         let body = Body::at(0, rotation, translation.map(f64::from));
-        let body = if i % 5 == 0 { body.fixed() } else { body };
+        let body = if i.is_multiple_of(5) { body.fixed() } else { body };
         (world.insert(body).unwrap(), i)
     };
     let numbers = (0..BODIES).map(&mut insert).collect();
@@ -81,7 +81,7 @@ fn pairs_have_pythons_hash() {
     let mut bodies = Bodies::default();
     for i in 0..BODIES {
         let (rotation, translation) = pose(i);
-        bodies.push(0, i % 5 != 0, rotation, translation);
+        bodies.push(0, !i.is_multiple_of(5), rotation, translation);
     }
     let mut culler = Culler::new(&[bracket()], &bodies).unwrap();
     let pairs = culler.cull(&bodies).unwrap().sorted();

@@ -24,17 +24,17 @@ pub fn meeting_images(
     for (axis, period) in periods.into_iter().enumerate() {
         // a_lo ≤ b_hi + n·period, and b_lo + n·period ≤ a_hi.
         let (first, last) = (&a_lo[axis] - &b_hi[axis], &a_hi[axis] - &b_lo[axis]);
-        let numbers = match period {
-            None if first <= RBig::ZERO && last >= RBig::ZERO => 0..=0,
-            None => 1..=0,
+        let (fewest, most) = match period {
+            None => (i64::from(first > RBig::ZERO), -i64::from(last < RBig::ZERO)),
             Some(period) => {
                 let period = RBig::lift(period, 0);
                 let whole = |number| i64::try_from(number).unwrap_or(i64::MAX);
-                whole((first / &period).ceil())..=whole((last / &period).floor())
+                let (first, last) = (first / &period, last / &period);
+                (whole(first.ceil()), whole(last.floor()))
             }
         };
         let along = |image: [i64; 3]| {
-            numbers.clone().map(move |n| {
+            (fewest..=most).map(move |n| {
                 let mut image = image;
                 image[axis] = n;
                 image
