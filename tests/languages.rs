@@ -69,7 +69,11 @@ fn world(shape: Shape) -> (World, HashMap<BodyId, u32>) {
     let mut insert = |i: u32| {
         let (rotation, translation) = pose(i);
         let body = Body::at(0, rotation, translation.map(f64::from));
-        let body = if i.is_multiple_of(5) { body.fixed() } else { body };
+        let body = if i.is_multiple_of(5) {
+            body.fixed()
+        } else {
+            body
+        };
         (world.insert(body).unwrap(), i)
     };
     let numbers = (0..BODIES).map(&mut insert).collect();
