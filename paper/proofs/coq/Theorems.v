@@ -3,7 +3,7 @@
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
   Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody
   SameOrDop OrDopRun Cubes CubeLists Binning Above Reach Rows Swept Query InBody QueryBody
-  QuerySupport QueryPair Kept Parts Examples ExamplesOrDop.
+  QuerySupport QueryPair QueryLine Kept Parts Examples ExamplesOrDop.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -66,6 +66,7 @@ Definition theorems := (
   QuerySupport.support_covers,
   QueryPair.support_bounds_mesh,
   QueryPair.pairs_are_touched,
+  QueryLine.lines_are_crossed,
   Swept.swept_contains,
   Kept.kept_verdicts,
   Kept.changes_noted_once,
