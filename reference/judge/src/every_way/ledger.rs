@@ -8,6 +8,7 @@ use crate::case::Case;
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::BoxLedger;
 use crate::ours::compare::Count;
+use crate::ours::histories::HistoryLedger;
 use crate::ours::matrix::Matrix;
 use crate::ours::ways::Mode;
 use sdop::settings::{CullSettings, Overlap, Strategy};
@@ -37,6 +38,8 @@ pub struct Ledger {
     pub matrix: Matrix,
     /// Lists of given boxes.
     pub boxes: BoxLedger,
+    /// Lists of long-lived worlds.
+    pub histories: HistoryLedger,
 }
 
 /// A missed pair, or one on which a finder disagrees with all-pairs.
@@ -88,6 +91,7 @@ impl Ledger {
         }
         self.matrix.add(&other.matrix);
         self.boxes.add(other.boxes);
+        self.histories.add(other.histories);
         self.failures.extend(other.failures);
         self.failures.truncate(MOST_FAILURES);
     }

@@ -12,6 +12,7 @@ use crate::ours::answers::{Answers, Predicate, explained_by_margins};
 use crate::ours::compare::{compare, culler, difference, found, settings};
 use crate::ours::forms::FormError;
 use crate::ours::hard::GroupError;
+use crate::ours::histories::HistoryError;
 use crate::ours::judged::{InvalidInput, Shapes};
 use crate::ours::ways::{Mode, rows};
 use crate::score::Miss;
@@ -28,6 +29,9 @@ pub enum RoundError {
     /// A culler that can't be made, or bodies that it refuses.
     #[error(transparent)]
     Cull(#[from] CullError),
+    /// A history that a world refuses.
+    #[error(transparent)]
+    History(#[from] HistoryError),
     /// Numbers that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),

@@ -146,7 +146,7 @@ fn share(below: &mut impl FnMut(u32) -> u32) -> f32 {
 
 /// A box that begins where another one ends on some axis, or ends where that begins, give or take
 /// three last places.
-fn beside(other: &Aabb, sides: [f32; 3], below: &mut impl FnMut(u32) -> u32) -> Aabb {
+pub(super) fn beside(other: &Aabb, sides: [f32; 3], below: &mut impl FnMut(u32) -> u32) -> Aabb {
     let (mut min, at) = (other.min, below(3) as usize);
     let off = below(7) as i32 - 3;
     let shifted = |end: f32| {

@@ -16,6 +16,7 @@ pub mod contact;
 pub mod draw;
 pub mod forms;
 pub mod hard;
+pub mod histories;
 pub mod judged;
 pub mod matrix;
 pub mod naive;
