@@ -5,8 +5,9 @@ use serde_json::Value;
 use super::table::Table;
 
 /// Whole numbers that name a row instead of being counted in it.
-const NAMING_NUMBERS: [&str; 16] = [
+const NAMING_NUMBERS: [&str; 17] = [
     "bodies",
+    "movers",
     "statics",
     "threads",
     "seed",

@@ -14,12 +14,13 @@ use crate::scene::Scene;
 use crate::sweep::{Header, Sweep, digest};
 use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
 use sdop::simd::Tier;
-use sdop_judge::every_way::rounds::{Source, boxes, group, round};
+use sdop_judge::every_way::rounds::{Source, boxes, group, histories, round};
 use sdop_judge::every_way::{Judged, Ledger};
 use sdop_judge::ours::answers::Predicate;
 use sdop_judge::ours::boxes::BoxCell;
 use sdop_judge::ours::compare::Count;
 use sdop_judge::ours::hard::{FILES, Group};
+use sdop_judge::ours::histories::HistoryCell;
 use sdop_judge::ours::matrix::Cell;
 use sdop_judge::ours::ways::{Rotation, variants};
 
@@ -54,6 +55,7 @@ pub struct Verification {
     cells: Vec<Cell>,
     places: BTreeMap<Cell, usize>,
     box_cells: Vec<BoxCell>,
+    history_cells: Vec<HistoryCell>,
     /// No round starts after this time.
     deadline: Option<Instant>,
 }
@@ -79,6 +81,8 @@ pub enum UnitOrigin {
     Random,
     /// Given boxes.
     Boxes,
+    /// Long-lived worlds.
+    Histories,
     /// A scene, by its number.
     Scene(usize),
 }
@@ -116,6 +120,7 @@ impl Verification {
             variants: variants().collect(),
             places: cells.iter().copied().zip(0..).collect(),
             box_cells: BoxCell::all(&rotation).map(|(cell, _)| cell).collect(),
+            history_cells: HistoryCell::all(&rotation),
             cells,
             rotation,
             settings,
@@ -185,12 +190,15 @@ impl Verification {
             }
             VerifyUnit::Rounds(seed, variant) => {
                 let judge = |source| round(source, seed, variant, rotation).into_diagnostic();
-                let draw = self.variants.iter().position(|&known| known == variant);
-                let draw = draw.map_or(0, |at| seed.wrapping_mul(64).wrapping_add(at as u64));
+                let number = self.variants.iter().position(|&known| known == variant);
+                let number = number.unwrap_or(0);
+                let draw = seed.wrapping_mul(64).wrapping_add(number as u64);
+                let lived = histories(seed, number, variant, rotation).into_diagnostic()?;
                 Ok(vec![
                     (UnitOrigin::Near, judge(Source::Near)?),
                     (UnitOrigin::Random, judge(Source::Random)?),
                     (UnitOrigin::Boxes, boxes(draw, rotation).into_diagnostic()?),
+                    (UnitOrigin::Histories, lived),
                 ])
             }
             VerifyUnit::Frames(n, number) => {
@@ -214,7 +222,12 @@ impl Verification {
         let texts: Vec<LedgerText> = serde_json::from_str(result).into_diagnostic()?;
         let origins = match self.unit(unit) {
             VerifyUnit::Hard(..) => vec![UnitOrigin::Hard, UnitOrigin::Boxes],
-            VerifyUnit::Rounds(..) => vec![UnitOrigin::Near, UnitOrigin::Random, UnitOrigin::Boxes],
+            VerifyUnit::Rounds(..) => vec![
+                UnitOrigin::Near,
+                UnitOrigin::Random,
+                UnitOrigin::Boxes,
+                UnitOrigin::Histories,
+            ],
             VerifyUnit::Frames(n, _) => vec![UnitOrigin::Scene(n)],
         };
         let wrong = || miette!("the result of unit {unit} was not written by `sdop verify`");
@@ -244,7 +257,18 @@ impl Verification {
                 .filter_map(|(place, cell)| Some((place, *ledger.boxes.cells.get(cell)?)))
                 .collect(),
             box_pairs: ledger.boxes.required,
-            failures: ledger.failures.len() + usize::from(ledger.boxes.failure.is_some()),
+            histories: (self.history_cells.iter().enumerate())
+                .filter_map(|(place, cell)| Some((place, *ledger.histories.cells.get(cell)?)))
+                .collect(),
+            history_pairs: [
+                ledger.histories.lists,
+                ledger.histories.required,
+                ledger.histories.missed,
+                ledger.histories.differ,
+            ],
+            failures: ledger.failures.len()
+                + usize::from(ledger.boxes.failure.is_some())
+                + usize::from(ledger.histories.failure.is_some()),
         }
     }
 
@@ -274,6 +298,17 @@ impl Verification {
                 .insert(*self.box_cells.get(place)?, judged);
         }
         ledger.boxes.required = text.box_pairs;
+        let histories = &mut ledger.histories;
+        for (place, lists) in text.histories {
+            let cell = *self.history_cells.get(place)?;
+            histories.cells.insert(cell, lists);
+        }
+        [
+            histories.lists,
+            histories.required,
+            histories.missed,
+            histories.differ,
+        ] = text.history_pairs;
         Some(ledger)
     }
 }
@@ -291,6 +326,10 @@ struct LedgerText {
     boxes: Vec<(usize, [u64; 2])>,
     /// Pairs of given boxes that meet.
     box_pairs: u64,
+    /// Lists of long-lived worlds, by the index of their cell.
+    histories: Vec<(usize, u64)>,
+    /// Their lists, and pairs that had to be reported, were missed, or differ.
+    history_pairs: [u64; 4],
     /// Number of failures, which only the process that ran the unit has in full.
     failures: usize,
 }

@@ -7,6 +7,7 @@ use sdop_judge::Conclusion;
 use sdop_judge::every_way::{Judged, Ledger};
 use sdop_judge::ours::Predicate;
 use sdop_judge::ours::boxes::BoxLedger;
+use sdop_judge::ours::histories::HistoryLedger;
 use sdop_judge::ours::matrix::Matrix;
 use sdop_judge::ours::ways::Rotation;
 use serde::Serialize;
@@ -30,7 +31,8 @@ pub struct Report {
     /// Pairs missed, over all sources.
     missed: u64,
     /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list
-    /// and their definition.
+    /// and their definition; of long-lived worlds, a list or its events and those of a world made
+    /// for the moment.
     differ: u64,
     sources: Vec<SourceReport>,
     coverage: Coverage,
@@ -120,13 +122,14 @@ impl Report {
         &mut self,
         [asked, judged]: [usize; 2],
         seconds: f64,
-        boxes: &BoxLedger,
+        (boxes, histories): (&BoxLedger, &HistoryLedger),
         rotation: &Rotation,
     ) {
         [self.asked, self.judged] = [asked, judged];
         self.seconds = seconds;
-        self.differ += boxes.wrong();
-        self.coverage = Coverage::of(&self.matrix, boxes, rotation);
+        self.missed += histories.missed;
+        self.differ += boxes.wrong() + histories.differ;
+        self.coverage = Coverage::of(&self.matrix, (boxes, histories), rotation);
         self.conclusion = self.conclude();
     }
 
@@ -269,7 +272,8 @@ mod tests {
             let mut report = Report::new(&[]);
             [report.missed, report.differ] = wrong;
             let rotation = Rotation::new(&[Tier::detect()]);
-            report.finish([4, judged], 1.0, &BoxLedger::default(), &rotation);
+            let (boxes, histories) = (BoxLedger::default(), HistoryLedger::default());
+            report.finish([4, judged], 1.0, (&boxes, &histories), &rotation);
             assert_eq!(report.conclusion(), conclusion);
             assert_eq!(report.why().as_deref(), Some(why));
         }
