@@ -13,7 +13,7 @@ use sdop::pairs::PairList;
 use sdop::settings::{Axes, Budget, CullSettings, Flow, Interest, Overlap, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
-use sdop_judge::ours::{Shapes, judged};
+use sdop_judge::ours::{Shapes, reference_shapes};
 use sdop_reference as reference;
 use support::{random_bodies, shapes};
 
@@ -62,11 +62,15 @@ fn judge(frame: &Frame, settings: &CullSettings) -> Vec<[u32; 2]> {
         Strategy::SDopBatch => reference::Strategy::Batch,
         Strategy::SDopObjectOfInterest => reference::Strategy::ObjectOfInterest(&interest),
         Strategy::Aabb => reference::Strategy::Aabb,
-        Strategy::KDop => reference::Strategy::KDop(judged::directions(settings.k)),
+        Strategy::KDop => reference::Strategy::KDop(reference_shapes::directions(settings.k)),
         Strategy::Obb => reference::Strategy::Obb,
         Strategy::None => reference::Strategy::None,
     };
-    let pairs = reference::pairs(&bodies, strategy, judged::overlap(settings.overlap));
+    let pairs = reference::pairs(
+        &bodies,
+        strategy,
+        reference_shapes::overlap(settings.overlap),
+    );
     pairs.into_iter().map(|(i, j)| [i, j]).collect()
 }
 

@@ -14,22 +14,22 @@ use sdop::volume::{Axes, DirectionSet};
 use sdop_judge::every_way::rounds::group;
 use sdop_judge::every_way::{Ledger, Run};
 use sdop_judge::ours::compare::{culler, settings};
+use sdop_judge::ours::configurations::{Mode, Rotation, variants, ways};
 use sdop_judge::ours::hard::{
-    Cases, FILES, Group, GroupError, naive_misses, page, spell, variant_name,
+    FILES, HardCaseError, HardCaseGroup, HardCases, naive_misses, page, spell, variant_name,
 };
-use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
 use sdop_judge::ours::{Answers, Predicate};
 
 type OrDopChoice = (DirectionSet, Axes);
 
 /// Every group for every or-DOP, with its exact answers.
-fn for_all(test: impl Fn(&str, &Group, OrDopChoice, &Cases, &[Vec<Answers>]) + Sync) {
+fn for_all(test: impl Fn(&str, &HardCaseGroup, OrDopChoice, &HardCases, &[Vec<Answers>]) + Sync) {
     let jobs: Vec<_> = FILES
         .iter()
         .flat_map(|file| variants().map(move |variant| (file, variant)))
         .collect();
     jobs.par_iter().for_each(|((name, text), variant)| {
-        let group = Group::parse(text).unwrap();
+        let group = HardCaseGroup::parse(text).unwrap();
         let cases = group.cases(variant.0, variant.1).unwrap();
         let answers = group.judge(&cases, variant.0).unwrap();
         test(name, &group, *variant, &cases, &answers);
@@ -83,7 +83,7 @@ fn hard_cases_are_never_missed() {
 
 /// The lists of a run in list order, and its counters.
 fn lists(
-    cases: &Cases,
+    cases: &HardCases,
     frames: &[sdop::bodies::Bodies],
     way: &CullSettings,
     mode: Mode,
@@ -104,7 +104,7 @@ fn more_threads_report_the_same_lists() {
             continue;
         }
         let (k, axes) = (DirectionSet::K18, Axes::Principal);
-        let cases = Group::parse(text).unwrap().cases(k, axes).unwrap();
+        let cases = HardCaseGroup::parse(text).unwrap().cases(k, axes).unwrap();
         for way in ways(k, axes) {
             for frames in &cases.runs {
                 let alone = Mode::plain(Tier::detect());
@@ -123,7 +123,12 @@ fn more_threads_report_the_same_lists() {
 }
 
 /// What integer arithmetic says of a recipe needs no reference.
-fn known_by_construction(name: &str, group: &Group, cases: &Cases, answers: &[Vec<Answers>]) {
+fn known_by_construction(
+    name: &str,
+    group: &HardCaseGroup,
+    cases: &HardCases,
+    answers: &[Vec<Answers>],
+) {
     for known in &group.known {
         assert_eq!(known, Predicate::Sphere.name(), "{name}");
         for (frame, answers) in cases.runs.iter().flatten().zip(answers.iter().flatten()) {
@@ -153,7 +158,7 @@ fn every_group_defeats_naive_tests() {
         .map(|(name, text)| {
             (
                 name,
-                naive_misses(&Group::parse(text).unwrap())
+                naive_misses(&HardCaseGroup::parse(text).unwrap())
                     .unwrap()
                     .0
                     .total(),
@@ -183,7 +188,7 @@ fn every_group_has_its_answers() {
     let listed: BTreeSet<String> = FILES.iter().map(|(name, _)| (*name).to_owned()).collect();
     assert_eq!(files, listed);
     for (name, text) in FILES {
-        let group = Group::parse(text).unwrap();
+        let group = HardCaseGroup::parse(text).unwrap();
         let expected: BTreeSet<String> =
             variants().map(|(k, axes)| variant_name(k, axes)).collect();
         assert_eq!(
@@ -201,7 +206,7 @@ fn every_group_has_its_answers() {
 fn hard_cases_fill_the_matrix() {
     // Small cases, so that this counts turns; the others are culled by the test above.
     let small = r#"{ kind = "chain", bodies = [3] }"#;
-    let any = Group::parse(&format!(
+    let any = HardCaseGroup::parse(&format!(
         "why = \"few bodies\"\nseed = 1\nrecipe = {small}\n[[forms]]\nform = \"box\"\n"
     ))
     .unwrap();
@@ -308,5 +313,8 @@ fn what_must_be_refused_is_refused() {
 /// An invalid group is rejected.
 #[test]
 fn invalid_group_is_rejected() {
-    assert!(matches!(Group::parse("why = 3"), Err(GroupError::File(_))));
+    assert!(matches!(
+        HardCaseGroup::parse("why = 3"),
+        Err(HardCaseError::File(_))
+    ));
 }

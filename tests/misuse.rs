@@ -167,18 +167,29 @@ fn changed_body_count_needs_refresh() {
     }
 }
 
-/// A toggled flag is an error until refresh.
+/// A toggled flag is an error until refresh, whichever way it was toggled.
 #[test]
 fn toggled_flag_needs_refresh() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {
+        let wanted = culler.cull(&bodies).unwrap().sorted();
         let mut toggled = bodies.clone();
         (toggled.dynamic[3], toggled.dynamic[4]) = (false, false);
         let told = refused(culler.cull(&toggled));
         assert!(told.starts_with("body 3 has become static"), "{told}");
+        let mut released = bodies.clone();
+        released.dynamic[50] = true;
+        let told = refused(culler.cull(&released));
+        assert!(told.starts_with("body 50 has become dynamic"), "{told}");
+        assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
+
         culler.refresh(&toggled).unwrap();
         let now = culler.cull(&toggled).unwrap().sorted();
         assert!(!now.contains(&[3, 4]) && now.contains(&[2, 3]) && now.contains(&[4, 5]));
+        culler.refresh(&released).unwrap();
+        released.translation[50][1] = 9.0;
+        let now = culler.cull(&released).unwrap().sorted();
+        assert!(!now.iter().any(|pair| pair.contains(&50)));
     }
 }
 
@@ -213,6 +224,39 @@ fn invalid_translation_is_an_error() {
         }
         refused(culler.cull(&apart));
         assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
+    }
+}
+
+/// The frames around a refused one report what they would without it, in whichever of a finder's
+/// frames it comes: also in the last one before the finder plans anew because bodies have gathered.
+#[test]
+fn refused_frame_has_no_effect() {
+    const FRAMES: usize = 14;
+    let apart = row(40);
+    let mut together = apart.clone();
+    for (i, t) in together.translation.iter_mut().enumerate() {
+        *t = [i % 4, i / 4 % 4, i / 16].map(|x| 0.25 * x as f32);
+    }
+    let set = |frame: usize| if frame < 2 { &apart } else { &together };
+    for culler in cullers(&apart) {
+        let mut undisturbed = culler.clone();
+        let wanted: Vec<_> = (0..FRAMES)
+            .map(|frame| undisturbed.cull(set(frame)).unwrap().sorted())
+            .collect();
+        for at in 0..FRAMES {
+            for far in [f32::INFINITY, f32::NAN, f32::MAX, -1.2e18] {
+                let mut culler = culler.clone();
+                for (frame, wanted) in wanted.iter().enumerate() {
+                    if frame == at {
+                        let mut lost = set(frame).clone();
+                        lost.translation[34] = [far; 3];
+                        refused(culler.cull(&lost));
+                    }
+                    let found = culler.cull(set(frame)).unwrap().sorted();
+                    assert_eq!(&found, wanted, "{frame} of {at}, {far}");
+                }
+            }
+        }
     }
 }
 

@@ -15,10 +15,10 @@ use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop_judge::every_way::{Ledger, Run};
 use sdop_judge::ours::arbitrary;
-use sdop_judge::ours::contact::{Contact, Placed};
-use sdop_judge::ours::draw::add;
+use sdop_judge::ours::configurations::{Mode, Rotation, variants, ways};
+use sdop_judge::ours::contact::{Contact, PlacedShape};
 use sdop_judge::ours::forms::{self, Form};
-use sdop_judge::ours::ways::{Mode, Rotation, variants, ways};
+use sdop_judge::ours::seeded_draws::add;
 use sdop_judge::ours::{Answers, Predicate, Shapes, compare};
 
 /// Forms and sizes that the draws choose from: round and flat, long and short, centred and not.
@@ -50,17 +50,17 @@ const PARTNERS: usize = 12;
 /// Probes for each or-DOP and tier.
 const CASES: u32 = 24;
 
-type Drawn = (Placed, Vec<(usize, [f32; 4], Contact)>);
+type DrawnContacts = (PlacedShape, Vec<(usize, [f32; 4], Contact)>);
 
 /// The probe in the middle of its partners; only the probe moves.
-fn frame(shapes: &Shapes, (probe, partners): &Drawn) -> Bodies {
+fn frame(shapes: &Shapes, (probe, partners): &DrawnContacts) -> Bodies {
     let mut bodies = Bodies::default();
     for (n, (shape, rotation, contact)) in partners.iter().enumerate() {
         if n == partners.len() / 2 {
             add(&mut bodies, probe, true);
         }
         if let Some(translation) = contact.place(shapes, probe, *shape, *rotation) {
-            let partner = Placed {
+            let partner = PlacedShape {
                 shape: *shape,
                 rotation: *rotation,
                 translation,
@@ -87,7 +87,7 @@ fn never_misses(tier: Tier) -> Ledger {
     for (variant, shapes) in &*SHAPES {
         let turn = std::cell::Cell::new(0);
         let ledger = std::cell::RefCell::new(Ledger::default());
-        let property = |drawn: Drawn| {
+        let property = |drawn: DrawnContacts| {
             let bodies = frame(shapes, &drawn);
             let answers = [Answers::judge(shapes, &bodies, variant.0, &Predicate::ALL).unwrap()];
             let mut ledger = ledger.borrow_mut();
@@ -175,8 +175,8 @@ fn suite_covers_every_tier() {
 fn missing_pair_is_caught() {
     let (variant, shapes) = &SHAPES[0];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let spec = sdop_judge::ours::draw::ContactSpec::default();
-    let bodies = sdop_judge::ours::draw::probe(shapes, &spec, 0, 32, &mut rng);
+    let spec = sdop_judge::ours::seeded_draws::ContactSpec::default();
+    let bodies = sdop_judge::ours::seeded_draws::probe(shapes, &spec, 0, 32, &mut rng);
     let answers = Answers::judge(shapes, &bodies, variant.0, &Predicate::ALL).unwrap();
     for way in ways(variant.0, variant.1) {
         let settings = compare::settings(way.strategy, &way, bodies.len());

@@ -12,9 +12,9 @@ use sdop_bench::scene::SceneFile;
 use sdop_bench::verify::shrink::SmallestScene;
 use sdop_judge::every_way::rounds::judge_and_check;
 use sdop_judge::every_way::{Failure, Ledger};
-use sdop_judge::ours::draw::crowd;
+use sdop_judge::ours::configurations::{Mode, Rotation};
 use sdop_judge::ours::forms::{self, Form};
-use sdop_judge::ours::ways::{Mode, Rotation};
+use sdop_judge::ours::seeded_draws::crowd;
 use sdop_judge::ours::{Predicate, Shapes};
 use sdop_judge::{Case, Frame};
 

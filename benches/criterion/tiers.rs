@@ -14,7 +14,7 @@ use criterion::Criterion;
 use sdop::culler::Culler;
 use sdop::simd::Tier;
 use sdop_bench::measure::turns::median;
-use sdop_judge::ours::{Shapes, judged};
+use sdop_judge::ours::{Shapes, reference_shapes};
 use sdop_reference as reference;
 
 /// Seconds an iteration, sample by sample.
@@ -58,7 +58,7 @@ fn main() {
         });
         rows.push((tier.name(), seconds));
     }
-    let overlap = judged::overlap(scene.cull.overlap);
+    let overlap = reference_shapes::overlap(scene.cull.overlap);
     let shapes = Shapes::new(scene.shapes.clone()).unwrap_or_else(|error| panic!("{error}"));
     let plain = measure(&mut criterion, "s-dop, reference", |i| {
         let bodies = shapes.bodies(&frames[i % frames.len()]);

@@ -35,7 +35,8 @@ fn of_each_volume(criterion: &mut Criterion, name: &str, scene: &Scene) {
     }
 }
 
-/// The scene with each mesh moved by half of its ball's radius, as a file may have it.
+/// The scene with each mesh moved by half of its ball's radius, as a file may have it, in a box
+/// that holds them wherever their origin is.
 fn off_centre(scene: &Scene, origin: Origin) -> Scene {
     let moved = |shape: &Shape| {
         let by = 0.5 * shape.ball.radius;
@@ -51,6 +52,7 @@ fn off_centre(scene: &Scene, origin: Origin) -> Scene {
     };
     Scene {
         shapes: scene.shapes.iter().map(moved).collect(),
+        side: scene.side.map(|side| 2.0 * side),
         ..scene.clone()
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Without the feature `mpi` nothing is linked, and [`launched`] only serves to reject a start as
 //! many ranks. With it, a program that runs alone does not start MPI; `Ranks::start` does.
-//! [`Ending`] ensures that no rank waits for one that failed.
+//! [`RankEnding`] ensures that no rank waits for one that failed.
 
 use std::env;
 
@@ -43,9 +43,9 @@ fn ranks(var: impl Fn(&str) -> Option<String>) -> usize {
 /// Ends a rank in step with the others. `main` holds it from the beginning, so that a rank that
 /// panics ends all of them.
 #[derive(Debug)]
-pub struct Ending;
+pub struct RankEnding;
 
-impl Ending {
+impl RankEnding {
     /// Waits for the other ranks to end well, too. Nothing happens when MPI was not started.
     pub fn well(self) {
         #[cfg(feature = "mpi")]
@@ -74,7 +74,7 @@ impl Ending {
     }
 }
 
-impl Drop for Ending {
+impl Drop for RankEnding {
     fn drop(&mut self) {
         if std::thread::panicking() {
             abort(PANIC_EXIT_CODE);

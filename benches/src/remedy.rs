@@ -26,9 +26,11 @@ macro_rules! always {
 always!(
     sdop::bodies::contract::ContractError,
     sdop::choice::UnknownChoice,
+    sdop::compound::CompoundError,
     sdop::culler::CullError,
     sdop::mesh::MeshError,
     sdop::mesh::shapes::ShapeError,
+    sdop::query::QueryError,
     sdop::settings::SettingsError,
     sdop::threads::ThreadsError,
     sdop::volume::VolumeError,

@@ -1,4 +1,6 @@
-/* Boxes of an engine in, pairs that meet out; then a world in which they come and go. C11. */
+/* Boxes of an engine in, pairs that meet out; then a world in which they come and go, and which is
+   asked what is where. C11. */
+#undef NDEBUG /* what is asserted is shown */
 #include <assert.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -17,6 +19,29 @@ static void print_event(void *user, SdopEvent event) {
     const char *const kinds[] = {"begun", "persisting", "ended"};
     printf("%s: %" PRIx64 " and %" PRIx64 "\n", kinds[event.kind], event.pair.first, event.pair.second);
     ++*(int *)user;
+}
+
+/* Which boxes are near a point, and which does a segment meet? */
+static void ask(const SdopBoxWorld *world, uint64_t near, uint64_t far) {
+    SdopQueryIndex *index;
+    check(sdop_query_index_new(&index));
+    check(sdop_query_index_update_boxes(index, world)); /* again after boxes have moved */
+
+    const double centre[3] = {3, 0.5, 0.5};
+    uint64_t found[2];
+    size_t count;
+    check(sdop_query_index_touching_ball(index, &centre, 2, found, 2, &count));
+    assert(count == 1 && found[0] == near);
+
+    const SdopSegment sight = {{9, 9, 9}, {-1, -1, -1}};
+    SdopHit hits[2];
+    bool is_hit;
+    check(sdop_query_index_first(index, &sight, hits, &is_hit));
+    assert(is_hit && hits[0].id == far);
+    printf("seen first: %" PRIx64 " at %.3f of the way\n", hits[0].id, hits[0].at);
+    check(sdop_query_index_along(index, &sight, hits, 2, &count));
+    assert(count == 2 && hits[0].id == far && hits[1].id == near && hits[0].at < hits[1].at);
+    sdop_query_index_free(index);
 }
 
 int main(void) {
@@ -52,6 +77,7 @@ int main(void) {
     check(sdop_box_world_cull(world, &found));
     check(sdop_box_world_events(world, print_event, &events));
     assert(found == 0 && events == 2);
+    ask(world, ids[0], ids[2]);
 
     /* What is refused says how to mend it. */
     const SdopBox inside_out = {{1, 0, 0}, {0, 1, 1}};

@@ -1,5 +1,6 @@
 // Meshes with poses of an engine: a fixed set, a world with margins that is saved and rolled back,
-// single pairs. C++17.
+// queries, bodies of several shapes, single pairs. C++17.
+#undef NDEBUG // what is asserted is shown
 #include <array>
 #include <cassert>
 #include <cstdio>
@@ -21,7 +22,10 @@ struct Free {
 };
 using Shape = std::unique_ptr<SdopShape, Free<SdopShape, sdop_shape_free>>;
 using Culler = std::unique_ptr<SdopCuller, Free<SdopCuller, sdop_culler_free>>;
+using Compound = std::unique_ptr<SdopCompound, Free<SdopCompound, sdop_compound_free>>;
+using Index = std::unique_ptr<SdopQueryIndex, Free<SdopQueryIndex, sdop_query_index_free>>;
 using PairTest = std::unique_ptr<SdopPairTest, Free<SdopPairTest, sdop_pair_test_free>>;
+using PartCuller = std::unique_ptr<SdopPartCuller, Free<SdopPartCuller, sdop_part_culler_free>>;
 using World = std::unique_ptr<SdopWorld, Free<SdopWorld, sdop_world_free>>;
 
 Shape tetrahedron() {
@@ -97,6 +101,81 @@ void a_world(const SdopShape *shape) {
     assert(sdop_world_exclude(world.get(), ids[0], ids[0] + 1000) == SDOP_STATUS_REFUSED);
 }
 
+// An arm of three links next to a post: which link may touch it?
+void parts_of_bodies(const SdopShape *link) {
+    std::array<SdopPart, 3> parts{};
+    for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {0, {0, 0, 0, 1}, {1.5 * static_cast<double>(i), 0, 0}};
+    SdopCompound *arm_made = nullptr;
+    check(sdop_compound_new("arm", &link, 1, parts.data(), parts.size(), &arm_made));
+    const Compound arm(arm_made);
+    SdopShape *whole = nullptr;
+    check(sdop_compound_shape(arm.get(), &whole));
+    const Shape arm_shape(whole);
+
+    const SdopShape *const shapes[] = {whole, link};
+    SdopWorld *made = nullptr;
+    check(sdop_world_new(shapes, 2, nullptr, &made));
+    const World world(made);
+    const SdopBody robot{0, false, false, {0, 0, 0, 1}, {0, 0, 0}, 0, {~0U, ~0U}};
+    const SdopBody post{1, true, false, {0, 0, 0, 1}, {3.25, 0.25, 0}, 0, {~0U, ~0U}};
+    std::uint64_t robot_id = 0, post_id = 0;
+    check(sdop_world_insert(world.get(), &robot, &robot_id));
+    check(sdop_world_insert(world.get(), &post, &post_id));
+    assert(pairs_of(world.get()).size() == 1);
+
+    SdopPartCuller *culler_made = nullptr;
+    check(sdop_part_culler_new(&culler_made));
+    const PartCuller culler(culler_made);
+    check(sdop_part_culler_set_parts(culler.get(), 0, arm.get())); // shape 0 of the world has these parts
+    std::size_t count = 0;
+    check(sdop_part_culler_cull(culler.get(), world.get(), &count));
+    SdopPartPair pair{};
+    check(sdop_part_culler_pairs(culler.get(), &pair, 1, &count));
+    assert(count == 1 && pair.bodies.first == robot_id && pair.bodies.second == post_id);
+    assert(pair.first_part == 2 && pair.second_part == 0);
+    std::printf("link %u might touch the post\n", pair.first_part);
+    SdopIdPair bodies{};
+    check(sdop_part_culler_body_pairs(culler.get(), &bodies, 1, &count));
+    assert(count == 1 && bodies.first == robot_id);
+    check(sdop_part_culler_set_parts(culler.get(), 1, arm.get())); // shape 1 has none
+    assert(sdop_part_culler_cull(culler.get(), world.get(), &count) == SDOP_STATUS_REFUSED);
+    check(sdop_part_culler_set_parts(culler.get(), 1, nullptr));
+    check(sdop_part_culler_cull(culler.get(), world.get(), &count));
+}
+
+// What is near, and what is in the line of sight?
+void queries(const SdopShape *shape) {
+    SdopWorld *made = nullptr;
+    check(sdop_world_new(&shape, 1, nullptr, &made));
+    const World world(made);
+    std::array<std::uint64_t, 3> ids{};
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const SdopBody body{0, false, false, {0, 0, 0, 1}, {1e9 + 4.0 * static_cast<double>(i), 0, 0}, 0.25F, {~0U, ~0U}};
+        check(sdop_world_insert(world.get(), &body, &ids[i]));
+    }
+    SdopQueryIndex *index_made = nullptr;
+    check(sdop_query_index_new(&index_made));
+    const Index index(index_made);
+    check(sdop_query_index_update(index.get(), world.get()));
+
+    const double low[] = {1e9 + 1, 0, 0}, high[] = {1e9 + 3.75, 1, 1}, inside_out[] = {1e9, 0, 0};
+    std::array<std::uint64_t, 2> found{};
+    std::size_t count = 0;
+    check(sdop_query_index_touching_box(index.get(), &low, &high, found.data(), found.size(), &count));
+    assert(count == 2 && found[0] == ids[0] && found[1] == ids[1]); // margins reach into it
+    assert(sdop_query_index_touching_box(index.get(), &low, &high, found.data(), 1, &count) == SDOP_STATUS_TOO_SMALL);
+    assert(sdop_query_index_touching_box(index.get(), &low, &inside_out, nullptr, 0, &count) == SDOP_STATUS_REFUSED);
+
+    const SdopSegment sight{{1e9 + 100, 0.25, 0.25}, {1e9 + 2, 0.25, 0.25}};
+    SdopHit hit{};
+    bool is_hit = false;
+    check(sdop_query_index_first(index.get(), &sight, &hit, &is_hit));
+    assert(is_hit && hit.id == ids[2] && hit.at > 0.8 && hit.at < 0.95);
+    const SdopSegment upward{{1e9, 0, 5}, {1e9, 0, 9}};
+    check(sdop_query_index_first(index.get(), &upward, nullptr, &is_hit));
+    assert(!is_hit);
+}
+
 void single_pairs(const SdopShape *shape) {
     SdopPairTest *made = nullptr;
     assert(sdop_pair_test_new(17, &made) == SDOP_STATUS_REFUSED);
@@ -119,6 +198,8 @@ int main() {
     const Shape shape = tetrahedron();
     a_fixed_set(shape.get());
     a_world(shape.get());
+    queries(shape.get());
+    parts_of_bodies(shape.get());
     single_pairs(shape.get());
     std::puts("all as expected");
 }

@@ -11,7 +11,7 @@ use sdop_judge::ours::Shapes;
 use sdop_judge::ours::histories::{
     draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes,
 };
-use sdop_judge::ours::ways::{Mode, rows, variants};
+use sdop_judge::ours::configurations::{Mode, rows, variants};
 
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {

@@ -5,6 +5,24 @@
 >>> sdop.box_pairs(boxes)
 array([[0, 1]], dtype=uint32)
 
+>>> corners, triangles = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+>>> shape = sdop.Shape(corners, triangles)
+>>> culler = sdop.Culler([shape], body_shapes=[0, 0, 0], dynamic=[True, True, False])
+>>> rotations, translations = [[0, 0, 0, 1]] * 3, [[0, 0, 0], [0.5, 0, 0], [9, 0, 0]]
+>>> culler.cull(rotations, translations)
+array([[0, 1]], dtype=uint32)
+>>> sdop.exact_meet(shape, (rotations[0], translations[0]), shape, (rotations[1], translations[1]))
+True
+
+>>> world = sdop.World([shape])
+>>> i, j = [world.insert(0, rotations[k], translations[k], margin=0.01) for k in (0, 1)]
+>>> world.cull().tolist() == world.events().begun.tolist() == [[i, j]]
+True
+>>> index = sdop.QueryIndex()
+>>> index.update(world)
+>>> index.touching_balls([[2, 0, 0]], radii=[0.5]).tolist() == [[0, j]]
+True
+
 Lengths have any one unit. Axes are right-handed; rotations are quaternions x, y, z, w of any
 non-zero norm that turn a body's frame into the world's. Columns are float32: arrays of float64 are
 accepted if float32 holds each number exactly, and rejected otherwise, because the answer would be
@@ -20,8 +38,11 @@ from ._sdop import (
     BoxCuller,
     BoxWorld,
     CaseSkipped,
+    Compound,
     Culler,
     Events,
+    PartCuller,
+    QueryIndex,
     Scene,
     SdopError,
     Shape,
@@ -38,9 +59,12 @@ __all__ = [
     "BoxWorld",
     "CaseSkipped",
     "CollisionManager",
+    "Compound",
     "Culler",
     "Events",
     "MissedPair",
+    "PartCuller",
+    "QueryIndex",
     "Scene",
     "SdopError",
     "Shape",

@@ -72,6 +72,27 @@ pub fn wide_rows<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResu
     Ok(numbers.as_chunks().0.to_vec())
 }
 
+/// Exactly N numbers, in whatever shape, as an array of one row. `remedy` names them.
+pub fn one_row<'py, const N: usize>(
+    given: &Bound<'py, PyAny>,
+    what: &str,
+    remedy: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = numpy(given.py())?.call_method1("asarray", (given,))?;
+    if array.getattr("size")?.extract::<usize>()? != N {
+        let shape: Vec<usize> = array.getattr("shape")?.extract()?;
+        return Err(with_help(format!("{what} has shape {shape:?}"), remedy));
+    }
+    array.call_method1("reshape", ((1, N),))
+}
+
+/// A column of numbers in f64.
+pub fn wide_column(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
+    let (numbers, shape) = as_f64(given, what)?;
+    check_column(&shape, what)?;
+    Ok(numbers)
+}
+
 /// Whole numbers from 0 to 2³² − 1, in rows of N; `shape` names the accepted shapes.
 pub fn whole_rows<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[u32; N]>> {
     let (numbers, shape) = whole(given, what)?;

@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, Finder, Groups, PairList};
 
-use super::arrays::{Rows, check_length, id_column, pairs, rows, whole_rows};
-use super::errors::{locked, refused, with_help};
+use super::arrays::{Rows, check_length, id_column, one_row, pairs, rows, whole_rows};
+use super::errors::{locked, refused};
 use super::ids::bits_of;
 use super::world::Events;
 
@@ -133,7 +133,7 @@ impl BoxCuller {
 
 /// A long-lived set of boxes: stable ids, boxes at rest, groups, and pairs as a list or as events.
 #[pyclass(frozen, module = "sdop")]
-pub struct BoxWorld(Mutex<sdop::BoxWorld>);
+pub struct BoxWorld(pub(super) Mutex<sdop::BoxWorld>);
 
 #[pymethods]
 impl BoxWorld {
@@ -265,16 +265,7 @@ impl BoxWorld {
 
 /// One box: six numbers, or two corners.
 fn one(given: &Bound<'_, PyAny>) -> PyResult<Aabb> {
-    let given = given
-        .py()
-        .import("numpy")?
-        .call_method1("reshape", (given, (-1, 6)))?;
-    let given = boxes(&given)?;
-    match Aabb::from_rows(given.rows()) {
-        [one] => Ok(*one),
-        _ => Err(with_help(
-            "bounds are not one box",
-            "six numbers: the lower corner, then the upper one",
-        )),
-    }
+    let remedy = "pass six numbers: the lower corner, then the upper one";
+    let given = boxes(&one_row::<6>(given, "bounds", remedy)?)?;
+    Ok(Aabb::from_rows(given.rows())[0])
 }

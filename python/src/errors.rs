@@ -44,6 +44,6 @@ pub fn locked<T: Send, R: Send>(
 }
 
 /// A panic in one call doesn't affect others: the next call checks the state that it left.
-fn lock<T>(guarded: &Mutex<T>) -> MutexGuard<'_, T> {
+pub fn lock<T>(guarded: &Mutex<T>) -> MutexGuard<'_, T> {
     guarded.lock().unwrap_or_else(PoisonError::into_inner)
 }

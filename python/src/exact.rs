@@ -3,9 +3,10 @@
 use pyo3::prelude::*;
 use sdop_reference::{WidePose, wide};
 
-use super::arrays::wide_rows;
+use super::arrays::{one_row, wide_rows};
 use super::errors::with_help;
 use super::shape::Shape;
+use super::world::{POSITION, QUATERNION};
 
 /// Whether two posed meshes share a point, or one lies inside of a closed part of the other, in
 /// exact arithmetic.
@@ -39,8 +40,8 @@ fn pose(
     what: &str,
     (rotation, translation): &(Bound<'_, PyAny>, Bound<'_, PyAny>),
 ) -> PyResult<WidePose> {
-    let rotation = row::<4>(rotation, &format!("{what}'s rotation"))?;
-    let translation = row::<3>(translation, &format!("{what}'s translation"))?;
+    let rotation = row::<4>(rotation, &format!("{what}'s rotation"), QUATERNION)?;
+    let translation = row::<3>(translation, &format!("{what}'s translation"), POSITION)?;
     WidePose::new(rotation, translation).map_err(|error| {
         with_help(
             format!("{what}: {error}"),
@@ -49,8 +50,6 @@ fn pose(
     })
 }
 
-fn row<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; N]> {
-    let numpy = given.py().import("numpy")?;
-    let given = numpy.call_method1("reshape", (given, (1, N)))?;
-    Ok(wide_rows(&given, what)?[0])
+fn row<const N: usize>(given: &Bound<'_, PyAny>, what: &str, remedy: &str) -> PyResult<[f64; N]> {
+    Ok(wide_rows(&one_row::<N>(given, what, remedy)?, what)?[0])
 }

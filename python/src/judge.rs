@@ -5,9 +5,9 @@ use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use sdop::bodies::Bodies;
-use sdop_judge::answer::{Answer, Stop, Trouble};
+use sdop_judge::answer::{Answer, AnswerError, StopReason};
 use sdop_judge::report::counter_example;
-use sdop_judge::shrink::Smallest;
+use sdop_judge::shrink::SmallestCase;
 use sdop_judge::{Case, Claim, Frame, Options, Subject, examine};
 
 use super::arrays::{matrix, whole_rows};
@@ -63,7 +63,7 @@ pub fn judge(
 /// A missed pair as JSON, the boxes of its frame, and the counter-example's files.
 type Missed = (String, Py<PyArray2<f32>>, Vec<(String, Vec<u8>)>);
 
-fn missed(py: Python<'_>, smallest: &Smallest) -> PyResult<Missed> {
+fn missed(py: Python<'_>, smallest: &SmallestCase) -> PyResult<Missed> {
     let boxes = &smallest.case.frames[smallest.miss.frame].boxes;
     let data = serde_json::json!({
         "case": smallest.from,
@@ -119,18 +119,18 @@ struct InPython {
 }
 
 impl Subject for InPython {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         let mut answered = Vec::new();
         // Threads of the judge hold the interpreter for a whole case: a case's frames come one
         // after the other.
         Python::attach(|py| match self.run(py, case, &mut answered) {
             Ok(None) => Ok(answered),
-            Ok(Some(why)) => Err(Stop::Skipped { why, answered }),
-            Err(error) if error.is_instance_of::<CaseSkipped>(py) => Err(Stop::Skipped {
+            Ok(Some(why)) => Err(StopReason::Skipped { why, answered }),
+            Err(error) if error.is_instance_of::<CaseSkipped>(py) => Err(StopReason::Skipped {
                 why: error.value(py).to_string(),
                 answered,
             }),
-            Err(error) => Err(Stop::Trouble(Trouble::Crashed {
+            Err(error) => Err(StopReason::Trouble(AnswerError::Crashed {
                 how: how(py, &error),
                 answered: answered.len(),
                 said: String::new(),

@@ -6,12 +6,14 @@
 
 mod arrays;
 mod boxes;
+mod compound;
 mod culler;
 mod errors;
 mod exact;
 mod ids;
 mod judge;
 mod program;
+mod query;
 mod shape;
 mod world;
 
@@ -19,6 +21,8 @@ mod world;
 mod _sdop {
     #[pymodule_export]
     use super::boxes::{BoxCuller, BoxWorld, box_pairs};
+    #[pymodule_export]
+    use super::compound::{Compound, PartCuller};
     #[pymodule_export]
     use super::culler::Culler;
     #[pymodule_export]
@@ -29,6 +33,8 @@ mod _sdop {
     use super::judge::{Scene, judge};
     #[pymodule_export]
     use super::program::main;
+    #[pymodule_export]
+    use super::query::QueryIndex;
     #[pymodule_export]
     use super::shape::Shape;
     #[pymodule_export]

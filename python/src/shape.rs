@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use sdop::mesh::ReadOptions;
 use sdop::{Axes, DirectionSet, Origin, ShapeSpec, TriangleMesh};
-use sdop_judge::ours::judged::Shapes;
+use sdop_judge::ours::reference_shapes::Shapes;
 use sdop_reference as reference;
 
 use super::arrays::{matrix, whole_rows, wide_rows};
@@ -161,10 +161,7 @@ impl Shape {
 impl Shape {
     fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> PyResult<Self> {
         let built = sdop::Shape::build(mesh, spec).map_err(refused)?;
-        Ok(Self {
-            built,
-            judged: OnceLock::new(),
-        })
+        Ok(built.into())
     }
 
     /// The shape for the exact reference, prepared at first use.
@@ -185,6 +182,15 @@ impl Shape {
         judged
             .as_ref()
             .map_err(|error| with_help(error, "pass a mesh that `Culler` takes"))
+    }
+}
+
+impl From<sdop::Shape> for Shape {
+    fn from(built: sdop::Shape) -> Self {
+        Self {
+            built,
+            judged: OnceLock::new(),
+        }
     }
 }
 

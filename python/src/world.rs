@@ -7,12 +7,16 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sdop::{Body, BodyId, Finder, Groups, Motion, Strategy};
 
-use super::arrays::{check_length, id_column, pairs, rows, wide_rows};
+use super::arrays::{check_length, id_column, one_row, pairs, rows, wide_rows};
 use super::errors::{locked, refused, with_help};
 use super::ids::bits_of;
 use super::shape::{Shape, built};
 
-const ROUND: &str = "pass a float32 quaternion, whose rotation is then the one that is culled";
+pub(super) const ROUND: &str =
+    "pass a float32 quaternion, whose rotation is then the one that is culled";
+
+pub(super) const QUATERNION: &str = "pass four numbers: a quaternion x, y, z, w";
+pub(super) const POSITION: &str = "pass three numbers: x, y, z";
 
 /// A long-lived set of bodies that come and go, with stable ids, groups, contact margins,
 /// float64 translations, and pairs as a list or as events.
@@ -31,7 +35,7 @@ const ROUND: &str = "pass a float32 quaternion, whose rotation is then the one t
 /// threads : int
 ///     Number of threads.
 #[pyclass(frozen, module = "sdop")]
-pub struct World(Mutex<sdop::World>);
+pub struct World(pub(super) Mutex<sdop::World>);
 
 #[pymethods]
 impl World {
@@ -256,16 +260,11 @@ fn pose(
     rotation: &Bound<'_, PyAny>,
     translation: &Bound<'_, PyAny>,
 ) -> PyResult<([f32; 4], [f64; 3])> {
-    let row = |given: &Bound<'_, PyAny>, n: usize| -> PyResult<Py<PyAny>> {
-        let numpy = given.py().import("numpy")?;
-        Ok(numpy.call_method1("reshape", (given, (1, n)))?.unbind())
-    };
-    let py = rotation.py();
-    let (rotation, translation) = (row(rotation, 4)?, row(translation, 3)?);
-    let rotation = rows::<4>(rotation.bind(py), "rotation", ROUND)?.rows()[0];
+    let rotation = one_row::<4>(rotation, "rotation", QUATERNION)?;
+    let translation = one_row::<3>(translation, "translation", POSITION)?;
     Ok((
-        rotation,
-        wide_rows::<3>(translation.bind(py), "translation")?[0],
+        rows::<4>(&rotation, "rotation", ROUND)?.rows()[0],
+        wide_rows::<3>(&translation, "translation")?[0],
     ))
 }
 

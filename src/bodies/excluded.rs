@@ -161,7 +161,7 @@ mod tests {
     use crate::bodies::Groups;
 
     #[test]
-    fn pairs_come_and_go_at_both_bodies() {
+    fn exclusions_are_known_at_both_bodies() {
         let mut pairs = ExcludedPairs::default();
         assert!(pairs.insert(3, 1) && !pairs.insert(1, 3) && pairs.insert(1, 7));
         assert!(pairs.contains(1, 3) && pairs.contains(3, 1) && !pairs.contains(3, 7));
@@ -174,8 +174,9 @@ mod tests {
         pairs.remove_all(7);
     }
 
+    /// A filter is made only where it may stop a pair.
     #[test]
-    fn a_filter_is_made_where_it_may_stop_a_pair() {
+    fn filters_exist_where_they_matter() {
         let (none, one) = (ExcludedPairs::default(), ExcludedPairs::from_iter([[0, 1]]));
         assert!(PairFilter::new(None, &none).is_none());
         let only = |member| Groups { member, mask: 1 };

@@ -10,8 +10,8 @@ pub const SLOTS_PER_CHECK: usize = 2 * MAX_WIDTH;
 /// The test's columns have no padding and the block's hits no room after them, so starting another
 /// vector panics.
 pub fn check(test: &impl SlotTest) {
-    struct Touching<'a, T>(&'a T);
-    impl<T: SlotTest> Kernel for Touching<'_, T> {
+    struct ListTouching<'a, T>(&'a T);
+    impl<T: SlotTest> Kernel for ListTouching<'_, T> {
         type Output = [Vec<u32>; 2];
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> Self::Output {
@@ -31,7 +31,7 @@ pub fn check(test: &impl SlotTest) {
         codes(SLOTS_PER_CHECK),
     ];
     for tier in Tier::available() {
-        assert_eq!(dispatch(tier, Touching(test)), all, "{tier}");
+        assert_eq!(dispatch(tier, ListTouching(test)), all, "{tier}");
     }
 }
 

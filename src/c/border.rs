@@ -7,9 +7,11 @@ use std::slice;
 
 use crate::bodies::contract::ContractError;
 use crate::choice::UnknownChoice;
+use crate::compound::CompoundError;
 use crate::culler::CullError;
 use crate::mesh::MeshError;
 use crate::pairs::PairList;
+use crate::query::QueryError;
 use crate::volume::VolumeError;
 use crate::world::{BodyId, Event, Events, SnapshotError, WorldError};
 
@@ -118,9 +120,11 @@ macro_rules! refusals {
 }
 refusals!(
     UnknownChoice,
+    CompoundError,
     ContractError,
     CullError,
     MeshError,
+    QueryError,
     VolumeError,
     WorldError,
     SnapshotError

@@ -13,7 +13,7 @@ use crate::world::BodyId;
 
 /// A long-lived set of boxes: ids that stay, groups, pairs and events.
 #[derive(Debug)]
-pub struct SdopBoxWorld(BoxWorld);
+pub struct SdopBoxWorld(pub(super) BoxWorld);
 
 /// A box to be inserted.
 #[repr(C)]

@@ -2,7 +2,8 @@
 //!
 //! A function that can fail returns an [`SdopStatus`] and leaves the reason, with its remedy, in
 //! [`sdop_last_error`]. No panic crosses the border. Handles may move between threads, and one is
-//! used by one thread at a time.
+//! used by one thread at a time, except where a function takes it as `const`: such calls may run at
+//! the same time.
 
 #![allow(unsafe_code, reason = "pointers of C cross the border here")]
 
@@ -10,7 +11,9 @@ mod bodies;
 mod border;
 mod box_world;
 mod boxes;
+mod compounds;
 mod pair_test;
+mod queries;
 mod world;
 
 use std::ffi::c_char;
@@ -21,8 +24,22 @@ pub use border::{
 };
 pub use box_world::*;
 pub use boxes::*;
+pub use compounds::*;
 pub use pair_test::*;
+pub use queries::*;
 pub use world::*;
+
+/// Functions that take these as `const` may run at the same time.
+const _: () = {
+    const fn is_for_all_threads<T: Sync>() {}
+    is_for_all_threads::<SdopBoxWorld>();
+    is_for_all_threads::<SdopCompound>();
+    is_for_all_threads::<SdopPairTest>();
+    is_for_all_threads::<SdopPartCuller>();
+    is_for_all_threads::<SdopQueryIndex>();
+    is_for_all_threads::<SdopShape>();
+    is_for_all_threads::<SdopWorld>();
+};
 
 /// The version of the library, such as "0.1.0".
 #[unsafe(no_mangle)]

@@ -39,11 +39,21 @@ typedef struct SdopBoxCuller SdopBoxCuller;
 // A long-lived set of boxes: ids that stay, groups, pairs and events.
 typedef struct SdopBoxWorld SdopBoxWorld;
 
+// Several shapes that move as one body.
+typedef struct SdopCompound SdopCompound;
+
 // Culls the frames of a fixed set of bodies whose poses change.
 typedef struct SdopCuller SdopCuller;
 
 // The or-DOPs of shapes, as they are and grown by margins, for tests of single pairs.
 typedef struct SdopPairTest SdopPairTest;
+
+// Finds the pairs of parts within the pairs of bodies that a world reports.
+typedef struct SdopPartCuller SdopPartCuller;
+
+// The bodies of a world, prepared for queries. Many threads may ask it at the same time, while
+// none updates it.
+typedef struct SdopQueryIndex SdopQueryIndex;
 
 // A mesh with its bounding ball and or-DOP.
 typedef struct SdopShape SdopShape;
@@ -153,6 +163,42 @@ typedef void (*SdopTakeEvent)(void*, SdopEvent);
 // Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return
 // normally.
 typedef void (*SdopTakePairs)(void*, const SdopPair*, size_t);
+
+// A shape in the frame of a body.
+typedef struct {
+  // Index into the compound's shapes.
+  uint32_t shape;
+  // Orientation in the frame of the body: a quaternion (x, y, z, w) of any non-zero norm.
+  float rotation[4];
+  // Position of the shape's origin in the frame of the body.
+  double translation[3];
+} SdopPart;
+
+// Two parts of two bodies.
+typedef struct {
+  // The bodies.
+  SdopIdPair bodies;
+  // The number of the first body's part; 0 if its shape is not a compound.
+  uint32_t first_part;
+  // The number of the second body's part; 0 if its shape is not a compound.
+  uint32_t second_part;
+} SdopPartPair;
+
+// The points from + s·(to − from) for 0 ≤ s ≤ 1, world frame.
+typedef struct {
+  // The point of s = 0.
+  double from[3];
+  // The point of s = 1.
+  double to[3];
+} SdopSegment;
+
+// A body that a segment may meet.
+typedef struct {
+  // The body.
+  uint64_t id;
+  // An s at or before the first point that the segment shares with the body.
+  double at;
+} SdopHit;
 
 // A body to be inserted.
 typedef struct {
@@ -364,6 +410,77 @@ SdopStatus sdop_box_culler_cull_each(SdopBoxCuller *culler,
                                      SdopTakePairs take,
                                      void *user);
 
+// Makes a compound of parts, whose shapes are numbered as in `shapes`. `name` is for errors, and
+// may be null.
+//
+// # Safety
+// `name` is null or ends with a zero; the columns have the stated numbers of entries; `out` may be
+// written.
+SdopStatus sdop_compound_new(const char *name,
+                             const SdopShape *const *shapes,
+                             size_t shape_count,
+                             const SdopPart *parts,
+                             size_t part_count,
+                             SdopCompound **out);
+
+// Frees a compound; null is fine. Part cullers keep copies.
+//
+// # Safety
+// It is from `sdop_compound_new` and not used afterwards.
+void sdop_compound_free(SdopCompound *compound);
+
+// Makes the shape that contains all parts: give it to a world like any other, and free it.
+//
+// # Safety
+// `compound` is a handle; `out` may be written.
+SdopStatus sdop_compound_shape(const SdopCompound *compound, SdopShape **out);
+
+// Makes a culler of parts without compounds: every shape is one part.
+//
+// # Safety
+// `out` may be written.
+SdopStatus sdop_part_culler_new(SdopPartCuller **out);
+
+// Frees a culler of parts; null is fine.
+//
+// # Safety
+// It is from `sdop_part_culler_new` and not used afterwards.
+void sdop_part_culler_free(SdopPartCuller *culler);
+
+// Says which parts a shape of the world has. The world's shape of that number has to be the one of
+// `sdop_compound_shape`. If `compound` is null, the shape is one part again.
+//
+// # Safety
+// `culler` is a handle, `compound` a handle or null.
+SdopStatus sdop_part_culler_set_parts(SdopPartCuller *culler, uint32_t shape, const SdopCompound *compound);
+
+// Finds the pairs of parts in the pairs of the world's last cull: call it after each cull. `pairs`
+// gets their number; read them with `sdop_part_culler_pairs`.
+//
+// # Safety
+// `culler` and `world` are handles; `pairs` may be written.
+SdopStatus sdop_part_culler_cull(SdopPartCuller *culler, const SdopWorld *world, size_t *pairs);
+
+// Copies the pairs of parts of the last cull into `buffer`, sorted by slots and then by parts. If
+// they don't fit, `count` says how many there are.
+//
+// # Safety
+// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
+SdopStatus sdop_part_culler_pairs(const SdopPartCuller *culler,
+                                  SdopPartPair *buffer,
+                                  size_t capacity,
+                                  size_t *count);
+
+// Copies the pairs of bodies of which some parts may touch into `buffer`, sorted by slots. If they
+// don't fit, `count` says how many there are.
+//
+// # Safety
+// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
+SdopStatus sdop_part_culler_body_pairs(const SdopPartCuller *culler,
+                                       SdopIdPair *buffer,
+                                       size_t capacity,
+                                       size_t *count);
+
 // Makes a test without shapes, of or-DOPs with `k` faces: 6, 14, 18 or 26; 0 is 18.
 //
 // # Safety
@@ -403,6 +520,80 @@ bool sdop_pair_test_may_touch(const SdopPairTest *test,
                               uint32_t second,
                               const float (*rotation)[4],
                               const float (*translation)[3]);
+
+// Makes an index without bodies.
+//
+// # Safety
+// `out` may be written.
+SdopStatus sdop_query_index_new(SdopQueryIndex **out);
+
+// Frees an index; null is fine.
+//
+// # Safety
+// It is from `sdop_query_index_new` and not used afterwards.
+void sdop_query_index_free(SdopQueryIndex *index);
+
+// Brings the index up to date with a world: from now on queries are about its bodies as they are
+// now. Only bodies that have changed since the last update cost more than a comparison. No cull is
+// needed.
+//
+// # Safety
+// `index` and `world` are handles.
+SdopStatus sdop_query_index_update(SdopQueryIndex *index, const SdopWorld *world);
+
+// `sdop_query_index_update` for a world of boxes.
+//
+// # Safety
+// `index` and `world` are handles.
+SdopStatus sdop_query_index_update_boxes(SdopQueryIndex *index, const SdopBoxWorld *world);
+
+// Writes the ids of the bodies that may touch a box on the world's axes into `buffer`, sorted by
+// slots. None is missed that has a point in common with it. If they don't fit, `count` says how
+// many there are.
+//
+// # Safety
+// `index` is a handle; `min` and `max` are the box's corners; `capacity` entries of `buffer` and
+// `count` may be written.
+SdopStatus sdop_query_index_touching_box(const SdopQueryIndex *index,
+                                         const double (*min)[3],
+                                         const double (*max)[3],
+                                         uint64_t *buffer,
+                                         size_t capacity,
+                                         size_t *count);
+
+// `sdop_query_index_touching_box` for a ball, or a point if the radius is 0.
+//
+// # Safety
+// `index` is a handle; `centre` is a point; `capacity` entries of `buffer` and `count` may be
+// written.
+SdopStatus sdop_query_index_touching_ball(const SdopQueryIndex *index,
+                                          const double (*centre)[3],
+                                          double radius,
+                                          uint64_t *buffer,
+                                          size_t capacity,
+                                          size_t *count);
+
+// Finds the body whose volume a segment may meet first: none is met at a smaller s. `hit` gets it,
+// and `found` whether there is one.
+//
+// # Safety
+// `index` is a handle, `segment` a segment; `hit` and `found` may be written.
+SdopStatus sdop_query_index_first(const SdopQueryIndex *index,
+                                  const SdopSegment *segment,
+                                  SdopHit *hit,
+                                  bool *found);
+
+// Writes all bodies that a segment may meet into `buffer`, sorted by s. If they don't fit, `count`
+// says how many there are.
+//
+// # Safety
+// `index` is a handle, `segment` a segment; `capacity` entries of `buffer` and `count` may be
+// written.
+SdopStatus sdop_query_index_along(const SdopQueryIndex *index,
+                                  const SdopSegment *segment,
+                                  SdopHit *buffer,
+                                  size_t capacity,
+                                  size_t *count);
 
 // Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 // defaults.

@@ -13,7 +13,7 @@ use crate::world::{Body, BodyId, World};
 /// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
 /// events.
 #[derive(Debug)]
-pub struct SdopWorld(World);
+pub struct SdopWorld(pub(super) World);
 
 /// A body to be inserted.
 #[repr(C)]

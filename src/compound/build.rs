@@ -11,6 +11,7 @@ use crate::world::compose;
 
 /// A shape in the frame of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)] // as `sdop.h` has it
 pub struct Part {
     /// Index into the compound's shapes.
     pub shape: u32,

@@ -1,6 +1,6 @@
 //! Finds the bodies of an index that may touch a volume, one query at a time or in batches.
 
-use super::index::{QueryIndex, Solid, TREES};
+use super::index::{QueryIndex, SolidBody, TREES};
 use super::shape::PosedShape;
 use super::tree::Tree;
 use super::volume::{QueryError, QueryVolume};
@@ -90,26 +90,26 @@ impl<'a> Probe<'a> {
 
     /// Whether a body may touch it.
     #[inline(always)]
-    fn may_touch(&self, solid: Solid<'_>) -> bool {
+    fn may_touch(&self, solid: SolidBody<'_>) -> bool {
         let ends = |aabb: Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f64::from));
         match (self, solid) {
-            (Self::Box([lo, hi]), Solid::Box(aabb)) => {
+            (Self::Box([lo, hi]), SolidBody::Box(aabb)) => {
                 let [min, max] = ends(aabb);
                 (0..3).all(|axis| lo[axis] <= max[axis] && min[axis] <= hi[axis])
             }
-            (Self::Ball(centre, radius), Solid::Box(aabb)) => {
+            (Self::Ball(centre, radius), SolidBody::Box(aabb)) => {
                 let [min, max] = ends(aabb);
                 !is_beyond(*centre, *radius, min, max)
             }
-            (Self::Shape(posed), Solid::Box(aabb)) => {
+            (Self::Shape(posed), SolidBody::Box(aabb)) => {
                 let [min, max] = ends(aabb);
                 posed.may_touch_box(min, max)
             }
-            (Self::Box([lo, hi]), Solid::Shape(body)) => body.may_touch_box(*lo, *hi),
-            (Self::Ball(centre, radius), Solid::Shape(body)) => {
+            (Self::Box([lo, hi]), SolidBody::Shape(body)) => body.may_touch_box(*lo, *hi),
+            (Self::Ball(centre, radius), SolidBody::Shape(body)) => {
                 body.may_touch_ball(*centre, *radius)
             }
-            (Self::Shape(posed), Solid::Shape(body)) => posed.may_touch(&body),
+            (Self::Shape(posed), SolidBody::Shape(body)) => posed.may_touch(&body),
         }
     }
 }

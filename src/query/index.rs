@@ -38,7 +38,7 @@ struct TreePlace {
 
 /// A body in the form that is tested after the trees.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Solid<'a> {
+pub(super) enum SolidBody<'a> {
     /// An exact box.
     Box(Aabb),
     /// A posed shape.
@@ -189,12 +189,12 @@ impl QueryIndex {
 
     /// The body in a place, for the tests.
     #[inline(always)]
-    pub(super) fn solid(&self, tree: usize, place: usize) -> Solid<'_> {
+    pub(super) fn solid(&self, tree: usize, place: usize) -> SolidBody<'_> {
         let tree = &self.trees[tree];
         let posed = self.posed.as_ref();
         match posed.and_then(|posed| posed.at(tree.numbers()[place] as usize)) {
-            Some(body) => Solid::Shape(body),
-            None => Solid::Box(tree.bounds(place as u32)),
+            Some(body) => SolidBody::Shape(body),
+            None => SolidBody::Box(tree.bounds(place as u32)),
         }
     }
 

@@ -1,9 +1,9 @@
 //! Segments and rays against an index: all bodies along them, and the first.
 
-use super::Track;
+use super::LineTrack;
 use super::answers::Answers;
-use super::index::{QueryIndex, Solid, TREES};
-use super::tree::{BOXES_PER_GROUP, Group, LaneContent, MOST_WAITING, Node, lanes_of};
+use super::index::{QueryIndex, SolidBody, TREES};
+use super::tree::{BOXES_PER_GROUP, BoxGroup, LaneContent, MOST_WAITING, Node, lanes_of};
 use super::volume::{Line, QueryError};
 use crate::bodies::Aabb;
 use crate::rounding::query::{Course, crossing};
@@ -35,7 +35,7 @@ struct LineCourses {
 }
 
 impl LineCourses {
-    fn new(track: &Track, origin: [f64; 3]) -> Self {
+    fn new(track: &LineTrack, origin: [f64; 3]) -> Self {
         let axes =
             [0, 1, 2].map(|axis| Course::new(track.from[axis] - origin[axis], track.speed[axis]));
         let limit = track.limit;
@@ -45,7 +45,7 @@ impl LineCourses {
     /// The lanes of a group that the line may meet up to `limit`, and the parameters at which it
     /// enters their boxes.
     #[inline(always)]
-    fn meeting(&self, group: &Group, limit: f64) -> (u32, [f64; BOXES_PER_GROUP]) {
+    fn meeting(&self, group: &BoxGroup, limit: f64) -> (u32, [f64; BOXES_PER_GROUP]) {
         let (mut first, mut last) = ([0.0_f64; BOXES_PER_GROUP], [limit; BOXES_PER_GROUP]);
         for axis in 0..3 {
             let (lo, hi) = (&group.lo[axis], &group.hi[axis]);
@@ -198,7 +198,7 @@ struct WaitingGroup {
 struct LineSearch<'a, T> {
     index: &'a QueryIndex,
     courses: LineCourses,
-    track: Track,
+    track: LineTrack,
     take: T,
 }
 
@@ -260,8 +260,8 @@ impl<T: FnMut(LineHit, f64) -> f64> LineSearch<'_, T> {
             return;
         }
         let at = match self.index.solid(tree, place) {
-            Solid::Box(aabb) => self.courses.enters(&aabb),
-            Solid::Shape(body) => body.crossed_by(&self.track),
+            SolidBody::Box(aabb) => self.courses.enters(&aabb),
+            SolidBody::Shape(body) => body.crossed_by(&self.track),
         };
         if let Some(at) = at.filter(|at| at <= limit) {
             let body = self.index.id_at(tree, place);

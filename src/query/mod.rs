@@ -56,7 +56,7 @@ pub(crate) use source::renew;
 
 /// A line as the tests need it: the points from + s·speed for s from 0 to `limit`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Track {
+pub(crate) struct LineTrack {
     from: [f64; 3],
     speed: [f64; 3],
     limit: f64,

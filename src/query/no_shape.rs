@@ -1,7 +1,7 @@
 //! Without the feature `shapes` all bodies are boxes, and the types of [`shape`](super::shape) have
 //! no values.
 
-use super::Track;
+use super::LineTrack;
 use crate::bodies::Aabb;
 use crate::bodies::contract::ContractError;
 
@@ -57,7 +57,7 @@ impl PosedShape<'_> {
         match *self.0 {}
     }
 
-    pub fn crossed_by(&self, _: &Track) -> Option<f64> {
+    pub fn crossed_by(&self, _: &LineTrack) -> Option<f64> {
         match *self.0 {}
     }
 }

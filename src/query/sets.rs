@@ -1,7 +1,7 @@
 //! Finds the pairs of bodies between two sets.
 
-use super::index::{QueryIndex, Solid, TREES, moved};
-use super::tree::{BOXES_PER_GROUP, Group, lanes_of};
+use super::index::{QueryIndex, SolidBody, TREES, moved};
+use super::tree::{BOXES_PER_GROUP, BoxGroup, lanes_of};
 use crate::bodies::Aabb;
 use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};
 use crate::world::BodyId;
@@ -84,7 +84,7 @@ impl Kernel for GroupPairs<'_> {
 }
 
 /// The boxes of a group, moved.
-fn seen_from(group: &Group, by: [f64; 3]) -> Group {
+fn seen_from(group: &BoxGroup, by: [f64; 3]) -> BoxGroup {
     let mut seen = group.clone();
     for lane in group.lanes() {
         seen.set(lane, &moved(&group.get(lane), by));
@@ -93,16 +93,16 @@ fn seen_from(group: &Group, by: [f64; 3]) -> Group {
 }
 
 /// Whether two bodies whose boxes meet may touch.
-fn may_touch(one: Solid<'_>, other: Solid<'_>) -> bool {
-    let touches_box = |aabb: Aabb, solid: Solid<'_>| match solid {
-        Solid::Box(_) => true,
-        Solid::Shape(body) => {
+fn may_touch(one: SolidBody<'_>, other: SolidBody<'_>) -> bool {
+    let touches_box = |aabb: Aabb, solid: SolidBody<'_>| match solid {
+        SolidBody::Box(_) => true,
+        SolidBody::Shape(body) => {
             let [lo, hi] = [aabb.min, aabb.max].map(|corner| corner.map(f64::from));
             body.may_touch_box(lo, hi)
         }
     };
     match (one, other) {
-        (Solid::Box(aabb), solid) | (solid, Solid::Box(aabb)) => touches_box(aabb, solid),
-        (Solid::Shape(one), Solid::Shape(other)) => one.may_touch(&other),
+        (SolidBody::Box(aabb), solid) | (solid, SolidBody::Box(aabb)) => touches_box(aabb, solid),
+        (SolidBody::Shape(one), SolidBody::Shape(other)) => one.may_touch(&other),
     }
 }

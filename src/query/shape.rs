@@ -3,7 +3,7 @@
 //! Supports are bounded from the slabs alone, by the multipliers of `overlap/ordop/support.rs`
 //! (lemma L7), here for one direction at a time and about the body's origin.
 
-use super::Track;
+use super::LineTrack;
 use crate::bodies::Aabb;
 use crate::bodies::contract::{ContractError, check_pose};
 use crate::rounding::pose::{self, Rotation, rotate_of};
@@ -38,10 +38,16 @@ impl QueryShape {
     #[must_use]
     pub fn new(shape: &Shape) -> Self {
         let frame = ShapeFrame::new(shape, &shape.ordop.basis);
-        Self::of((&shape.ordop, &frame, shape.pose_offset))
+        Self::of(ShapeVolumes {
+            ordop: &shape.ordop,
+            frame: &frame,
+            radius: shape.ball.radius.into(),
+            pose_offset: shape.pose_offset,
+        })
     }
 
-    pub(super) fn of((ordop, frame, pose_offset): ShapeVolumes<'_>) -> Self {
+    pub(super) fn of(volumes: ShapeVolumes<'_>) -> Self {
+        let ShapeVolumes { ordop, frame, .. } = volumes;
         let norm = ordop.basis.norm();
         let direction = |&coefficients: &[i8; 3]| {
             let nonzero = coefficients.iter().filter(|&&c| c != 0).count();
@@ -59,20 +65,21 @@ impl QueryShape {
             ends,
             over_square: 1.0 / (norm * norm),
             centre: frame.centre().map(f64::from),
-            radius: frame.radius().into(),
+            radius: volumes.radius,
             reach: frame.reach().into(),
-            pose_offset,
+            pose_offset: volumes.pose_offset,
             ordop: ordop.clone(),
         }
     }
 
     /// Whether it was made from these volumes.
-    pub(super) fn is_of(&self, (ordop, frame, pose_offset): ShapeVolumes<'_>) -> bool {
+    pub(super) fn is_of(&self, volumes: ShapeVolumes<'_>) -> bool {
+        let ShapeVolumes { ordop, frame, .. } = volumes;
         self.ordop == *ordop
             && self.centre == frame.centre().map(f64::from)
-            && self.radius == f64::from(frame.radius())
+            && self.radius == volumes.radius
             && self.reach == f64::from(frame.reach())
-            && self.pose_offset == pose_offset
+            && self.pose_offset == volumes.pose_offset
     }
 
     /// Whether it has the ball, reach and place of a shape, whose slabs may have other axes.
@@ -316,7 +323,7 @@ impl PosedShape<'_> {
     }
 
     /// A parameter no greater than any at which a line may touch it, if it may.
-    pub fn crossed_by(&self, track: &Track) -> Option<f64> {
+    pub fn crossed_by(&self, track: &LineTrack) -> Option<f64> {
         let (from, far) = into_body(&self.rotation, track.from, self.translation);
         let speed = turn_back(&self.rotation, track.speed);
         let out = self.margin + slack(far + self.size());

@@ -34,14 +34,14 @@ const WORN_WIDTH_RATIO: f64 = 2.0;
 
 /// Up to sixteen boxes, as columns.
 #[derive(Clone, Debug)]
-pub(super) struct Group {
+pub(super) struct BoxGroup {
     pub lo: [[f32; BOXES_PER_GROUP]; 3],
     pub hi: [[f32; BOXES_PER_GROUP]; 3],
     /// Lanes that hold a box.
     pub present: u32,
 }
 
-impl Group {
+impl BoxGroup {
     const EMPTY: Self = Self {
         lo: [[0.0; BOXES_PER_GROUP]; 3],
         hi: [[0.0; BOXES_PER_GROUP]; 3],
@@ -111,7 +111,7 @@ pub(super) fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     /// The groups of boxes, then those of the groups of the level before, up to one group.
-    levels: Vec<Vec<Group>>,
+    levels: Vec<Vec<BoxGroup>>,
     /// The number in each place.
     numbers: Vec<u32>,
     /// Groups of boxes that have changed since the levels above were last updated.
@@ -159,7 +159,7 @@ impl Tree {
                 self.levels.push(Vec::new());
                 self.changed.push(0); // what was on top is below now
             }
-            self.levels[level].resize(groups, Group::EMPTY);
+            self.levels[level].resize(groups, BoxGroup::EMPTY);
             if groups == 1 && self.levels.len() == level + 1 {
                 break;
             }
@@ -222,7 +222,7 @@ impl Tree {
     }
 
     /// The groups of boxes; the first has places 0 to 15.
-    pub fn groups(&self) -> &[Group] {
+    pub fn groups(&self) -> &[BoxGroup] {
         self.levels.first().map_or(&[], Vec::as_slice)
     }
 
@@ -234,7 +234,7 @@ impl Tree {
 
     /// A group of a level.
     #[inline(always)]
-    pub fn group(&self, node: Node) -> &Group {
+    pub fn group(&self, node: Node) -> &BoxGroup {
         &self.levels[node.level as usize][node.group as usize]
     }
 
@@ -357,9 +357,9 @@ mod tests {
     use super::*;
     use crate::simd::{Kernel, Tier, dispatch};
 
-    struct Meeting<'a>(&'a Tree, Aabb);
+    struct ListMeeting<'a>(&'a Tree, Aabb);
 
-    impl Kernel for Meeting<'_> {
+    impl Kernel for ListMeeting<'_> {
         type Output = Vec<u32>;
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> Vec<u32> {
@@ -394,7 +394,7 @@ mod tests {
             let wanted = (0..).zip(boxes).filter(|(_, aabb)| meets(aabb));
             let wanted: Vec<u32> = wanted.map(|(number, _)| number).collect();
             for tier in Tier::available() {
-                assert_eq!(dispatch(tier, Meeting(tree, query)), wanted, "{tier}");
+                assert_eq!(dispatch(tier, ListMeeting(tree, query)), wanted, "{tier}");
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::Track;
+use super::LineTrack;
 use super::shape::QueryShape;
 use crate::bodies::Aabb;
 use crate::rounding::{LIMIT, exp2, query::largest};
@@ -183,14 +183,14 @@ impl Line {
     }
 
     /// Its start, the unit of s, and the largest s.
-    pub(super) fn track(&self) -> Track {
+    pub(super) fn track(&self) -> LineTrack {
         match *self {
-            Self::Segment { from, to } => Track {
+            Self::Segment { from, to } => LineTrack {
                 from,
                 speed: [0, 1, 2].map(|axis| to[axis] - from[axis]),
                 limit: 1.0,
             },
-            Self::Ray { origin, direction } => Track {
+            Self::Ray { origin, direction } => LineTrack {
                 from: origin,
                 speed: direction,
                 limit: f64::INFINITY,

@@ -117,9 +117,9 @@ mod tests {
     }
 
     /// A box's cube (centre and half side), its gap, and whether the box is sound.
-    struct About<'a>(&'a Slabs);
+    struct MakeCube<'a>(&'a Slabs);
 
-    impl Kernel for About<'_> {
+    impl Kernel for MakeCube<'_> {
         type Output = ([f32; 4], f32, bool);
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> Self::Output {
@@ -138,7 +138,7 @@ mod tests {
     fn is_sound(slabs: &Slabs) -> bool {
         Tier::available()
             .into_iter()
-            .all(|tier| dispatch(tier, About(slabs)).2)
+            .all(|tier| dispatch(tier, MakeCube(slabs)).2)
     }
 
     fn meet(a: &Slabs, b: &Slabs) -> bool {
@@ -146,14 +146,14 @@ mod tests {
     }
 
     /// What the cubes of two boxes say: whether the boxes meet, if they know.
-    struct Say<'a>(&'a Slabs, &'a Slabs);
+    struct CompareCubes<'a>(&'a Slabs, &'a Slabs);
 
-    impl Kernel for Say<'_> {
+    impl Kernel for CompareCubes<'_> {
         type Output = Option<bool>;
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> Option<bool> {
             let [(one, gap, _), (other, other_gap, _)] =
-                [About(self.0).run(l), About(self.1).run(l)];
+                [MakeCube(self.0).run(l), MakeCube(self.1).run(l)];
             let less = less_than_sure(gap.max(other_gap));
             let between = [0, 1, 2].map(|axis| l.splat(one[axis]) - l.splat(other[axis]));
             let reach = l.splat(one[3]) + l.splat(other[3]);
@@ -172,7 +172,7 @@ mod tests {
         fn cubes_answer_as_their_boxes_do(a in slabs(), b in slabs()) {
             prop_assert!(is_sound(&a) && is_sound(&b));
             for tier in [Tier::detect(), Tier::SCALAR] {
-                if let Some(answer) = dispatch(tier, Say(&a, &b)) {
+                if let Some(answer) = dispatch(tier, CompareCubes(&a, &b)) {
                     prop_assert_eq!(answer, meet(&a, &b));
                 }
             }
@@ -190,7 +190,7 @@ mod tests {
             let mut b = a;
             let beside = (0..steps.abs()).fold(a[axis][1], |x, _| if steps < 0 { x.next_down() } else { x.next_up() });
             b[axis] = [beside, beside + width];
-            if let Some(answer) = dispatch(Tier::detect(), Say(&a, &b)) {
+            if let Some(answer) = dispatch(Tier::detect(), CompareCubes(&a, &b)) {
                 prop_assert_eq!(answer, meet(&a, &b));
             }
         }
@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn cubes_of_balls_know_nearly_always() {
         let at = |x: f32| [[x - 1.0, x + 1.0], [-1.0, 1.0], [300.0, 302.0]];
-        let knows = |x: f32| dispatch(Tier::detect(), Say(&at(0.1), &at(x)));
+        let knows = |x: f32| dispatch(Tier::detect(), CompareCubes(&at(0.1), &at(x)));
         assert_eq!(knows(2.099), Some(true));
         assert_eq!(knows(2.101), Some(false));
     }
@@ -228,7 +228,7 @@ mod tests {
                 [-inf, 0.0],
                 [inf, -inf],
             ] {
-                let told = |tier| !dispatch(tier, About(&with(axis, bad))).2;
+                let told = |tier| !dispatch(tier, MakeCube(&with(axis, bad))).2;
                 assert!(Tier::available().into_iter().all(told), "{bad:?}");
             }
             for good in [
@@ -254,7 +254,7 @@ mod tests {
                 "{found} of {exact}"
             );
         };
-        let about = About(&[[1.0, 3.0], [-8.0, 0.0], [40.0, 44.0]]);
+        let about = MakeCube(&[[1.0, 3.0], [-8.0, 0.0], [40.0, 44.0]]);
         let (outer, gap, _) = dispatch(Tier::SCALAR, about);
         assert_eq!(outer[..3], [0.25, -0.5, 5.25]);
         within(outer[3], 0.5);
@@ -266,7 +266,7 @@ mod tests {
     /// A box without an extent has a cube with one.
     #[test]
     fn empty_box_has_a_cube() {
-        let about = About(&[[1.0; 2], [-8.0; 2], [40.0; 2]]);
+        let about = MakeCube(&[[1.0; 2], [-8.0; 2], [40.0; 2]]);
         let found = dispatch(Tier::SCALAR, about);
         assert_eq!(found, ([0.125, -1.0, 5.0, FLOOR], FLOOR, true));
     }

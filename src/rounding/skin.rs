@@ -120,13 +120,13 @@ mod tests {
     use super::*;
     use crate::simd::{Kernel, Tier, dispatch};
 
-    struct Stays {
+    struct CompareDrift {
         skin: Skin,
         now: [f32; 4],
         then: [f32; 4],
     }
 
-    impl Kernel for Stays {
+    impl Kernel for CompareDrift {
         type Output = bool;
         #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> bool {
@@ -136,7 +136,7 @@ mod tests {
     }
 
     fn stays_in(tier: Tier, skin: Skin, now: [f32; 4], then: [f32; 4]) -> bool {
-        dispatch(tier, Stays { skin, now, then })
+        dispatch(tier, CompareDrift { skin, now, then })
     }
 
     /// Numbers in [0, 1), the same ones each time.

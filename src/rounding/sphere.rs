@@ -42,7 +42,12 @@ pub fn world_ball(rotation: &Rotation, t: [f32; 3], c: [f32; 3], r: f32) -> ([f3
     if c == [0.0; 3] {
         return (t, r);
     }
-    let exact = transform(rotation, c, t);
+    rounded_ball(transform(rotation, c, t), t, c, r)
+}
+
+/// The ball of [`world_ball`] about a centre in f64 that is not the translation.
+#[inline(always)]
+pub fn rounded_ball(exact: [f64; 3], t: [f32; 3], c: [f32; 3], r: f32) -> ([f32; 3], f32) {
     let centre = exact.map(|x| x as f32);
     let moved = (0..3)
         .map(|i| (exact[i] - f64::from(centre[i])).powi(2))

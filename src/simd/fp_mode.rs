@@ -30,7 +30,7 @@ mod control {
     pub fn set(word: u64) {
         let word = word as u32;
         // SAFETY: `word` has been read from MXCSR or is one of the above, whose reserved bits are
-        // zero. Callers return to the mode that was before they return (`Former`).
+        // zero. Callers return to the mode that was before they return (`FormerMode`).
         unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const word, options(nostack, preserves_flags)) };
     }
 }
@@ -54,7 +54,7 @@ mod control {
 
     pub fn set(word: u64) {
         // SAFETY: `word` has been read from FPCR or is one of the above. Callers return to the mode
-        // that was before they return (`Former`).
+        // that was before they return (`FormerMode`).
         unsafe { asm!("msr fpcr, {}", in(reg) word, options(nostack, preserves_flags)) };
     }
 }
@@ -100,7 +100,7 @@ impl FpMode {
     /// again.
     #[inline]
     pub fn run<R>(self, work: impl FnOnce() -> R) -> R {
-        let _former = Former::before(self);
+        let _former = FormerMode::before(self);
         apart(work)
     }
 }
@@ -119,9 +119,9 @@ fn apart<R>(work: impl FnOnce() -> R) -> R {
 }
 
 /// The mode to return to, if it is another one; of this thread, so it stays there.
-struct Former(Option<FpMode>, PhantomData<*const ()>);
+struct FormerMode(Option<FpMode>, PhantomData<*const ()>);
 
-impl Former {
+impl FormerMode {
     fn before(mode: FpMode) -> Self {
         let former = FpMode::current();
         let differs = former != mode;
@@ -132,7 +132,7 @@ impl Former {
     }
 }
 
-impl Drop for Former {
+impl Drop for FormerMode {
     fn drop(&mut self) {
         if let Some(former) = self.0 {
             control::set(former.0);

@@ -78,8 +78,8 @@ pub struct ShapeFrame {
     /// The number of the shape.
     pub(super) shape: u32,
     pub(super) margin: f32,
-    centre: [f32; 3],
-    radius: f32,
+    pub(super) centre: [f32; 3],
+    pub(super) radius: f32,
     /// The inflated radius R, if the ball's centre is the body's origin. No pose changes it then.
     pub(super) inflated: Option<f32>,
     pub(super) reach: f32,

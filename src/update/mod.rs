@@ -12,6 +12,7 @@ mod intervals;
 pub mod row;
 mod rows;
 mod rows_by_number;
+mod spheres;
 mod window;
 
 pub use frame::{ShapeFrame, ShapeFrames};
@@ -23,9 +24,10 @@ pub use window::{MOST_ROWS, RowWindow};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use self::spheres::EccentricSpheres;
 use crate::bodies::contract::{balls_are_within_limit, is_within_limit};
 use crate::bodies::{Bodies, Places, read_ahead};
-use crate::simd::prefetch_ends;
+use crate::simd::{dispatch, prefetch_ends};
 use crate::threads::Executor;
 
 /// How many places ahead a pose is prefetched. Neighbours in space may be anywhere in the user's
@@ -46,7 +48,7 @@ const BODIES_PER_TASK: usize = 4096;
 pub fn update_spheres(
     executor: Executor<'_>,
     spheres: &mut [[f32; 4]],
-    frames: &[ShapeFrame],
+    frames: &ShapeFrames,
     bodies: &Bodies,
     places: &Places,
     range: Range<usize>,
@@ -62,30 +64,36 @@ pub fn update_spheres(
     );
     let ahead = if is_near { &[] } else { &*places.body };
     pool.pieces(&mut spheres[range], BODIES_PER_TASK, |start, spheres| {
-        let start = first + start;
-        let (mut turned, mut sound) = (false, true);
-        let who = places.body[start..].iter().zip(&places.shape[start..]);
-        for (place, (sphere, (&body, &shape))) in (start..).zip(spheres.iter_mut().zip(who)) {
-            if let Some(&later) = ahead.get(place + PREFETCH_DISTANCE) {
-                prefetch_ends(&bodies.translation[later as usize]);
-            }
-            let (body, frame) = (body as usize, &frames[shape as usize]);
-            let t = bodies.translation[body];
-            // The rotation is elsewhere in memory. Reading it without need doubles the time for a
-            // million bodies.
-            *sphere = match frame.inflated {
-                Some(inflated) => [t[0], t[1], t[2], inflated],
-                None => {
-                    let sphere = frame.sphere(bodies.rotation[body], t);
-                    turned = true;
-                    sound &= is_within_limit(&t) && sphere.iter().all(|x| x.is_finite());
-                    sphere
+        let first = first + start;
+        let mut sound = true;
+        if frames.are_centred() {
+            let who = places.body[first..].iter().zip(&places.shape[first..]);
+            for (place, (sphere, (&body, &shape))) in (first..).zip(spheres.iter_mut().zip(who)) {
+                if let Some(&later) = ahead.get(place + PREFETCH_DISTANCE) {
+                    prefetch_ends(&bodies.translation[later as usize]);
                 }
+                // The rotation is elsewhere in memory. Reading it without need doubles the time for
+                // a million bodies.
+                let [x, y, z] = bodies.translation[body as usize];
+                // All balls are centred, so each radius is there.
+                let radius = frames[shape as usize].inflated.unwrap_or(f32::NAN);
+                *sphere = [x, y, z, radius];
+            }
+        } else {
+            let kernel = EccentricSpheres {
+                frames,
+                bodies,
+                places,
+                ahead,
+                first,
+                spheres,
             };
+            sound = dispatch(tier, kernel);
         }
         // A centre other than the body's origin may be a little farther out than the translation.
         if !balls_are_within_limit(tier, spheres) {
-            sound &= turned && centred_within_limit(spheres, frames, &places.shape[start..]);
+            sound &= !frames.are_centred()
+                && centred_within_limit(spheres, frames, &places.shape[first..]);
         }
         if !sound {
             is_sound.store(false, Ordering::Relaxed);
@@ -167,7 +175,7 @@ mod tests {
     /// Whether bodies with these shapes, rotations and places are within the contract.
     fn are_sound(shapes: &[Shape], bodies: &[(u32, [f32; 4], [f32; 3])]) -> bool {
         let frame = |shape: &Shape| ShapeFrame::new(shape, &shape.ordop.basis);
-        let frames: Vec<_> = shapes.iter().map(frame).collect();
+        let frames: ShapeFrames = shapes.iter().map(frame).collect();
         let mut columns = Bodies::default();
         for &(shape, rotation, translation) in bodies {
             columns.push(shape, true, rotation, translation);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::reported::Reported;
+use super::reported_pairs::ReportedPairs;
 use super::{BodyId, Event, Events};
 
 /// The least number of changes for which a log is searched for those that cancel each other.
@@ -25,7 +25,7 @@ pub(super) struct ChangeLog {
 
 impl ChangeLog {
     /// The changes from some pairs to others.
-    pub fn between(before: Arc<Reported>, now: Arc<Reported>) -> Self {
+    pub fn between(before: Arc<ReportedPairs>, now: Arc<ReportedPairs>) -> Self {
         let change = |pair, has_begun| Some(PairChange { pair, has_begun });
         let events = Events::between(before, now);
         let changes = events.iter().filter_map(|event| match event {

@@ -1,7 +1,7 @@
 //! Crowds: pairs in portions, a limit to their number, and the release of memory.
 
 use super::ids::shrink_column;
-use super::local::Origins;
+use super::local_origins::Origins;
 use super::pair_log::WorldPairs;
 use super::{World, WorldError};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::BodyId;
 use super::pair_log::{PairIds, WorldPairs};
-use super::reported::Reported;
+use super::reported_pairs::ReportedPairs;
 use crate::pairs::{Partners, key, pair_of};
 
 /// Changes are listed if they are at most about one in this number of pairs of both culls.
@@ -39,7 +39,7 @@ pub struct Events {
 /// The pairs of the later cull.
 #[derive(Clone, Debug)]
 pub(super) enum CurrentPairs {
-    List(Arc<Reported>),
+    List(Arc<ReportedPairs>),
     Partners {
         slots: Arc<Partners>,
         generation: Arc<Vec<u32>>,
@@ -50,7 +50,7 @@ pub(super) enum CurrentPairs {
 #[derive(Clone, Debug)]
 pub(super) enum PairDifference {
     /// The former pairs.
-    Since(Arc<Reported>),
+    Since(Arc<ReportedPairs>),
     /// The changes, both sorted.
     Listed {
         begun: Vec<[BodyId; 2]>,
@@ -81,7 +81,7 @@ impl CurrentPairs {
 
 impl Events {
     /// The events between two culls.
-    pub(super) fn between(before: Arc<Reported>, now: Arc<Reported>) -> Self {
+    pub(super) fn between(before: Arc<ReportedPairs>, now: Arc<ReportedPairs>) -> Self {
         let change = changes_between(&before, &now).unwrap_or(PairDifference::Since(before));
         let now = CurrentPairs::List(now);
         Self { now, change }
@@ -139,7 +139,7 @@ impl Events {
 }
 
 /// Lists the changes between two culls, unless most pairs have changed.
-fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> {
+fn changes_between(before: &ReportedPairs, now: &ReportedPairs) -> Option<PairDifference> {
     let most = (before.len() + now.len()) / LISTED_SHARE + ALWAYS_LISTED;
     if before.len().abs_diff(now.len()) > most {
         return None;
@@ -151,7 +151,7 @@ fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> 
         changes_in_order(before, now, are_of_one_time, most)?
     };
     // Bodies are looked up at the end, because that misses the caches.
-    let named = |keys: Vec<u64>, reported: &Reported| {
+    let named = |keys: Vec<u64>, reported: &ReportedPairs| {
         let ids = reported.generation.as_slice();
         let pairs = keys.into_iter().map(pair_of);
         pairs.map(|pair| BodyId::pair_of(pair, ids)).collect()
@@ -165,8 +165,8 @@ fn changes_between(before: &Reported, now: &Reported) -> Option<PairDifference> 
 /// The keys of the pairs that have begun and ended from one cull to a later one, found by merging
 /// their sorted lists. `None` if there are more than `most`.
 fn changes_in_order(
-    before: &Reported,
-    now: &Reported,
+    before: &ReportedPairs,
+    now: &ReportedPairs,
     are_of_one_time: bool,
     most: usize,
 ) -> Option<[Vec<u64>; 2]> {

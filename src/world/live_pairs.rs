@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::change_log::{ChangeLog, PairChange};
 use super::events::{CurrentPairs, Event, PairDifference};
 use super::pair_log::{PairLog, WorldPairs};
-use super::reported::Reported;
+use super::reported_pairs::ReportedPairs;
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, Partners};
 
@@ -163,8 +163,8 @@ impl LivePairs {
 }
 
 impl PairsByBody {
-    fn last(&self, ids: &Ids) -> Reported {
-        Reported::sorted(self.partners.iter().collect(), ids.generation().clone())
+    fn last(&self, ids: &Ids) -> ReportedPairs {
+        ReportedPairs::sorted(self.partners.iter().collect(), ids.generation().clone())
     }
 
     fn pairs<'a>(&'a self, ids: &'a Ids) -> WorldPairs<'a> {
@@ -183,9 +183,9 @@ impl PairsByBody {
     }
 
     /// The pairs of the last call of `events`.
-    fn watched(&self, ids: &Ids) -> Reported {
+    fn watched(&self, ids: &Ids) -> ReportedPairs {
         let Some(changes) = self.changes.clone() else {
-            return Reported::default();
+            return ReportedPairs::default();
         };
         let events = self.events(changes.net(), ids);
         reported(events.iter().filter_map(|event| match event {
@@ -196,7 +196,7 @@ impl PairsByBody {
 }
 
 /// Sorted pairs as a list, with the generations of only their slots.
-fn reported(pairs: impl Iterator<Item = [BodyId; 2]>) -> Reported {
+fn reported(pairs: impl Iterator<Item = [BodyId; 2]>) -> ReportedPairs {
     let (mut slots, mut generation) = (PairList::default(), Vec::new());
     for pair in pairs {
         for id in pair {
@@ -207,7 +207,7 @@ fn reported(pairs: impl Iterator<Item = [BodyId; 2]>) -> Reported {
         }
         slots.push(pair[0].slot, pair[1].slot);
     }
-    Reported::sorted(slots, Arc::new(generation))
+    ReportedPairs::sorted(slots, Arc::new(generation))
 }
 
 /// Changes pairs. A change is made in the lists of both bodies, and logged once.

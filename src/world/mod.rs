@@ -33,7 +33,7 @@ mod bounds;
 mod bounds_tree;
 mod change_log;
 #[cfg(feature = "shapes")]
-mod changed;
+mod changed_bodies;
 #[cfg(feature = "shapes")]
 mod crowds;
 #[cfg(all(feature = "shapes", feature = "serde"))]
@@ -45,9 +45,7 @@ mod excluded;
 mod ids;
 mod live_pairs;
 #[cfg(feature = "shapes")]
-mod local;
-#[cfg(feature = "shapes")]
-mod lookup;
+mod local_origins;
 #[cfg(feature = "shapes")]
 mod margins;
 mod movers;
@@ -55,20 +53,22 @@ mod movers;
 mod offset;
 mod pair_log;
 #[cfg(feature = "shapes")]
+mod pair_lookup;
+#[cfg(feature = "shapes")]
 mod pair_test;
 #[cfg(feature = "shapes")]
 mod region;
 #[cfg(feature = "shapes")]
 mod regions;
-mod reported;
-#[cfg(feature = "serde")]
-mod saved;
+mod reported_pairs;
+#[cfg(feature = "shapes")]
+mod shape_volumes;
 #[cfg(feature = "shapes")]
 mod shapes;
 #[cfg(all(feature = "shapes", feature = "serde"))]
 mod snapshot;
-#[cfg(feature = "shapes")]
-mod volumes;
+#[cfg(feature = "serde")]
+mod snapshot_parts;
 
 pub use crate::bodies::{Groups, Motion};
 #[cfg(feature = "shapes")]
@@ -76,29 +76,29 @@ pub use body::Body;
 pub use error::WorldError;
 pub use events::{Event, Events};
 pub use ids::BodyId;
-#[cfg(feature = "shapes")]
-pub use lookup::PairLookup;
 pub use pair_log::{PairIds, WorldPairs};
 #[cfg(feature = "shapes")]
+pub use pair_lookup::PairLookup;
+#[cfg(feature = "shapes")]
 pub use pair_test::PairTest;
-#[cfg(feature = "serde")]
-pub use saved::SnapshotError;
 #[cfg(all(feature = "shapes", feature = "serde"))]
 pub use snapshot::WorldSnapshot;
+#[cfg(feature = "serde")]
+pub use snapshot_parts::SnapshotError;
 
 pub(crate) use self::ids::{Ids, shrink_column};
 pub(crate) use self::live_pairs::LivePairs;
 pub(crate) use self::movers::Movers;
+#[cfg(feature = "shapes")]
+pub(crate) use self::shape_volumes::{ShapeVolumes, compose};
 #[cfg(feature = "serde")]
-pub(crate) use self::saved::{
+pub(crate) use self::snapshot_parts::{
     IdsSnapshot, PairsSnapshot, Version, check_length, resting_column, resting_slots,
     restored_excluded,
 };
 #[cfg(feature = "shapes")]
-pub(crate) use self::volumes::{ShapeVolumes, compose};
-#[cfg(feature = "shapes")]
 use self::{
-    local::Origins,
+    local_origins::Origins,
     margins::{Margins, check_margin},
     shapes::{ShapeSlot, check_shape},
 };
@@ -442,6 +442,11 @@ impl World {
         self.ids.slots()
     }
 
+    /// The slot that the next body gets.
+    pub(crate) fn next_slot(&self) -> usize {
+        self.ids.next()
+    }
+
     /// The pair finder in use: the chosen one, or the last choice of `auto`.
     #[must_use]
     pub fn finder(&self) -> Finder {
@@ -494,7 +499,7 @@ impl World {
     }
 
     /// Checks a body for a slot.
-    fn check(&self, slot: usize, body: &Body) -> Result<(), ContractError> {
+    pub(crate) fn check(&self, slot: usize, body: &Body) -> Result<(), ContractError> {
         in_default_mode(|| {
             check_number(slot + 1)?;
             let reach = check_shape(slot, body.shape, &self.shapes)?;

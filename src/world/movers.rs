@@ -156,10 +156,10 @@ impl Movers {
         self.index = Some(index);
     }
 
-    /// Puts changed bodies where they are now, and lists those whose boxes meet each one's:
-    /// `box_of` is called for each of [`Self::changed`], groups have one entry a slot. Returns the
-    /// work that it took: boxes and cells that were looked at. None if that is too much, or if
-    /// there are pairs beyond `most`.
+    /// Moves changed bodies in the index, and lists the bodies whose boxes meet each one's:
+    /// `box_of` is called for each of [`Self::changed`], groups have one entry per slot. Returns
+    /// the work that it took, in boxes and cells read; `None` if that is too much, or if there are
+    /// more than `most` pairs.
     pub fn find(
         &mut self,
         box_of: impl FnMut(u32) -> IndexedBox,

@@ -4,7 +4,7 @@ use std::iter::Zip;
 use std::slice::Iter;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::reported::Reported;
+use super::reported_pairs::ReportedPairs;
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, PairSorter, PartnerPairs, Partners};
 
@@ -19,7 +19,7 @@ pub struct WorldPairs<'a> {
 #[derive(Clone, Copy, Debug)]
 enum SlotPairs<'a> {
     List(&'a PairList),
-    Reported(&'a Reported),
+    ReportedPairs(&'a ReportedPairs),
     Partners(&'a Partners),
 }
 
@@ -39,7 +39,7 @@ impl<'a> WorldPairs<'a> {
     pub fn len(&self) -> usize {
         match self.slots {
             SlotPairs::List(list) => list.len(),
-            SlotPairs::Reported(reported) => reported.len(),
+            SlotPairs::ReportedPairs(reported) => reported.len(),
             SlotPairs::Partners(partners) => partners.len(),
         }
     }
@@ -56,7 +56,7 @@ impl<'a> WorldPairs<'a> {
         let in_list = |list: &'a PairList| list.first().iter().zip(list.second());
         let slots = match self.slots {
             SlotPairs::List(list) => SlotIter::List(in_list(list)),
-            SlotPairs::Reported(reported) => SlotIter::List(in_list(reported.slots())),
+            SlotPairs::ReportedPairs(reported) => SlotIter::List(in_list(reported.slots())),
             SlotPairs::Partners(partners) => SlotIter::Partners(partners.iter()),
         };
         PairIds {
@@ -115,11 +115,11 @@ impl Iterator for PairIds<'_> {
 
 impl ExactSizeIterator for PairIds<'_> {}
 
-impl Reported {
+impl ReportedPairs {
     /// The pairs with their ids.
     pub fn pairs(&self) -> WorldPairs<'_> {
         WorldPairs {
-            slots: SlotPairs::Reported(self),
+            slots: SlotPairs::ReportedPairs(self),
             generation: &self.generation,
         }
     }
@@ -130,16 +130,16 @@ impl Reported {
 /// Lists are shared with [`Events`], and none is copied: two lists are used alternately.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairLog {
-    pub(super) last: Arc<Reported>,
-    pub(super) watched: Arc<Reported>,
+    pub(super) last: Arc<ReportedPairs>,
+    pub(super) watched: Arc<ReportedPairs>,
     /// The list of events before: its memory is reused once nothing reads it.
-    spare: Option<Arc<Reported>>,
+    spare: Option<Arc<ReportedPairs>>,
     sorter: Arc<Mutex<PairSorter>>,
 }
 
 impl PairLog {
     /// A log of the pairs of a cull, and those of the last events.
-    pub(super) fn of(last: Arc<Reported>, watched: Arc<Reported>) -> Self {
+    pub(super) fn of(last: Arc<ReportedPairs>, watched: Arc<ReportedPairs>) -> Self {
         Self {
             last,
             watched,
@@ -151,7 +151,7 @@ impl PairLog {
     pub fn take(&mut self) -> PairList {
         let last = Arc::into_inner(std::mem::take(&mut self.last));
         let unread = last.or_else(|| Arc::into_inner(self.spare.take()?));
-        let mut list = unread.map(Reported::into_list).unwrap_or_default();
+        let mut list = unread.map(ReportedPairs::into_list).unwrap_or_default();
         list.clear();
         list
     }
@@ -159,7 +159,7 @@ impl PairLog {
     /// Takes the pairs of a cull in any order.
     pub fn put(&mut self, slots: PairList, ids: &Ids) {
         let (generation, sorter) = (ids.generation().clone(), self.sorter.clone());
-        self.last = Arc::new(Reported::found(slots, generation, sorter));
+        self.last = Arc::new(ReportedPairs::found(slots, generation, sorter));
     }
 
     /// The pairs of the last cull.

@@ -9,12 +9,12 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::local::Origins;
-use super::saved::{
+use super::local_origins::Origins;
+use super::shapes::{ShapeSlot, check_shape};
+use super::snapshot_parts::{
     IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged, resting_column,
     resting_slots, restored_excluded,
 };
-use super::shapes::{ShapeSlot, check_shape};
 use super::{BodyId, Groups, LivePairs, World, check_margin, check_pose};
 use crate::bodies::Bodies;
 use crate::strategy::RefinementRanks;

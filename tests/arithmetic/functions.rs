@@ -315,9 +315,9 @@ fn skin(inputs: &mut Inputs) -> (Skin, [f32; 2]) {
     }
 }
 
-struct Stays(Skin, [[f32; 4]; 2]);
+struct CompareDrift(Skin, [[f32; 4]; 2]);
 
-impl Kernel for Stays {
+impl Kernel for CompareDrift {
     type Output = bool;
     fn run<L: Lanes>(self, l: L) -> bool {
         let [now, before] = self.1.map(|ball| ball.map(|x| l.splat(x)));
@@ -342,14 +342,14 @@ fn drift(tier: Tier, inputs: &mut Inputs) -> Case {
     let [x, y, z] = [0, 1, 2].map(|i| (f64::from(before[i]) + way[i] * left) as f32);
     let now = [x, y, z, (f64::from(radius) + growth) as f32];
     let before = [before[0], before[1], before[2], radius];
-    let stays = dispatch(tier, Stays(skin, [now, before]));
+    let stays = dispatch(tier, CompareDrift(skin, [now, before]));
     let case = Case::of("stays").f32s(&numbers).f32s(&now).f32s(&before);
     case.gives().bit(stays)
 }
 
-struct About([[f32; 3]; 2]);
+struct MakeCube([[f32; 3]; 2]);
 
-impl Kernel for About {
+impl Kernel for MakeCube {
     type Output = [f32; 5];
     fn run<L: Lanes>(self, l: L) -> [f32; 5] {
         let [lower, upper] = self.0.map(|ends| ends.map(|end| l.splat(end)));
@@ -371,7 +371,7 @@ fn cube(tier: Tier, inputs: &mut Inputs) -> Case {
         [0, 1, 2].map(|i| a[i].min(b[i])),
         [0, 1, 2].map(|i| a[i].max(b[i])),
     ];
-    let found = dispatch(tier, About(ends));
+    let found = dispatch(tier, MakeCube(ends));
     Case::of("cube")
         .f32s(ends.as_flattened())
         .gives()

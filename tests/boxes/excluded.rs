@@ -39,8 +39,9 @@ fn expected(world: &BoxWorld, excluded: &BTreeSet<[BodyId; 2]>) -> BTreeSet<[Bod
     pairs
 }
 
+/// Excluded pairs are left out, and events follow.
 #[test]
-fn excluded_pairs_are_left_out_and_events_follow() {
+fn exclusions_change_pairs_and_events() {
     let random = &mut Random(47);
     let mut world = BoxWorld::new();
     let mut ids: Vec<BodyId> = (0..300)

@@ -3,7 +3,7 @@
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet};
 use sdop_judge::ours::compare::settings;
-use sdop_judge::ours::hard::{FILES, Group};
+use sdop_judge::ours::hard::{FILES, HardCaseGroup};
 
 use crate::{pairs_alone, pairs_on};
 
@@ -18,7 +18,7 @@ fn hard_cases_match_on_ranks() {
         (Strategy::Obb, Finder::AllPairs),
     ];
     for (name, text) in FILES {
-        let group = Group::parse(text).unwrap();
+        let group = HardCaseGroup::parse(text).unwrap();
         let cases = group.cases(DirectionSet::K18, Axes::Principal).unwrap();
         for frames in &cases.runs {
             for (strategy, finder) in ways {

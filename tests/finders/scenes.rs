@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{DirectionSet, Origin, Shape, ShapeSpec};
-use sdop_judge::ours::draw::rotation;
+use sdop_judge::ours::seeded_draws::rotation;
 
 use crate::support::{self, shapes};
 

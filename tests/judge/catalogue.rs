@@ -8,8 +8,9 @@ use sdop_judge::catalogue::groups;
 use sdop_judge::wire::{Wire, ndjson};
 use sdop_judge::{Claim, case::matches};
 
+/// A name is the same case every time, and with a seed it is another one.
 #[test]
-fn a_name_is_the_same_case_every_time_and_a_seed_another() {
+fn names_and_seeds_determine_cases() {
     let mut names = BTreeSet::new();
     for group in groups().unwrap() {
         let first = group.case(0, None).unwrap();
@@ -45,8 +46,9 @@ fn a_name_is_the_same_case_every_time_and_a_seed_another() {
     );
 }
 
+/// Cases read back from their files to the bit.
 #[test]
-fn cases_come_back_from_their_files_to_the_bit() {
+fn case_files_read_back_exactly() {
     for group in groups().unwrap() {
         let mut case = group.case(group.cases - 1, None).unwrap();
         if case.claims.contains(&Claim::Aabb) {
@@ -66,8 +68,9 @@ fn cases_come_back_from_their_files_to_the_bit() {
     }
 }
 
+/// Damaged case files are refused with an error that names the line.
 #[test]
-fn damaged_case_files_are_refused_with_their_line() {
+fn damaged_case_files_name_their_line() {
     let mut case = groups().unwrap()[0].case(0, None).unwrap();
     case.claim = Claim::Aabb;
     let text = String::from_utf8(Wire::Ndjson.encode(&case).unwrap()).unwrap();

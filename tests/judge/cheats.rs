@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::sync::Mutex;
 
-use sdop_judge::answer::{Answer, Stop};
+use sdop_judge::answer::{Answer, StopReason};
 use sdop_judge::truth::Truth;
 use sdop_judge::{Case, Claim, Conclusion, Frame, Options, Subject, Verdict, examine};
 
@@ -57,7 +57,7 @@ fn with_first_bodies(case: &Case) -> Case {
 }
 
 impl Subject for Cheat {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         let right = exact(case);
         let Some(last) = right.len().checked_sub(1) else {
             return Ok(Vec::new()); // so small are the scenes that shrinking tries
@@ -98,7 +98,7 @@ fn answers(case: &Case, lists: Lists) -> Vec<Answer> {
 struct OtherCase(Mutex<HashMap<String, Lists>>);
 
 impl Subject for OtherCase {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         let mut seen = self.0.lock().unwrap();
         let known = seen.entry(case.group().to_owned());
         let mut lists = known.or_insert_with(|| exact(case)).clone();

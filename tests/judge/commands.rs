@@ -24,8 +24,10 @@ fn example(name: &str) -> String {
     path.display().to_string()
 }
 
+/// The Python example passes. With its full buffer it is caught, with a small scene that shows the
+/// miss again.
 #[test]
-fn the_python_example_passes_and_its_full_buffer_is_found_with_a_small_scene_that_replays() {
+fn python_example_and_its_flaw() {
     if Command::new("python3").arg("--version").output().is_err() {
         return;
     }
@@ -95,8 +97,9 @@ fn silence(directory: &Path, more: &[&str]) -> (Output, String) {
     sdop(directory, &[&arguments[..], more].concat())
 }
 
+/// A miss of boxes names the ends that meet.
 #[test]
-fn a_miss_of_boxes_names_the_ends_that_meet() {
+fn box_misses_name_meeting_ends() {
     let directory = tempfile::tempdir().unwrap();
     let cases = ["--claims", "aabb", "--case", "box/grid/*"];
     let (output, text) = silence(directory.path(), &cases);
@@ -130,8 +133,9 @@ fn a_miss_of_boxes_names_the_ends_that_meet() {
     assert!(said.contains(why), "{why}");
 }
 
+/// Failed groups are printed first, and passed ones together in a line.
 #[test]
-fn failed_groups_come_first_and_passed_ones_in_a_line() {
+fn failed_groups_are_printed_first() {
     let directory = tempfile::tempdir().unwrap();
     let (_, text) = silence(directory.path(), &["--claims", "aabb", "--case", "*/0000"]);
     let table = text.split("\nclaim aabb: ").next().unwrap();
@@ -146,8 +150,9 @@ fn failed_groups_come_first_and_passed_ones_in_a_line() {
     );
 }
 
+/// A miss of meshes becomes a scene where a scene can state it.
 #[test]
-fn a_miss_of_meshes_is_a_scene_where_a_scene_can_state_it() {
+fn mesh_misses_become_scenes() {
     let directory = tempfile::tempdir().unwrap();
     let scene = directory.path().join("missed-pair.toml");
     let (_, text) = silence(directory.path(), &["--case", "exact/face-to-face/0000"]);
@@ -259,7 +264,7 @@ fn counter_examples_are_unit_tests() {
 }
 
 #[test]
-fn a_list_of_known_failures_cannot_go_stale() {
+fn known_failures_must_still_fail() {
     let directory = tempfile::tempdir().unwrap();
     let silent = answering(RIGHT);
     let run = |known: &str, format: &str| {
@@ -303,7 +308,7 @@ fn a_list_of_known_failures_cannot_go_stale() {
 }
 
 #[test]
-fn cases_are_written_answered_elsewhere_and_checked() {
+fn cases_are_answered_elsewhere_and_checked() {
     let directory = tempfile::tempdir().unwrap();
     let (output, _) = sdop(
         directory.path(),
@@ -446,8 +451,9 @@ fn no_success_without_a_reason() {
     assert!(reason(&output).ends_with("skipped the scene: no grids"));
 }
 
+/// A program's own time counts once it has passed, and is called self-reported.
 #[test]
-fn a_programs_own_time_counts_once_it_has_passed_and_is_called_self_reported() {
+fn self_reported_time_needs_a_pass() {
     let directory = tempfile::tempdir().unwrap();
     let scene = "name = \"three\"\nframes = 4\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0],[0,0,0,1,0.5,0,0],[0,0,0,1,0,0.5,0]]\n";
     std::fs::write(directory.path().join("three.toml"), scene).unwrap();

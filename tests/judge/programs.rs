@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use sdop_judge::answer::Trouble;
+use sdop_judge::answer::AnswerError;
 use sdop_judge::process::{Program, Service};
 use sdop_judge::wire::Wire;
 use sdop_judge::{Claim, Conclusion, Options, Outcome, Verdict, examine};
@@ -30,7 +30,7 @@ fn run(command: &str, wire: Wire, timeout: f64, case: &str) -> Verdict {
 }
 
 /// What a program's only case ends with. Generous: the machine may be busy.
-fn trouble(command: &str) -> Trouble {
+fn trouble(command: &str) -> AnswerError {
     let verdict = run(command, Wire::Ndjson, 20.0, "churn/swap/0001");
     assert!(!verdict.passed());
     match verdict.cases[0].outcome.clone() {
@@ -39,8 +39,9 @@ fn trouble(command: &str) -> Trouble {
     }
 }
 
+/// A program that answers nothing in time is stopped, with all that it started.
 #[test]
-fn a_program_that_answers_nothing_in_time_is_stopped_with_all_that_it_started() {
+fn late_programs_are_stopped() {
     let start = Instant::now();
     for command in [
         "sleep 1000",
@@ -54,7 +55,7 @@ fn a_program_that_answers_nothing_in_time_is_stopped_with_all_that_it_started() 
             matches!(
                 outcome,
                 Outcome::Error {
-                    trouble: Trouble::Timeout { frame: 0, .. }
+                    trouble: AnswerError::Timeout { frame: 0, .. }
                 }
             ),
             "{command}: {outcome:?}"
@@ -63,8 +64,9 @@ fn a_program_that_answers_nothing_in_time_is_stopped_with_all_that_it_started() 
     assert!(start.elapsed() < Duration::from_secs(60));
 }
 
+/// A program that continues after the end of its input does not pass.
 #[test]
-fn a_program_that_goes_on_after_its_input_has_ended_is_no_pass() {
+fn programs_end_with_their_input() {
     let command = format!("{}; exec sleep 1000", answering(RIGHT));
     let verdict = run(&command, Wire::Ndjson, 4.0, "churn/swap/0001");
     let outcome = &verdict.cases[0].outcome;
@@ -72,7 +74,7 @@ fn a_program_that_goes_on_after_its_input_has_ended_is_no_pass() {
         matches!(
             outcome,
             Outcome::Error {
-                trouble: Trouble::Hanging { .. }
+                trouble: AnswerError::Hanging { .. }
             }
         ),
         "{outcome:?}"
@@ -80,20 +82,20 @@ fn a_program_that_goes_on_after_its_input_has_ended_is_no_pass() {
 }
 
 #[test]
-fn crashes_floods_and_early_ends_have_names() {
+fn crashes_and_floods_are_named() {
     let found = trouble("read -r header; read -r frame; echo out of memory >&2; exit 3");
     assert!(
-        matches!(&found, Trouble::Crashed { how, answered: 0, said } if how == "exit code 3" && said.contains("out of memory")),
+        matches!(&found, AnswerError::Crashed { how, answered: 0, said } if how == "exit code 3" && said.contains("out of memory")),
         "{found}"
     );
     let found = trouble("kill -SEGV $$");
     assert!(
-        matches!(&found, Trouble::Crashed { how, .. } if how == "signal 11"),
+        matches!(&found, AnswerError::Crashed { how, .. } if how == "signal 11"),
         "{found}"
     );
     assert!(matches!(
         trouble("true"),
-        Trouble::Early {
+        AnswerError::Early {
             answered: 0,
             frames: 6,
             ..
@@ -101,35 +103,35 @@ fn crashes_floods_and_early_ends_have_names() {
     ));
     let found = trouble("no-such-program-here");
     assert!(
-        matches!(&found, Trouble::Start { why } if why.starts_with("exit code 127; it says: ")),
+        matches!(&found, AnswerError::Start { why } if why.starts_with("exit code 127; it says: ")),
         "{found}"
     );
     assert!(
-        matches!(trouble("/dev/null"), Trouble::Start { why } if why.starts_with("exit code 126"))
+        matches!(trouble("/dev/null"), AnswerError::Start { why } if why.starts_with("exit code 126"))
     );
     // A program that has answered was there.
     let found = trouble(&format!("{}; exit 127", answering(RIGHT)));
-    assert!(matches!(found, Trouble::Crashed { .. }), "{found}");
+    assert!(matches!(found, AnswerError::Crashed { .. }), "{found}");
     // On one line, on lines of their own, and in answers that are right but for their size.
     for command in [
         "tr '\\0' x < /dev/zero",
         "read -r h; printf '{\"frame\":0,\"pairs\":['; while :; do printf '[0,1],'; done",
     ] {
         assert!(
-            matches!(trouble(command), Trouble::Flood { .. }),
+            matches!(trouble(command), AnswerError::Flood { .. }),
             "{command}"
         );
     }
     // All answers are right, and then it fails.
     let found = trouble(&format!("{}; exit 1", answering(RIGHT)));
     assert!(
-        matches!(found, Trouble::Crashed { answered: 6, .. }),
+        matches!(found, AnswerError::Crashed { answered: 6, .. }),
         "{found}"
     );
 }
 
 #[test]
-fn a_program_that_cannot_start_ends_the_run() {
+fn programs_that_cannot_start_end_runs() {
     let verdict = run("no-such-program-here", Wire::Ndjson, 20.0, "*");
     assert!(
         verdict.cases.len() == 3 && verdict.not_run > 100,
@@ -144,7 +146,7 @@ fn a_program_that_cannot_start_ends_the_run() {
 }
 
 #[test]
-fn lines_that_are_no_answers_have_names() {
+fn malformed_lines_are_named() {
     for (line, why) in [
         ("hello", "no JSON"),
         ("", "6 frames"),
@@ -164,24 +166,24 @@ fn lines_that_are_no_answers_have_names() {
             r#"echo "{{\"frame\":$n,\"pairs\":[{pairs}]}}""#
         )))
     };
-    assert_eq!(answer("[3,3]"), Trouble::SelfPair { frame: 0, body: 3 });
+    assert_eq!(answer("[3,3]"), AnswerError::SelfPair { frame: 0, body: 3 });
     assert_eq!(
         answer("[4,1]"),
-        Trouble::Reversed {
+        AnswerError::Reversed {
             frame: 0,
             pair: [4, 1]
         }
     );
     assert_eq!(
         answer("[0,1],[0,1]"),
-        Trouble::Twice {
+        AnswerError::Twice {
             frame: 0,
             pair: [0, 1]
         }
     );
     assert_eq!(
         answer("[0,40]"),
-        Trouble::NoBody {
+        AnswerError::NoBody {
             frame: 0,
             pair: [0, 40],
             bodies: 40
@@ -190,7 +192,7 @@ fn lines_that_are_no_answers_have_names() {
     // Every frame twice, and the last one twice.
     assert_eq!(
         trouble(&answering(&format!("{RIGHT}; {RIGHT}"))),
-        Trouble::OutOfTurn {
+        AnswerError::OutOfTurn {
             expected: 1,
             found: 0
         }
@@ -198,15 +200,16 @@ fn lines_that_are_no_answers_have_names() {
     let found = trouble(&format!("{}; echo more", answering(RIGHT)));
     assert_eq!(
         found,
-        Trouble::TooMany {
+        AnswerError::TooMany {
             frames: 6,
             line: "more".to_owned()
         }
     );
 }
 
+/// A program may skip a case. A run whose cases were all skipped does not pass.
 #[test]
-fn a_program_may_skip_a_case_and_a_run_of_skipped_cases_is_no_pass() {
+fn skipping_programs_do_not_pass() {
     let skips = |wire, line: &str| {
         let verdict = run(
             &answering(&format!("echo '{line}'; exit 0")),
@@ -265,7 +268,7 @@ fn cases_without_time_are_incomplete() {
 }
 
 #[test]
-fn a_failing_case_does_not_end_the_run() {
+fn failing_cases_do_not_end_runs() {
     // Fails on every second case or so, by its name.
     let command = format!(
         "read -r header; case $header in *0001*) exit 9;; esac; {}",
@@ -302,8 +305,9 @@ fn serve(command: String, case: &str) -> Verdict {
     examine(&service, &options, |_, _| {}).unwrap()
 }
 
+/// A service judges many cases with few processes.
 #[test]
-fn a_service_judges_many_cases_by_few_processes() {
+fn services_judge_many_cases() {
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("started");
     let verdict = serve(
@@ -326,8 +330,9 @@ fn a_service_judges_many_cases_by_few_processes() {
     );
 }
 
+/// A service is started again after a case that ends it.
 #[test]
-fn a_service_is_started_again_after_a_case_that_ends_it() {
+fn ended_services_start_again() {
     let ending = SERVING.replacen(
         "n=0;;",
         r#"n=0; case $line in *0001\"*) exit 9;; esac;;"#,
@@ -338,7 +343,7 @@ fn a_service_is_started_again_after_a_case_that_ends_it() {
         matches!(
             outcome,
             Outcome::Error {
-                trouble: Trouble::Crashed { answered: 0, .. }
+                trouble: AnswerError::Crashed { answered: 0, .. }
             }
         )
     };
@@ -349,7 +354,7 @@ fn a_service_is_started_again_after_a_case_that_ends_it() {
 
 /// An answer too many would be the next case's first.
 #[test]
-fn a_service_that_answers_more_than_it_was_asked_fails() {
+fn services_may_not_answer_twice() {
     let twice = SERVING.replacen("echo", "echo; echo {}; echo", 1);
     let verdict = serve(twice, "churn/teleport/0001");
     assert!(

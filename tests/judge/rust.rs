@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sdop::settings::Strategy;
-use sdop_judge::answer::Trouble;
+use sdop_judge::answer::AnswerError;
 use sdop_judge::{Claim, Conclusion, Outcome, Scene, Verdict, judge, judge_pair_test};
 
 use crate::cullers::{
@@ -28,7 +28,7 @@ fn failures(verdict: &Verdict) -> Vec<&str> {
 }
 
 #[test]
-fn our_strategies_pass_the_claims_that_they_make() {
+fn our_strategies_pass_their_claims() {
     for (strategy, claim) in [
         (Strategy::Sphere, Claim::Sphere),
         (Strategy::OrDop, Claim::OrDop),
@@ -61,8 +61,9 @@ fn our_strategies_pass_the_claims_that_they_make() {
     }
 }
 
+/// Given boxes pass every case, without an extra pair.
 #[test]
-fn given_boxes_pass_every_case_and_nothing_else_is_reported_of_them() {
+fn given_boxes_are_reported_exactly() {
     let culler = judge(|_: &Scene<'_>| Boxes::default()).claims(Claim::Aabb);
     let world = judge(|_: &Scene<'_>| BoxesOfAWorld::default()).claims(Claim::Aabb);
     let [culler, world] = [culler.seed(5).run(), world.seed(5).run()].map(Result::unwrap);
@@ -78,8 +79,9 @@ fn given_boxes_pass_every_case_and_nothing_else_is_reported_of_them() {
     assert_eq!(culler.pairs().extra, culler.pairs().both_static, "{culler}");
 }
 
+/// A culler that reports less than it claims fails.
 #[test]
-fn a_culler_that_reports_less_than_its_claim_is_found_out() {
+fn unmet_claims_are_caught() {
     let verdict = judge(|scene: &Scene<'_>| Ours::new(scene, Strategy::SDopSequential))
         .claims(Claim::Sphere)
         .run()
@@ -93,8 +95,9 @@ fn a_culler_that_reports_less_than_its_claim_is_found_out() {
     assert!(smallest.witness.is_some());
 }
 
+/// Balls in f64 with a margin pass; in f32 without one they fail.
 #[test]
-fn balls_in_f64_with_a_margin_pass_and_in_f32_without_one_are_found_out() {
+fn balls_need_f64_and_a_margin() {
     let verdict = judge_pair_test(balls_meet)
         .claims(Claim::Sphere)
         .seed(7)
@@ -122,8 +125,9 @@ fn balls_in_f64_with_a_margin_pass_and_in_f32_without_one_are_found_out() {
     assert!(depth.is_some_and(|ulps| ulps < 64), "{verdict}");
 }
 
+/// Full buffers and stale answers are caught by the groups that look for them.
 #[test]
-fn full_buffers_and_stale_answers_are_found_by_their_groups() {
+fn each_flaw_fails_its_group() {
     for (flaw, group) in [
         (Flaw::Buffer(4096), "buffer/growth"),
         (Flaw::Buffer(380), "buffer/hub"),
@@ -139,8 +143,9 @@ fn full_buffers_and_stale_answers_are_found_by_their_groups() {
     assert!(verdict.passed(), "{verdict}");
 }
 
+/// A culler that answers differently when it runs again fails.
 #[test]
-fn a_culler_that_changes_its_mind_is_found_out() {
+fn unrepeatable_cullers_fail() {
     let runs = AtomicUsize::new(0);
     // Every second culler is fickle, and sees the case that the one before saw.
     let fickle = |_: &Scene<'_>| All {
@@ -160,8 +165,9 @@ fn a_culler_that_changes_its_mind_is_found_out() {
     );
 }
 
+/// Invalid answers are errors and never a pass.
 #[test]
-fn answers_that_are_none_are_errors_and_never_a_pass() {
+fn invalid_answers_are_errors() {
     let trouble = |flaw: Flaw| {
         let verdict = judge(all(flaw))
             .cases("exact/face-to-face/0000")
@@ -175,37 +181,37 @@ fn answers_that_are_none_are_errors_and_never_a_pass() {
     };
     assert_eq!(
         trouble(Flaw::SelfPair),
-        Trouble::SelfPair { frame: 0, body: 0 }
+        AnswerError::SelfPair { frame: 0, body: 0 }
     );
     assert_eq!(
         trouble(Flaw::Twice),
-        Trouble::Twice {
+        AnswerError::Twice {
             frame: 0,
             pair: [0, 1]
         }
     );
     assert_eq!(
         trouble(Flaw::Reversed),
-        Trouble::Reversed {
+        AnswerError::Reversed {
             frame: 0,
             pair: [1, 0]
         }
     );
     assert_eq!(
         trouble(Flaw::NoBody),
-        Trouble::NoBody {
+        AnswerError::NoBody {
             frame: 0,
             pair: [0, 9],
             bodies: 9
         }
     );
     assert!(
-        matches!(trouble(Flaw::Panics), Trouble::Crashed { how, .. } if how.contains("as planned"))
+        matches!(trouble(Flaw::Panics), AnswerError::Crashed { how, .. } if how.contains("as planned"))
     );
 }
 
 #[test]
-fn a_limit_of_extra_pairs_is_kept() {
+fn the_extra_limit_is_enforced() {
     let wide = judge(all(Flaw::None))
         .claims(Claim::Mesh)
         .cases("random/crowd/*")

@@ -12,7 +12,7 @@ fn directory() -> &'static Path {
 }
 
 #[test]
-fn the_files_are_what_the_command_makes() {
+fn files_match_their_command() {
     let made = vectors::files().unwrap();
     for (name, bytes) in &made {
         let there = std::fs::read(directory().join(name)).unwrap_or_default();
@@ -31,8 +31,9 @@ fn the_files_are_what_the_command_makes() {
     }
 }
 
+/// Hexadecimal and decimal numbers agree, and every claim is decided both ways.
 #[test]
-fn hex_and_decimal_agree_and_every_claim_is_decided_both_ways() {
+fn vectors_agree_and_cover_both_answers() {
     let (mut cases, mut answers) = (BTreeSet::new(), BTreeMap::<String, [u32; 2]>::new());
     for (name, bytes) in vectors::files().unwrap() {
         let file: Value = serde_json::from_slice(&bytes).unwrap();

@@ -117,7 +117,7 @@ fn an_index_follows_bodies() {
 
 /// A body that is equal to the removed one whose slot it has is another body.
 #[test]
-fn twin_in_a_slot_has_its_own_id() {
+fn slot_twins_have_different_ids() {
     let mut bodies = World::new(vec![cube()]).unwrap();
     let mut boxes = BoxWorld::new();
     let aabb = Aabb::new([-1.0; 3], [1.0; 3]);

@@ -124,7 +124,7 @@ fn boxes_against_meshes_are_queries() {
     let random = &mut Random(3);
     let shapes = shapes(DirectionSet::K18);
     let mut world = World::new(shapes).unwrap();
-    for _ in 0..100 {
+    for _ in 0..150 {
         let body = Body {
             shape: random.below(4) as u32,
             rotation: [(); 4].map(|()| random.within(1.0)),
@@ -137,7 +137,7 @@ fn boxes_against_meshes_are_queries() {
         let min = [(); 3].map(|()| random.within(6.0));
         Aabb::new(min, min.map(|x| x + 2.0 * random.unit()))
     };
-    let boxes: Vec<Aabb> = (0..100).map(|_| draw(random)).collect();
+    let boxes: Vec<Aabb> = (0..150).map(|_| draw(random)).collect();
     let asked = box_world(&boxes);
     let [mut index, mut with] = [QueryIndex::new(), QueryIndex::new()];
     index.update(&asked);
@@ -147,6 +147,6 @@ fn boxes_against_meshes_are_queries() {
         let found = with.touching(&body.bounds.into()).unwrap();
         wanted.extend(found.into_iter().map(|other| [id, other]));
     }
-    assert!(wanted.len() > 50, "{}", wanted.len());
+    assert!(wanted.len() > 100, "{}", wanted.len());
     assert_eq!(index.pairs_with(&with), wanted);
 }

@@ -43,7 +43,8 @@ impl Model {
             }
             _ => {
                 let mut body = random.body(3);
-                body.translation = body.translation.map(|x| 0.5 * x); // so that more of them meet
+                // Closer together, so that more of them meet; f32 still holds the numbers.
+                body.translation = body.translation.map(|x| 0.25 * x);
                 self.bodies.insert(world.insert(body).unwrap(), body);
             }
         }
@@ -83,8 +84,9 @@ fn is_spending(way: &CullSettings) -> bool {
     way.strategy == Strategy::SDopTimeCritical
 }
 
+/// Excluded pairs are left out in every way of culling.
 #[test]
-fn excluded_pairs_are_left_out_of_every_way() {
+fn exclusions_hold_in_every_way() {
     let mut counted = 0;
     for way in ways().into_iter().filter(|way| !is_spending(way)) {
         let mut random = Random(ChaCha8Rng::seed_from_u64(47));
@@ -98,7 +100,7 @@ fn excluded_pairs_are_left_out_of_every_way() {
             sum = [sum[0] + all, sum[1] + left_out];
         }
         // Without bodies of interest some ways report nothing.
-        assert!(sum[0] == 0 || sum[1] > 3, "{way:?}: {sum:?}");
+        assert!(sum[0] == 0 || sum[1] > 10, "{way:?}: {sum:?}");
         counted += usize::from(sum[1] > 0);
     }
     assert!(counted > 40, "{counted} ways");
@@ -181,7 +183,7 @@ fn restored_worlds_exclude_the_same_pairs() {
 }
 
 #[test]
-fn bodies_that_are_gone_have_no_pairs() {
+fn removed_bodies_have_no_pairs() {
     let mut world = World::new(shapes()).unwrap();
     let [a, b] = [(); 2].map(|()| world.insert(Body::default()).unwrap());
     world.exclude(a, b).unwrap();

@@ -10,7 +10,7 @@ use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Overlap, Strategy};
 use sdop::volume::{Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Groups, Motion, World, WorldSnapshot};
-use sdop_judge::ours::ways::{variants, ways as judged_ways};
+use sdop_judge::ours::configurations::{variants, ways as judged_ways};
 
 use super::{Pairs, Random, afresh, shapes, ways};
 
@@ -377,7 +377,7 @@ fn resting_pairs_end_with_a_body() {
 /// The body was moved after the cull that the snapshot has the pairs of, and the world has seen
 /// that since.
 #[test]
-fn a_world_rolled_back_looks_at_all_bodies() {
+fn rollback_searches_all_bodies() {
     let (mut world, ids) = row(100, Motion::Dynamic, &CullSettings::default());
     moved(&mut world, ids[20], 20.5);
     let saved = world.snapshot();
@@ -392,7 +392,7 @@ fn a_world_rolled_back_looks_at_all_bodies() {
 /// Cubes of edge 2 at f32 translations, about 2²⁰, until two are placed that touch: rounded to f32
 /// about the world's origin, they would be a sixteenth apart.
 #[test]
-fn an_origin_comes_with_the_first_body_that_needs_it() {
+fn origins_come_with_far_bodies() {
     let way = CullSettings::default();
     let base = f64::from(1 << 20);
     let at = |x: f64| Body::at(0, Body::default().rotation, [base + x, 0.0, 0.0]);

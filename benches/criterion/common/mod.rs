@@ -32,7 +32,7 @@ pub fn one_volume() -> impl Iterator<Item = (Strategy, TestedVolume)> {
 
 /// A scene file of `data/scenes`.
 pub fn scene_file(name: &str) -> SceneFile {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
         .join("data/scenes")
         .join(name);
     SceneFile::read(&path.with_extension("toml")).unwrap()

@@ -116,10 +116,10 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
             for entry in &ours::ENTRIES {
                 enter(entry.name, (entry.new)(&setup)?, threads);
             }
-            let arithmetic = Loop::new(threads, bodies, compute)?;
+            let arithmetic = ControlLoop::new(threads, bodies, compute)?;
             enter(ARITHMETIC, Box::new(arithmetic), threads);
             let floats = bodies * BYTES / size_of::<f32>();
-            let memory = Loop::new(threads, floats, touch)?;
+            let memory = ControlLoop::new(threads, floats, touch)?;
             enter(MEMORY, Box::new(memory), threads);
         }
         Ok(timed)
@@ -172,13 +172,13 @@ fn rows(
 }
 
 /// A control loop over columns of numbers.
-struct Loop {
+struct ControlLoop {
     pool: Threads,
     pieces: Vec<Vec<f32>>,
     work: fn(&mut [f32]),
 }
 
-impl Loop {
+impl ControlLoop {
     fn new(threads: usize, numbers: usize, work: fn(&mut [f32])) -> miette::Result<Self> {
         Ok(Self {
             pool: Threads::new(threads).or_report()?,
@@ -188,7 +188,7 @@ impl Loop {
     }
 }
 
-impl Contestant<Frame> for Loop {
+impl Contestant<Frame> for ControlLoop {
     fn frame(&mut self, _: &Frame) {
         let work = self.work;
         self.pool

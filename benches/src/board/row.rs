@@ -9,7 +9,7 @@ use sdop_judge::catalogue::select;
 use sdop_judge::process::{Program, Service};
 use sdop_judge::report::counter_example;
 use sdop_judge::score::judge_answers;
-use sdop_judge::shrink::{Smallest, shrink};
+use sdop_judge::shrink::{SmallestCase, shrink};
 use sdop_judge::truth::Truth;
 use sdop_judge::verdict::{CaseVerdict, GroupVerdict};
 use sdop_judge::wire::Wire;
@@ -349,7 +349,7 @@ fn only_touch(subject: &dyn Subject, case: &Case) -> bool {
 }
 
 impl Counter {
-    fn of(smallest: &Smallest, adapter: &Adapter) -> Self {
+    fn of(smallest: &SmallestCase, adapter: &Adapter) -> Self {
         let files = counter_example(smallest).unwrap_or_default();
         let case = files.first().map_or_else(String::new, |(_, bytes)| {
             String::from_utf8_lossy(bytes).into_owned()
@@ -369,7 +369,7 @@ impl Counter {
 }
 
 /// The viewer's data of a counter-example; empty if it can't be shown.
-fn picture(smallest: &Smallest, adapter: &Adapter) -> String {
+fn picture(smallest: &SmallestCase, adapter: &Adapter) -> String {
     let pairs = Some(smallest.pairs.clone());
     let source = Path::new("missed-pair.ndjson");
     let Ok(mut show) = ShownRun::case(&smallest.case, pairs, source) else {

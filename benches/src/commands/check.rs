@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop_judge::answer::{Answer, Stop};
+use sdop_judge::answer::{Answer, StopReason};
 use sdop_judge::run::examine_given;
 use sdop_judge::wire::{Wire, book};
 use sdop_judge::{Case, Claim, Options, Outcome as CaseOutcome, Subject};
@@ -40,10 +40,10 @@ pub struct Args {
 }
 
 /// A contestant that returns answers from a file.
-struct StoredAnswers(Result<Vec<Answer>, Stop>);
+struct StoredAnswers(Result<Vec<Answer>, StopReason>);
 
 impl Subject for StoredAnswers {
-    fn answer(&self, _case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, _case: &Case) -> Result<Vec<Answer>, StopReason> {
         self.0.clone()
     }
 }
@@ -112,7 +112,7 @@ pub fn text(path: &std::path::Path, most: u64) -> miette::Result<Vec<u8>> {
 ///
 /// # Errors
 /// A line that is not a valid answer, or more lines than frames.
-pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop> {
+pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, StopReason> {
     let lines = text
         .split(|byte| *byte == b'\n')
         .filter(|line| !line.trim_ascii().is_empty());
@@ -120,7 +120,7 @@ pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, Stop>
     for line in lines {
         if answers.len() == frames {
             let line = String::from_utf8_lossy(&line[..line.len().min(80)]).into_owned();
-            return Err(sdop_judge::answer::Trouble::TooMany { frames, line }.into());
+            return Err(sdop_judge::answer::AnswerError::TooMany { frames, line }.into());
         }
         let said = wire.decode(answers.len(), line)?;
         book(&mut answers, said, line)?;

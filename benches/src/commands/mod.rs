@@ -170,7 +170,7 @@ impl Cli {
 /// Runs the program with these arguments, its own name first, and returns its exit code.
 pub fn main(arguments: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
     report_errors_whole();
-    let ending = mpi::Ending;
+    let ending = mpi::RankEnding;
     let cli = match Cli::try_parse_from(by_present_names(arguments)) {
         Ok(cli) => cli,
         Err(told) => {

@@ -10,7 +10,7 @@ use sdop_bench::mpi;
 use sdop_bench::mpi::Ranks;
 #[cfg(feature = "mpi")]
 use sdop_bench::network::MpiNetwork;
-use sdop_bench::sweep::{Header, InOrder, Shard, Sweep, here, write_shard};
+use sdop_bench::sweep::{Header, OrderedResults, Shard, Sweep, run_in_process, write_shard};
 
 use super::files::{SHARING, command};
 use super::output::{print, progress};
@@ -149,13 +149,13 @@ impl SweepArgs {
 /// Does these units in this process.
 fn units(work: &dyn Sweep, units: Vec<usize>, take: TakeResult) -> miette::Result<()> {
     let bar = progress(units.len() as u64, "units");
-    let mut order = InOrder::new(units.clone(), take);
+    let mut order = OrderedResults::new(units.clone(), take);
     let mut on = |unit, result| {
         bar.set_message(work.name(unit));
         bar.inc(1);
         order.put(unit, result)
     };
-    let ended = here(work, &units, &mut on);
+    let ended = run_in_process(work, &units, &mut on);
     bar.finish_and_clear();
     ended
 }

@@ -1,8 +1,8 @@
 //! `sdop tradeoff`: what accuracy costs in time on one scene, and when it pays.
 
+mod csv;
 mod plot;
 mod tables;
-mod tidy;
 
 use std::path::{Path, PathBuf};
 
@@ -171,7 +171,7 @@ fn print(
         .then(|| format!("true pairs were missed by: {}", failures.join("; ")));
     match format {
         // A line per number of a variant; the rest is in the other formats.
-        Format::Csv => emit(Format::Csv, &tidy::lines(result), |_| String::new())?,
+        Format::Csv => emit(Format::Csv, &csv::lines(result), |_| String::new())?,
         format => emit_with_reason(format, recorded, why.as_deref(), |recorded| {
             text(&recorded.result)
         })?,
@@ -216,8 +216,8 @@ fn read(path: &Path) -> miette::Result<RecordedTradeoff> {
 fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miette::Result<()> {
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
-    let csv = csv_text(serde_json::to_value(tidy::lines(result)).into_diagnostic()?)?;
-    let seeds = csv_text(serde_json::to_value(tidy::seeds(result)).into_diagnostic()?)?;
+    let csv = csv_text(serde_json::to_value(csv::lines(result)).into_diagnostic()?)?;
+    let seeds = csv_text(serde_json::to_value(csv::seeds(result)).into_diagnostic()?)?;
     write(&numbers.join("tradeoff.json"), &json)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
     write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;

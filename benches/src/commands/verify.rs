@@ -17,8 +17,8 @@ pub use sdop_bench::verify::units::NAME;
 use sdop_bench::verify::units::{Settings, UnitOrigin, Verification};
 use sdop_judge::every_way::subject::EveryWay;
 use sdop_judge::every_way::{Failure, Ledger};
-use sdop_judge::ours::hard::{FILES, Group, page};
-use sdop_judge::ours::ways::Rotation;
+use sdop_judge::ours::configurations::Rotation;
+use sdop_judge::ours::hard::{FILES, HardCaseGroup, page};
 use sdop_judge::{Claim, Options, examine};
 
 use super::files::{self, ReadArgs};
@@ -302,7 +302,7 @@ fn record(directory: &Path) -> miette::Result<Outcome> {
     for (name, _) in FILES {
         let path = directory.join(format!("{name}.toml"));
         let text = files::read(&path)?;
-        let mut group = Group::parse(&text).into_diagnostic()?;
+        let mut group = HardCaseGroup::parse(&text).into_diagnostic()?;
         group.record().into_diagnostic()?;
         let head = text.split("\n[answers").next().unwrap_or(&text).trim_end();
         let text = format!("{head}\n{}", group.answers_toml());

@@ -16,7 +16,7 @@ use crate::measure::counts::{Counts, Volume};
 use crate::measure::culling::Culling;
 use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn};
 use crate::measure::variant::Variant;
-use crate::measure::waiting::Waiting;
+use crate::measure::waiting_time::WaitingTime;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
 use sdop::settings::Axes;
@@ -238,7 +238,7 @@ pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
 
 /// Seconds to build each of a variant's volumes for all shapes once.
 fn volume_seconds(variant: &Variant, shapes: &[Shape]) -> Vec<f64> {
-    let mut waiting = Waiting::of_this_thread();
+    let mut waiting = WaitingTime::of_this_thread();
     let seconds = |volume: Volume| {
         let (waited, start) = (waiting.seconds(), Instant::now());
         shapes

@@ -10,15 +10,15 @@ use sdop::simd::{Kernel, Lanes, Tier, dispatch};
 
 /// The number of lanes of a tier's vectors.
 pub(super) fn lanes(tier: Tier) -> usize {
-    struct Width;
-    impl Kernel for Width {
+    struct LaneWidth;
+    impl Kernel for LaneWidth {
         type Output = usize;
         #[inline(always)]
         fn run<L: Lanes>(self, _: L) -> usize {
             L::WIDTH
         }
     }
-    dispatch(tier, Width)
+    dispatch(tier, LaneWidth)
 }
 
 /// The number of moving bodies with a hit, if the candidates of each are the bodies after it,

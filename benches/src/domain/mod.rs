@@ -1,17 +1,17 @@
 //! One world on many ranks, each a process that holds a part of the bodies, for worlds that exceed
 //! one machine.
 //!
-//! Space is cut into a cell a rank (`cut`); a rank owns the bodies whose ball's centre lies in its
-//! cell, knows the ghosts that its own may meet (`ghosts`, by the reach of
+//! Space is cut into one cell per rank (`cut`); a rank owns the bodies whose ball's centre lies in
+//! its cell, knows the ghosts that its own may meet (`ghosts`, by the reach of
 //! [`rounding::border`](sdop::rounding::border)), and culls both with the library's
-//! [`Culler`](sdop::Culler). A pair is reported by the owner of the body that reaches less far, of
-//! two alike by that of the lower number: numbers that both ranks have to the bit. Every verdict is
-//! a function of the two bodies alone, the lower number first, so all ranks together report the
-//! pairs of one process, whatever their number.
+//! [`Culler`](sdop::Culler). A pair is reported by the owner of the body that reaches less far, or
+//! of the lower number if both reach as far; both ranks have these numbers to the bit. Every
+//! verdict is a function of the two bodies alone, the lower number first, so all ranks together
+//! report the pairs of one process, whatever their number.
 //!
 //! Owners, ghosts and the culler's set of bodies stay while no body has drifted by more than a
-//! skin; in between, only ghosts' poses travel. Then bodies migrate to their new owners, and where
-//! their numbers have grown too unequal, space is cut anew.
+//! skin; in between, only ghosts' poses travel. Then bodies migrate to their new owners, and if
+//! ranks have too unequal numbers of bodies, space is cut again.
 //!
 //! ```text
 //!  step ──▶ drift? ──▶ poses of ghosts ──────────────▶ cull ──▶ own pairs

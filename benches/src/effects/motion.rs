@@ -16,8 +16,8 @@ pub struct Settings;
 
 impl<'de> Deserialize<'de> for Settings {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OnlyTrue;
-        impl Visitor<'_> for OnlyTrue {
+        struct TrueVisitor;
+        impl Visitor<'_> for TrueVisitor {
             type Value = Settings;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -32,7 +32,7 @@ impl<'de> Deserialize<'de> for Settings {
                 }
             }
         }
-        deserializer.deserialize_bool(OnlyTrue)
+        deserializer.deserialize_bool(TrueVisitor)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use super::counts::Counts;
-use super::waiting::Waiting;
+use super::waiting_time::WaitingTime;
 use crate::hull_test::HullTest;
 use sdop::bodies::Bodies;
 use sdop::counters::{Counters, VolumeCounters};
@@ -73,7 +73,7 @@ impl Culling {
         settings: &CullSettings,
         tier: Tier,
     ) -> Result<Self, CullError> {
-        let mut waiting = Waiting::of_this_thread();
+        let mut waiting = WaitingTime::of_this_thread();
         let (waited, start) = (waiting.seconds(), Instant::now());
         let culler = Culler::builder().settings(settings).tier(tier);
         let culler = culler.build(shapes, bodies)?;

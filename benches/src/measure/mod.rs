@@ -7,4 +7,4 @@ pub mod estimate;
 pub mod machine;
 pub mod turns;
 pub mod variant;
-pub mod waiting;
+pub mod waiting_time;

@@ -13,7 +13,7 @@
 //! of a page](displaced), so that a median is taken over many positions.
 //!
 //! Other load may interrupt a frame, with a probability that grows with its length. Time that a
-//! thread waited for a processor is subtracted if the system reports it ([`Waiting`]), and is
+//! thread waited for a processor is subtracted if the system reports it ([`WaitingTime`]), and is
 //! recorded.
 
 use std::time::Instant;
@@ -21,7 +21,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::culling::{Culling, StageSeconds};
-use super::waiting::Waiting;
+use super::waiting_time::WaitingTime;
 use crate::random::Stream;
 use crate::simulate::{SimulationError, Trajectory};
 use sdop::bodies::Bodies;
@@ -107,7 +107,7 @@ impl Turns {
         frames: &[Frame],
         mut each: impl FnMut(TimedFrame<'_, C>),
     ) {
-        let mut waiting = Waiting::of_this_thread();
+        let mut waiting = WaitingTime::of_this_thread();
         for number in self.order(contestants.len()) {
             let contestant = &mut contestants[number];
             let mut watched = true;

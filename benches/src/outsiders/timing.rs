@@ -13,10 +13,10 @@ use crate::scene::Scene;
 use sdop::bodies::contract::ContractError;
 use sdop::culler::{CullError, Culler};
 use sdop::settings::Strategy;
-use sdop_judge::answer::{Answer, Stop};
+use sdop_judge::answer::{Answer, StopReason};
 use sdop_judge::case::{Case, Frame};
 use sdop_judge::claim::Claim;
-use sdop_judge::ours::judged::InvalidInput;
+use sdop_judge::ours::reference_shapes::InvalidInput;
 use sdop_judge::score::{Outcome, judge_answers};
 use sdop_judge::subject::Subject;
 
@@ -163,16 +163,16 @@ impl TimedContestant {
     fn add(
         &mut self,
         case: &Case,
-        answers: Result<Vec<Answer>, Stop>,
+        answers: Result<Vec<Answer>, StopReason>,
         judged: bool,
     ) -> Result<(), InvalidInput> {
         let answers = match answers {
             Ok(answers) => answers,
-            Err(Stop::Skipped { why, .. }) => {
+            Err(StopReason::Skipped { why, .. }) => {
                 self.outcome = Outcome::Skipped { why };
                 return Ok(());
             }
-            Err(Stop::Trouble(trouble)) => {
+            Err(StopReason::Trouble(trouble)) => {
                 self.outcome = Outcome::Error { trouble };
                 return Ok(());
             }

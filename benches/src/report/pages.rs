@@ -14,7 +14,7 @@
 //! | `is_recorded("experiment/file.csv")` | whether the file is there: a part of a page may wait for its record |
 //! | `record("experiment")`, `records(…)` | the manifest, with `id` and `place`; every machine's |
 //! | `rows \| where(column=value, …)`, `rows \| one(column=value, …)` | the rows with these cells; the only one, or an error |
-//! | `x \| fixed(2)`, `x \| sig(3)`, `n \| thousands`, `x \| percent(1)` | digits behind the point; digits that count; 12,345; 12.3 |
+//! | `x \| fixed(2)`, `x \| sig(3)`, `n \| thousands`, `x \| percent(1)` | digits after the point; digits that count; 12,345; 12.3 |
 //! | `e \| interval(1e6)`, `x \| number`, `x \| signed(1)` | an estimate times 10⁶ as mean ± half-width; four digits that count; +1.2 |
 //! | `values \| in_order`, `x \| shortest` | an estimate from values in the order of time; the shortest text that reads back |
 //!

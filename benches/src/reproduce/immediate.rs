@@ -1,10 +1,10 @@
 //! The paper's sequential algorithm to the letter: each pair whose spheres overlap goes to its
 //! or-DOP test at once.
 //!
-//! The culler's sequential strategy hands on blocks of 256 pairs, and with 50 or 150 objects a
-//! block *is* the list: it says nothing of the paper's claim that testing at once beats listing
-//! first. Here a pair loop in scalar code hands on after every pair, after sixteen, or at the end;
-//! nothing else differs.
+//! The culler's sequential strategy passes on blocks of 256 pairs. With 50 or 150 objects, one
+//! block is the whole list, so it cannot show whether testing at once beats listing first, as the
+//! paper claims. Here a pair loop in scalar code passes pairs on singly, sixteen at a time, or
+//! all at the end; nothing else differs.
 
 use super::plan::PaperScene;
 use crate::measure::turns::{Regime, Turns, median, next_turn};

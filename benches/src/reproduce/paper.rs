@@ -1,4 +1,4 @@
-//! The paper's own numbers, to stand next to ours, and what they imply about each other.
+//! The paper's own numbers, for comparison with ours, and what they imply about each other.
 
 use sdop::settings::Strategy;
 

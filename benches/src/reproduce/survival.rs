@@ -1,4 +1,4 @@
-//! How much or-DOPs leave of what spheres report, by k and overlap test.
+//! The share of the sphere hits that or-DOPs do not separate, by k and overlap test.
 
 use crate::measure::variant::Variant;
 use crate::scene::Scene;

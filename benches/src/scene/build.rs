@@ -7,7 +7,7 @@ use toml::Spanned;
 use super::density::PowerSums;
 use super::error::SceneError;
 use super::file::{Placement, SceneFile};
-use super::fine::FineTranslations;
+use super::fine_translations::FineTranslations;
 use super::group::{BodyDraws, BodyForm, BodyGroup, DrawPurpose};
 use super::library::ShapeLibrary;
 use super::placement::Placer;

@@ -8,7 +8,7 @@ mod build;
 mod density;
 pub mod error;
 pub mod file;
-mod fine;
+mod fine_translations;
 mod group;
 mod library;
 mod placement;
@@ -16,7 +16,7 @@ mod share;
 
 pub use error::SceneError;
 pub use file::SceneFile;
-pub use fine::FineTranslations;
+pub use fine_translations::FineTranslations;
 pub use share::Share;
 
 use crate::effects::{EffectError, Effects, EffectsSpec, InitialState, Velocities};

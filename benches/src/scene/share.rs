@@ -1,4 +1,4 @@
-//! Which bodies of a scene a process holds: all, or the share of one rank of many.
+//! The bodies of a scene that a process holds: all, or the share of one rank.
 
 use std::ops::Range;
 

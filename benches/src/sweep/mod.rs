@@ -2,14 +2,15 @@
 //! have a fixed order, and results are merged in that order, so that the whole does not depend on
 //! which process did which unit, or when.
 //!
-//! > [`Sweep`] → [`here()`] → [`InOrder`] → the result; or in shards, by files and [`merge()`], or by ranks and [`on_ranks`]
+//! > [`Sweep`] → [`run_in_process()`] → [`OrderedResults`] → the result; or in shards, by
+//! > files and [`merge()`], or by ranks and [`on_ranks`]
 //!
 //! A shard's file has some of the units. It begins with a [`Header`] that identifies the work, and
 //! is rejected for any other work.
 
 mod file;
 mod header;
-mod here;
+mod in_process;
 mod merge;
 mod order;
 mod ranks;
@@ -17,9 +18,9 @@ mod shard;
 
 pub use file::{Units, UnitsError, write_shard};
 pub use header::{Header, code, digest};
-pub use here::here;
+pub use in_process::run_in_process;
 pub use merge::{MergeError, MergedUnits, merge};
-pub use order::InOrder;
+pub use order::OrderedResults;
 pub use ranks::on_ranks;
 pub use shard::{Shard, ShardError};
 
@@ -62,7 +63,7 @@ pub trait Sweep: Sync {
 }
 
 /// Called when a unit ends, with its result, or without one when it was too late to start it.
-pub type OnEnd<'a> = &'a mut dyn FnMut(usize, Option<String>) -> miette::Result<()>;
+pub type EndHandler<'a> = &'a mut dyn FnMut(usize, Option<String>) -> miette::Result<()>;
 
 /// Does a unit; what goes wrong names it, a panic included.
 fn attempt(work: &dyn Sweep, unit: usize) -> miette::Result<String> {

@@ -1,16 +1,16 @@
-//! [`InOrder`]: passes on results in the order of units, in whatever order they arrive.
+//! [`OrderedResults`]: passes on results in the order of units, in whatever order they arrive.
 
 use std::collections::BTreeMap;
 
 /// Hands on results in the order of their units; those that come early wait.
-pub struct InOrder<'a> {
+pub struct OrderedResults<'a> {
     units: std::vec::IntoIter<usize>,
     next: Option<usize>,
     early: BTreeMap<usize, Option<String>>,
     take: &'a mut dyn FnMut(usize, &str) -> miette::Result<()>,
 }
 
-impl<'a> InOrder<'a> {
+impl<'a> OrderedResults<'a> {
     /// For these units, in this order.
     pub fn new(
         units: Vec<usize>,
@@ -58,7 +58,7 @@ mod tests {
             taken.push((unit, result.to_owned()));
             Ok(())
         };
-        let mut order = InOrder::new(vec![1, 4, 7, 10], &mut take);
+        let mut order = OrderedResults::new(vec![1, 4, 7, 10], &mut take);
         for unit in [7, 1, 10] {
             order.put(unit, Some(format!("r{unit}"))).unwrap();
         }

@@ -1,4 +1,4 @@
-//! Every volume's size next to that of the convex hull, which no volume can be below.
+//! The size of every volume compared with that of the convex hull, the smallest that is possible.
 
 mod polytope;
 

@@ -23,7 +23,7 @@ use sdop::settings::{CullSettings, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 use sdop_judge::contestant::Contestant;
-use sdop_judge::ours::judged::{Shapes, overlap};
+use sdop_judge::ours::reference_shapes::{Shapes, overlap};
 
 choices! {
     /// How the same predicate is computed.
@@ -77,7 +77,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
         };
         let mut labels = vec![(Arithmetic::F64, None)];
         let mut contestants: Vec<Box<dyn Contestant + '_>> =
-            vec![Box::new(InF64::new(&shapes, &settings))];
+            vec![Box::new(F64Contestant::new(&shapes, &settings))];
         for tier in Tier::available() {
             for (arithmetic, shapes) in
                 [(Arithmetic::F32, &scene.shapes), (Arithmetic::Bare, &bare)]
@@ -113,14 +113,14 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
 }
 
 /// The reference's plain loops, including its updates.
-struct InF64<'a> {
+struct F64Contestant<'a> {
     shapes: &'a Shapes,
     strategy: reference::Strategy<'static>,
     overlap: reference::Overlap,
     pairs: Vec<[u32; 2]>,
 }
 
-impl<'a> InF64<'a> {
+impl<'a> F64Contestant<'a> {
     fn new(shapes: &'a Shapes, settings: &CullSettings) -> Self {
         Self {
             shapes,
@@ -134,7 +134,7 @@ impl<'a> InF64<'a> {
     }
 }
 
-impl Contestant for InF64<'_> {
+impl Contestant for F64Contestant<'_> {
     fn frame(&mut self, bodies: &Bodies) {
         let judged = self.shapes.bodies(bodies).unwrap_or_default();
         let pairs = reference::pairs(&judged, self.strategy, self.overlap);

@@ -12,8 +12,8 @@ use crate::simulate::{SimulationError, Trajectory};
 use sdop::bodies::Bodies;
 use sdop_judge::every_way::{Ledger, RoundError, Run};
 use sdop_judge::ours::answers::{Answers, Predicate};
-use sdop_judge::ours::judged::Shapes;
-use sdop_judge::ours::ways::{Rotation, rows};
+use sdop_judge::ours::configurations::{Rotation, rows};
+use sdop_judge::ours::reference_shapes::Shapes;
 
 /// Frames that are judged at once, to bound memory. A culler is used for one block, and each block
 /// takes the next modes of the rotation: a hundred frames test every configuration in twenty modes.
@@ -33,7 +33,7 @@ pub fn frames_of(block: usize, frames: usize) -> Range<usize> {
 
 /// The error of a scene that can't be judged.
 #[derive(Debug, Error, Diagnostic)]
-pub enum JudgeError {
+pub enum SceneJudgeError {
     /// Culling or the reference refuses it.
     #[error(transparent)]
     Round(#[from] RoundError),
@@ -54,7 +54,7 @@ pub fn block(
     frames: usize,
     block: usize,
     rotation: &Rotation,
-) -> Result<Ledger, JudgeError> {
+) -> Result<Ledger, SceneJudgeError> {
     let shapes = Shapes::new(scene.shapes.clone()).map_err(RoundError::from)?;
     let rows = rows((scene.cull.k, scene.cull.axes));
     let trajectory = Trajectory::new(scene).map_err(SimulationError::from)?;

@@ -25,7 +25,7 @@ pub struct SmallestScene {
     /// The settings, with interest in bodies of the small case.
     pub settings: CullSettings,
     /// The case.
-    pub shrunk: shrink::Smallest,
+    pub shrunk: shrink::SmallestCase,
 }
 
 impl SmallestScene {

@@ -14,15 +14,15 @@ use crate::scene::Scene;
 use crate::sweep::{Header, Sweep, digest};
 use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
 use sdop::simd::Tier;
-use sdop_judge::every_way::rounds::{Source, boxes, group, histories, round};
-use sdop_judge::every_way::{Judged, Ledger};
+use sdop_judge::every_way::rounds::{SeedSource, boxes, group, histories, round};
+use sdop_judge::every_way::{Ledger, LedgerKey};
 use sdop_judge::ours::answers::Predicate;
 use sdop_judge::ours::boxes::BoxCell;
-use sdop_judge::ours::compare::Count;
-use sdop_judge::ours::hard::{FILES, Group};
+use sdop_judge::ours::compare::ListCount;
+use sdop_judge::ours::configurations::{Rotation, variants};
+use sdop_judge::ours::hard::{FILES, HardCaseGroup};
 use sdop_judge::ours::histories::HistoryCell;
 use sdop_judge::ours::matrix::Cell;
-use sdop_judge::ours::ways::{Rotation, variants};
 
 /// The name in its files.
 pub const NAME: &str = "verify";
@@ -48,7 +48,7 @@ pub struct Settings {
 /// A verification run.
 pub struct Verification {
     settings: Settings,
-    groups: Vec<(usize, Group)>,
+    groups: Vec<(usize, HardCaseGroup)>,
     scenes: Vec<Scene>,
     variants: Vec<(DirectionSet, Axes)>,
     rotation: Rotation,
@@ -110,7 +110,10 @@ impl Verification {
         let group = |name: &String| {
             let place = FILES.iter().position(|file| file.0 == name);
             let place = place.ok_or_else(|| miette!("there is no group `{name}` of hard cases"))?;
-            Ok((place, Group::parse(FILES[place].1).into_diagnostic()?))
+            Ok((
+                place,
+                HardCaseGroup::parse(FILES[place].1).into_diagnostic()?,
+            ))
         };
         let groups = settings.groups.iter().map(group);
         let cells: Vec<Cell> = Cell::all(&rotation).collect();
@@ -195,8 +198,8 @@ impl Verification {
                 let draw = seed.wrapping_mul(64).wrapping_add(number as u64);
                 let lived = histories(seed, number, variant, rotation).into_diagnostic()?;
                 Ok(vec![
-                    (UnitOrigin::Near, judge(Source::Near)?),
-                    (UnitOrigin::Random, judge(Source::Random)?),
+                    (UnitOrigin::Near, judge(SeedSource::Near)?),
+                    (UnitOrigin::Random, judge(SeedSource::Random)?),
                     (UnitOrigin::Boxes, boxes(draw, rotation).into_diagnostic()?),
                     (UnitOrigin::Histories, lived),
                 ])
@@ -286,7 +289,7 @@ impl Verification {
             );
         }
         for (strategy, overlap, count) in text.rows {
-            ledger.rows.insert(Judged { strategy, overlap }, count);
+            ledger.rows.insert(LedgerKey { strategy, overlap }, count);
         }
         for (place, lists) in text.cells {
             ledger.matrix.fill(*self.cells.get(place)?, lists);
@@ -319,7 +322,7 @@ impl Verification {
 struct LedgerText {
     /// Number of pairs that overlap, and of those that each stage decided.
     predicates: [[u64; 4]; Predicate::ALL.len()],
-    rows: Vec<(Strategy, Option<Overlap>, Count)>,
+    rows: Vec<(Strategy, Option<Overlap>, ListCount)>,
     /// Lists judged, by the index of their cell.
     cells: Vec<(usize, u64)>,
     /// Lists of given boxes and wrong pairs in them, by the index of their cell.

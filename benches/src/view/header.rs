@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::ShownRun;
-use super::show::{Focus, file_name, in_words};
+use super::shown_run::{Focus, file_name, in_words};
 use sdop::settings::{Interest, Strategy};
 use sdop_judge::Claim;
 use sdop_judge::record::{EffectLine, OrDopLine, RecordError};

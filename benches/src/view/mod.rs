@@ -11,11 +11,11 @@ mod detail;
 mod header;
 mod page;
 mod pairs;
-mod show;
+mod shown_run;
 mod terms;
 
 pub use page::{Page, PageError};
-pub use show::{Focus, ShownRun, ShownStrategy};
+pub use shown_run::{Focus, ShownRun, ShownStrategy};
 
 use rayon::prelude::*;
 

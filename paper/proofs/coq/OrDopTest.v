@@ -241,13 +241,12 @@ Hypothesis Hb : row_of qb tb ob rb b.
 Let both : R := share_of ra + share_of rb.
 Let gap : point := minus (plus tb ob) (plus ta oa).
 
-Lemma delta_near : norm gap <= 1.7321 * both -> norm (minus (delta m a b) gap) <= 6.55 * (u * both).
+Lemma delta_error :
+  norm (minus (delta m a b) gap) <= 2.001 * (u * norm gap) + 3.02 * (u * (ra + rb)) + 40 * tiny.
 Proof.
-  intro G. destruct Ha as (_ & Ta & _ & _ & _ & Na & Ea).
+  destruct Ha as (_ & Ta & _ & _ & _ & Na & Ea).
   destruct Hb as (_ & Tb & _ & _ & _ & Nb & Eb).
-  pose proof tiny_value as T0. pose proof tiny_small as T1.
-  pose proof (share_value ra Ra) as Sa. pose proof (share_value rb Rb) as Sb.
-  pose proof (share_above ra) as Aa. pose proof (share_above rb) as Ab.
+  pose proof tiny_value as T0. pose proof (norm_nonneg gap) as G0.
   set (dt := minus tb ta). set (do := minus ob oa).
   set (do' := minus (row_offset b) (row_offset a)).
   set (st := pt (sub m (px (row_place b)) (px (row_place a)))
@@ -263,22 +262,22 @@ Proof.
   assert (E3 : norm (minus (delta m a b) (plus st so)) <= u * norm (plus st so) + 7 * tiny).
   { unfold delta, st, so.
     apply rounded_vector; unfold plus, pt; cbn [px py pz]; now apply add_near. }
-  assert (E4 : norm (minus do' do) <= 1.01 * (u * both) + 4 * tiny).
+  assert (E4 : norm (minus do' do) <= 1.01 * (u * (ra + rb)) + 4 * tiny).
   { replace (minus do' do)
       with (plus (minus (row_offset b) ob) (opposite (minus (row_offset a) oa)))
       by (unfold do', do, plus, opposite, minus, pt; cbn [px py pz]; f_equal; ring).
-    apply Rle_trans with (1 := triangle _ _). rewrite norm_opposite. unfold both, u in *. lra. }
-  assert (N1 : norm do <= both).
+    apply Rle_trans with (1 := triangle _ _). rewrite norm_opposite. unfold u in *. lra. }
+  assert (N1 : norm do <= ra + rb).
   { unfold do. replace (minus ob oa) with (plus ob (opposite oa))
       by (unfold plus, opposite, minus, pt; cbn [px py pz]; f_equal; ring).
-    apply Rle_trans with (1 := triangle _ _). rewrite norm_opposite. unfold both. lra. }
-  assert (N2 : norm dt <= 2.7321 * both).
+    apply Rle_trans with (1 := triangle _ _). rewrite norm_opposite. lra. }
+  assert (N2 : norm dt <= norm gap + (ra + rb)).
   { replace dt with (plus gap (opposite do))
       by (unfold gap, dt, do, plus, opposite, minus, pt; cbn [px py pz]; f_equal; ring).
     apply Rle_trans with (1 := triangle _ _). rewrite norm_opposite. lra. }
   pose proof (norm_difference do' do) as N3.
-  assert (Tb' : tiny <= / 1000 * (u * both)) by (unfold both, u in *; lra).
-  assert (E5 : norm (minus (plus st so) gap) <= 4.78 * (u * both)).
+  assert (E5 : norm (minus (plus st so) gap)
+    <= u * norm gap + 3.011 * (u * (ra + rb)) + 19 * tiny).
   { replace (minus (plus st so) gap)
       with (plus (minus st dt) (plus (minus so do') (minus do' do)))
       by (unfold gap, dt, do, plus, minus; cbn [px py pz]; f_equal; ring).
@@ -289,6 +288,14 @@ Proof.
     with (plus (minus (delta m a b) (plus st so)) (minus (plus st so) gap))
     by (unfold plus, minus; cbn [px py pz]; f_equal; ring).
   apply Rle_trans with (1 := triangle _ _). unfold u in *. lra.
+Qed.
+
+Lemma delta_near : norm gap <= 1.7321 * both -> norm (minus (delta m a b) gap) <= 6.55 * (u * both).
+Proof.
+  intro G. pose proof delta_error as D. pose proof tiny_value as T0.
+  pose proof (share_value ra Ra) as Sa. pose proof (share_value rb Rb) as Sb.
+  pose proof (share_above ra) as Aa. pose proof (share_above rb) as Ab.
+  unfold both, u in *. lra.
 Qed.
 
 Lemma gaps_near :

@@ -75,7 +75,7 @@ Proof.
   pose proof (distance_triangle (centre (world_ball (pose32 ma) (pose64 ma) (turn a) (place a)
     (centre (shape a)) (radius (shape a)))) p (centre (world_ball (pose32 mb) (pose64 mb) (turn b)
     (place b) (centre (shape b)) (radius (shape b))))) as T.
-  rewrite (distance_symmetric _ p) in T. lra.
+  rewrite (distance_symmetric _ p) in T. pose proof slack_in_room. lra.
 Qed.
 
 (* A quaternion of finite f32 numbers, not all of them zero, meets the contract. *)

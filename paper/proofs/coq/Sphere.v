@@ -120,6 +120,15 @@ Proof.
   rewrite !Rabs_pos_eq in H' by tauto. unfold u in *. lra.
 Qed.
 
+(* What the test leaves room for beyond the radii; posing balls takes no more than the slack. *)
+Definition room : R := radius_floor / 4.
+
+Lemma room_value : room = 18014398509481984 * tiny.
+Proof. unfold room. rewrite floor_value. lra. Qed.
+
+Lemma slack_in_room : 0 <= slack <= room.
+Proof. rewrite room_value. pose proof tiny_value. unfold slack. lra. Qed.
+
 Section Decision.
 Variable m : mode.
 Hypothesis Hm : valid m.
@@ -129,18 +138,18 @@ Hypothesis Hx : Rabs dx <= (Rabs X + 3 * tiny) * (1 + u).
 Hypothesis Hy : Rabs dy <= (Rabs Y + 3 * tiny) * (1 + u).
 Hypothesis Hz : Rabs dz <= (Rabs Z + 3 * tiny) * (1 + u).
 Hypothesis HP : 0 <= P.
-Hypothesis Hmeet : X * X + Y * Y + Z * Z <= (P + slack) * (P + slack).
+Hypothesis Hmeet : X * X + Y * Y + Z * Z <= (P + room) * (P + room).
 Hypothesis Hs : P * (1 + 4 * u) + radius_floor * (2 - 8 * u) <= s.
 
 Let d2 := add m (add m (mul m dx dx) (mul m dy dy)) (mul m dz dz).
 
-Lemma coordinate (W : R) : W * W <= (P + slack) * (P + slack) -> Rabs W <= P + slack.
+Lemma coordinate (W : R) : W * W <= (P + room) * (P + room) -> Rabs W <= P + room.
 Proof.
-  intro H. pose proof tiny_value. rewrite <- (Rabs_pos_eq (P + slack)) by (unfold slack; lra).
+  intro H. pose proof tiny_value. rewrite <- (Rabs_pos_eq (P + room)) by (rewrite room_value; lra).
   now apply Rsqr_le_abs_0.
 Qed.
 
-Lemma coordinates : Rabs X <= P + slack /\ Rabs Y <= P + slack /\ Rabs Z <= P + slack.
+Lemma coordinates : Rabs X <= P + room /\ Rabs Y <= P + room /\ Rabs Z <= P + room.
 Proof.
   pose proof (Rle_0_sqr X). pose proof (Rle_0_sqr Y). pose proof (Rle_0_sqr Z). unfold Rsqr in *.
   repeat split; apply coordinate; lra.
@@ -152,7 +161,7 @@ Proof.
 Qed.
 
 Lemma squares_above :
-  0 <= d2 <= ((P + slack) * (P + slack) + 18 * tiny * (P + slack) + 27 * (tiny * tiny))
+  0 <= d2 <= ((P + room) * (P + room) + 18 * tiny * (P + room) + 27 * (tiny * tiny))
                * (1 + 6 * u) + 8 * half_step.
 Proof.
   pose proof coordinates as (Ix & Iy & Iz).
@@ -163,14 +172,14 @@ Proof.
   split; [tauto |].
   assert (Hsum : (Rabs X + 3 * tiny) * (Rabs X + 3 * tiny)
       + (Rabs Y + 3 * tiny) * (Rabs Y + 3 * tiny) + (Rabs Z + 3 * tiny) * (Rabs Z + 3 * tiny)
-      <= (P + slack) * (P + slack) + 18 * tiny * (P + slack) + 27 * (tiny * tiny)).
+      <= (P + room) * (P + room) + 18 * tiny * (P + room) + 27 * (tiny * tiny)).
   { assert (E : forall W, (Rabs W + 3 * tiny) * (Rabs W + 3 * tiny)
         = W * W + 6 * (tiny * Rabs W) + 9 * (tiny * tiny)).
     { intro W. pose proof (Rsqr_abs W) as A. unfold Rsqr in A. rewrite A. ring. }
     rewrite !E. pose proof tiny_value as Ht.
-    assert (tiny * Rabs X <= tiny * (P + slack)) by (apply Rmult_le_compat_l; lra).
-    assert (tiny * Rabs Y <= tiny * (P + slack)) by (apply Rmult_le_compat_l; lra).
-    assert (tiny * Rabs Z <= tiny * (P + slack)) by (apply Rmult_le_compat_l; lra).
+    assert (tiny * Rabs X <= tiny * (P + room)) by (apply Rmult_le_compat_l; lra).
+    assert (tiny * Rabs Y <= tiny * (P + room)) by (apply Rmult_le_compat_l; lra).
+    assert (tiny * Rabs Z <= tiny * (P + room)) by (apply Rmult_le_compat_l; lra).
     lra. }
   pose proof (Rle_0_sqr (Rabs X + 3 * tiny)) as Qx.
   pose proof (Rle_0_sqr (Rabs Y + 3 * tiny)) as Qy.
@@ -182,7 +191,7 @@ Proof.
   set (qx := (Rabs X + 3 * tiny) * (Rabs X + 3 * tiny)) in *.
   set (qy := (Rabs Y + 3 * tiny) * (Rabs Y + 3 * tiny)) in *.
   set (qz := (Rabs Z + 3 * tiny) * (Rabs Z + 3 * tiny)) in *.
-  set (bound := (P + slack) * (P + slack) + 18 * tiny * (P + slack) + 27 * (tiny * tiny)) in *.
+  set (bound := (P + room) * (P + room) + 18 * tiny * (P + room) + 27 * (tiny * tiny)) in *.
   clearbody qx qy qz bound.
   apply Rle_trans with ((qx + qy + qz) * (1 + 6 * u) + 8 * half_step);
     unfold u in *; lra.
@@ -200,7 +209,7 @@ Proof.
   { unfold lower, u. lra. }
   assert (Hss : lower * lower <= s * s) by (apply Rmult_le_compat; lra).
   apply Rle_trans with (lower * lower * (1 - u) - half_step); [| unfold u in *; lra].
-  unfold lower, slack, u.
+  unfold lower, u. rewrite room_value.
   assert (0 <= P * P) by apply Rle_0_sqr.
   assert (0 <= P * tiny) by (apply Rmult_le_pos; lra).
   assert (0 <= tiny * tiny) by apply Rle_0_sqr.
@@ -209,7 +218,7 @@ Qed.
 
 (* Where s * s is flushed, so is each square of a difference. *)
 Lemma difference_less (W dw : R) :
-  s * s < threshold m -> Rabs W <= P + slack -> Rabs dw <= (Rabs W + 3 * tiny) * (1 + u) ->
+  s * s < threshold m -> Rabs W <= P + room -> Rabs dw <= (Rabs W + 3 * tiny) * (1 + u) ->
   Rabs dw < s.
 Proof.
   intros Hf HW Hd. pose proof tiny_value as Hw. pose proof Hm as Ht. unfold valid in Ht.
@@ -219,7 +228,7 @@ Proof.
       * (16777216 * (72057594037927936 * tiny)) <= s * s)
       by (apply Rmult_le_compat; lra).
     pose proof (Rle_0_sqr tiny) as Hq. unfold Rsqr in Hq. lra. }
-  rewrite floor_value in *. unfold slack, u in *. lra.
+  rewrite room_value, floor_value in *. unfold u in *. lra.
 Qed.
 
 Lemma square_flushed (dw : R) : s * s < threshold m -> Rabs dw < s -> mul m dw dw = 0.
@@ -247,11 +256,11 @@ Proof.
 Qed.
 End Decision.
 
-(* Balls that come within the slack of each other are not rejected. m is the mode of the test, ma
+(* Balls that come within that of each other are not rejected. m is the mode of the test, ma
    and mb those in which the radii were inflated. *)
 Theorem near_balls_not_rejected (m ma mb : mode) (a b : ball) :
   valid m -> valid ma -> valid mb -> 0 <= radius a -> 0 <= radius b ->
-  distance (centre a) (centre b) <= radius a + radius b + slack ->
+  distance (centre a) (centre b) <= radius a + radius b + room ->
   rejects m (inflated ma a) (inflated mb b) = false.
 Proof.
   intros Hm Hma Hmb Ha Hb H. unfold rejects, inflated. cbn.
@@ -259,7 +268,7 @@ Proof.
   apply decision with (X := px way) (Y := py way) (Z := pz way) (P := radius a + radius b);
     try apply difference_above; try assumption.
   - lra.
-  - change (square way <= (radius a + radius b + slack) * (radius a + radius b + slack)).
+  - change (square way <= (radius a + radius b + room) * (radius a + radius b + room)).
     rewrite <- norm_square. pose proof (norm_nonneg way). now apply Rmult_le_compat.
   - now apply sum_below.
 Qed.
@@ -272,5 +281,5 @@ Theorem stored_balls_disjoint (m ma mb : mode) (a b : ball) :
 Proof.
   intros Hm Hma Hmb Ha Hb Hr p [Pa Pb]. pose proof (balls_meet p a b Pa Pb) as H.
   rewrite near_balls_not_rejected in Hr; try assumption; [discriminate |].
-  pose proof tiny_value. unfold slack. lra.
+  pose proof slack_in_room. lra.
 Qed.

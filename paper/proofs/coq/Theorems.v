@@ -2,7 +2,8 @@
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
   Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody
-  SameOrDop OrDopRun Cubes CubeLists Binning.
+  SameOrDop OrDopRun Cubes CubeLists Binning Above Reach Rows Swept Query Examples
+  ExamplesOrDop.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -50,9 +51,20 @@ Definition theorems := (
   CubeLists.cube_lists_hold,
   Binning.polytope_in_ball,
   Binning.far_ordops_separated,
+  Above.computed_support_above,
+  Reach.reported_ordops_binned,
+  Rows.box_looks_once,
+  Rows.wrapped_looks_once,
   Margins.place_within_moved,
   Margins.slab_with_margin,
-  Refit.refit_contains
+  Refit.refit_contains,
+  Query.crossing_contains,
+  Query.beyond_is_certain,
+  Swept.swept_contains,
+  Examples.spheres_are_rejected,
+  Examples.spheres_are_reported,
+  ExamplesOrDop.ordops_are_rejected,
+  ExamplesOrDop.ordops_are_reported
 ).
 
 Print Assumptions theorems.

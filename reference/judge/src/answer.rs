@@ -14,7 +14,7 @@ pub struct Answer {
 /// Why a case ended without an answer to judge. None of these is a pass.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Trouble {
+pub enum AnswerError {
     /// The program can't be started.
     #[error("cannot be started: {why}")]
     Start {
@@ -137,7 +137,7 @@ impl std::fmt::Display for Seconds {
 
 /// The reason why a culler gave no answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Stop {
+pub enum StopReason {
     /// It skips this case, with a reason, after some answers.
     Skipped {
         /// The reason that it gives.
@@ -146,11 +146,11 @@ pub enum Stop {
         answered: Vec<Answer>,
     },
     /// It failed.
-    Trouble(Trouble),
+    Trouble(AnswerError),
 }
 
-impl From<Trouble> for Stop {
-    fn from(trouble: Trouble) -> Self {
+impl From<AnswerError> for StopReason {
+    fn from(trouble: AnswerError) -> Self {
         Self::Trouble(trouble)
     }
 }
@@ -159,25 +159,25 @@ impl From<Trouble> for Stop {
 ///
 /// # Errors
 /// A body that doesn't exist or is paired with itself, the larger number first, a pair twice.
-pub fn sorted(number: usize, frame: &Frame, answer: &Answer) -> Result<Vec<[u32; 2]>, Trouble> {
+pub fn sorted(number: usize, frame: &Frame, answer: &Answer) -> Result<Vec<[u32; 2]>, AnswerError> {
     let bodies = frame.bodies.len();
     for &pair in &answer.pairs {
         let [i, j] = pair;
         if i as usize >= bodies || j as usize >= bodies {
-            return Err(Trouble::NoBody {
+            return Err(AnswerError::NoBody {
                 frame: number,
                 pair,
                 bodies,
             });
         }
         if i == j {
-            return Err(Trouble::SelfPair {
+            return Err(AnswerError::SelfPair {
                 frame: number,
                 body: i,
             });
         }
         if i > j {
-            return Err(Trouble::Reversed {
+            return Err(AnswerError::Reversed {
                 frame: number,
                 pair,
             });
@@ -186,7 +186,7 @@ pub fn sorted(number: usize, frame: &Frame, answer: &Answer) -> Result<Vec<[u32;
     let mut sorted = answer.pairs.clone();
     sorted.sort_unstable();
     match sorted.windows(2).find(|two| two[0] == two[1]) {
-        Some(two) => Err(Trouble::Twice {
+        Some(two) => Err(AnswerError::Twice {
             frame: number,
             pair: two[0],
         }),

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use super::case::Frame;
 use super::claim::Claim;
 use super::contestant::Filter;
-use super::shrink::Smallest;
+use super::shrink::SmallestCase;
 use sdop::choice::choices;
 use sdop::volume::Shape;
 
@@ -35,11 +35,11 @@ impl Language {
 }
 
 /// Numbers in nested lists; every list of one depth holds items of one kind.
-enum Data {
+enum ArgumentData {
     Float(f32),
     Integer(i64),
     Truth(bool),
-    List(Vec<Data>),
+    List(Vec<ArgumentData>),
     /// Numbers of a fixed count, such as a box.
     Row(Vec<f32>),
 }
@@ -50,12 +50,12 @@ struct Argument {
     meaning: &'static str,
     /// The type in Rust and in C++.
     types: [&'static str; 2],
-    data: Data,
+    data: ArgumentData,
 }
 
 /// The test.
 #[must_use]
-pub fn unit_test(smallest: &Smallest, language: Language) -> String {
+pub fn unit_test(smallest: &SmallestCase, language: Language) -> String {
     let arguments = arguments(smallest);
     let names: Vec<&str> = arguments.iter().map(|argument| argument.name).collect();
     let call = names.join(", ");
@@ -109,12 +109,17 @@ fn identifier(name: &str) -> String {
 }
 
 /// What the culler needs for the claim.
-fn arguments(smallest: &Smallest) -> Vec<Argument> {
+fn arguments(smallest: &SmallestCase) -> Vec<Argument> {
     let frames = &smallest.case.frames[..=smallest.miss.frame];
     let mut arguments = Vec::new();
-    let by_body = |of: &dyn Fn(&Frame, usize) -> Data| {
+    let by_body = |of: &dyn Fn(&Frame, usize) -> ArgumentData| {
         let frame = |frame: &Frame| (0..frame.bodies.len()).map(|i| of(frame, i)).collect();
-        Data::List(frames.iter().map(|f| Data::List(frame(f))).collect())
+        ArgumentData::List(
+            frames
+                .iter()
+                .map(|f| ArgumentData::List(frame(f)))
+                .collect(),
+        )
     };
     if smallest.case.claim.is_of_boxes() {
         arguments.push(Argument {
@@ -124,7 +129,7 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
                 "Vec<Vec<[f32; 6]>>",
                 "std::vector<std::vector<std::array<float, 6>>>",
             ],
-            data: by_body(&|frame, i| Data::Row(frame.boxes[i].to_vec())),
+            data: by_body(&|frame, i| ArgumentData::Row(frame.boxes[i].to_vec())),
         });
     } else {
         arguments.extend(of_shapes(smallest.case.claim, &smallest.case.shapes));
@@ -132,7 +137,7 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
             name: "shape",
             meaning: "of each frame and body: the number of its shape",
             types: ["Vec<Vec<usize>>", "std::vector<std::vector<std::size_t>>"],
-            data: by_body(&|frame, i| Data::Integer(frame.bodies.shape[i].into())),
+            data: by_body(&|frame, i| ArgumentData::Integer(frame.bodies.shape[i].into())),
         });
         arguments.push(Argument {
             name: "poses",
@@ -143,7 +148,7 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
             ],
             data: by_body(&|frame, i| {
                 let (q, t) = (frame.bodies.rotation[i], frame.bodies.translation[i]);
-                Data::Row([&q[..], &t].concat())
+                ArgumentData::Row([&q[..], &t].concat())
             }),
         });
     }
@@ -151,7 +156,7 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
         name: "is_static",
         meaning: "of each frame and body: two static bodies are no pair",
         types: ["Vec<Vec<bool>>", "std::vector<std::vector<bool>>"],
-        data: by_body(&|frame, i| Data::Truth(!frame.bodies.dynamic[i])),
+        data: by_body(&|frame, i| ArgumentData::Truth(!frame.bodies.dynamic[i])),
     });
     if frames.iter().any(|frame| frame.was.is_some()) {
         let former = |frame: &Frame, i: usize| match &frame.was {
@@ -162,7 +167,7 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
             name: "was",
             meaning: "of each frame and body: its number in the frame before, -1 for a new body",
             types: ["Vec<Vec<i64>>", "std::vector<std::vector<long>>"],
-            data: by_body(&|frame, i| Data::Integer(former(frame, i))),
+            data: by_body(&|frame, i| ArgumentData::Integer(former(frame, i))),
         });
     }
     arguments.extend(asked_on_top(frames));
@@ -171,13 +176,14 @@ fn arguments(smallest: &Smallest) -> Vec<Argument> {
 
 /// Filters, margins and states, where a frame has them.
 fn asked_on_top(frames: &[Frame]) -> Vec<Argument> {
-    let list = |of: &dyn Fn(&Frame) -> Data| Data::List(frames.iter().map(of).collect());
+    let list =
+        |of: &dyn Fn(&Frame) -> ArgumentData| ArgumentData::List(frames.iter().map(of).collect());
     let mut arguments = Vec::new();
     let of_filter = |of: &dyn Fn(&Filter) -> &Vec<[u32; 2]>| {
-        let two = |&ends: &[u32; 2]| Data::List(ends.map(integer).into());
+        let two = |&ends: &[u32; 2]| ArgumentData::List(ends.map(integer).into());
         list(&|frame| {
             let rows = frame.filter.iter().flat_map(of);
-            Data::List(rows.map(two).collect())
+            ArgumentData::List(rows.map(two).collect())
         })
     };
     let rows_of_integers = [
@@ -205,7 +211,7 @@ fn asked_on_top(frames: &[Frame]) -> Vec<Argument> {
             types: ["Vec<Vec<f32>>", "std::vector<std::vector<float>>"],
             data: list(&|frame| {
                 let margins = frame.margins.iter().flatten();
-                Data::List(margins.map(|&x| Data::Float(x)).collect())
+                ArgumentData::List(margins.map(|&x| ArgumentData::Float(x)).collect())
             }),
         });
     }
@@ -214,26 +220,29 @@ fn asked_on_top(frames: &[Frame]) -> Vec<Argument> {
             name: "restore",
             meaning: "of each frame: whether the saved state is restored before it",
             types: ["Vec<bool>", "std::vector<bool>"],
-            data: list(&|frame| Data::Truth(frame.restore)),
+            data: list(&|frame| ArgumentData::Truth(frame.restore)),
         });
         arguments.push(Argument {
             name: "save",
             meaning: "of each frame: whether the state is saved after it",
             types: ["Vec<bool>", "std::vector<bool>"],
-            data: list(&|frame| Data::Truth(frame.save)),
+            data: list(&|frame| ArgumentData::Truth(frame.save)),
         });
     }
     arguments
 }
 
-fn integer(number: u32) -> Data {
-    Data::Integer(number.into())
+fn integer(number: u32) -> ArgumentData {
+    ArgumentData::Integer(number.into())
 }
 
 /// What a posed claim is about.
 fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
-    let list = |of: &dyn Fn(&Shape) -> Data| Data::List(shapes.iter().map(of).collect());
-    let floats = |numbers: &[f32]| Data::List(numbers.iter().map(|&x| Data::Float(x)).collect());
+    let list =
+        |of: &dyn Fn(&Shape) -> ArgumentData| ArgumentData::List(shapes.iter().map(of).collect());
+    let floats = |numbers: &[f32]| {
+        ArgumentData::List(numbers.iter().map(|&x| ArgumentData::Float(x)).collect())
+    };
     match claim {
         Claim::Sphere => vec![Argument {
             name: "balls",
@@ -241,7 +250,7 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
             types: ["Vec<[f32; 4]>", "std::vector<std::array<float, 4>>"],
             data: list(&|shape| {
                 let [x, y, z] = shape.ball.centre;
-                Data::Row(vec![x, y, z, shape.ball.radius])
+                ArgumentData::Row(vec![x, y, z, shape.ball.radius])
             }),
         }],
         Claim::OrDop => vec![
@@ -251,7 +260,7 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
                 types: ["Vec<[f32; 9]>", "std::vector<std::array<float, 9>>"],
                 data: list(&|shape| {
                     let columns = shape.ordop.basis.columns;
-                    Data::Row(columns.as_flattened().to_vec())
+                    ArgumentData::Row(columns.as_flattened().to_vec())
                 }),
             },
             Argument {
@@ -269,8 +278,10 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
         ],
         _ => {
             let corners = |shape: &Shape| {
-                let triangle = |t: &[u32; 3]| Data::List(t.map(|v| Data::Integer(v.into())).into());
-                Data::List(shape.triangles.iter().map(triangle).collect())
+                let triangle = |t: &[u32; 3]| {
+                    ArgumentData::List(t.map(|v| ArgumentData::Integer(v.into())).into())
+                };
+                ArgumentData::List(shape.triangles.iter().map(triangle).collect())
             };
             vec![
                 Argument {
@@ -281,8 +292,8 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
                         "std::vector<std::vector<std::array<float, 3>>>",
                     ],
                     data: list(&|shape| {
-                        let vertex = |v: &[f32; 3]| Data::Row(v.to_vec());
-                        Data::List(shape.vertices.iter().map(vertex).collect())
+                        let vertex = |v: &[f32; 3]| ArgumentData::Row(v.to_vec());
+                        ArgumentData::List(shape.vertices.iter().map(vertex).collect())
                     }),
                 },
                 Argument {
@@ -316,7 +327,7 @@ impl Argument {
     }
 }
 
-impl Data {
+impl ArgumentData {
     fn text(&self, language: Language) -> String {
         let joined = |items: &[String], [open, close]: [&str; 2]| {
             format!("{open}{}{close}", items.join(", "))
@@ -361,7 +372,12 @@ mod tests {
     /// Whatever the language reads, it is the f32 of the case.
     #[test]
     fn numbers_stay_the_same() {
-        let row = Data::List(vec![Data::Row(vec![0.1, -0.0, 1e-45, 16_777_216.0])]);
+        let row = ArgumentData::List(vec![ArgumentData::Row(vec![
+            0.1,
+            -0.0,
+            1e-45,
+            16_777_216.0,
+        ])]);
         for (language, text) in [
             (Language::Rust, "vec![[0.1, -0.0, 1e-45, 16777216.0]]"),
             (Language::Cpp, "{{{0.1f, -0.0f, 1e-45f, 16777216.0f}}}"),

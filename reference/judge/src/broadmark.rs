@@ -163,8 +163,9 @@ fn world(frames: &[Frame]) -> WorldBox {
 mod tests {
     use super::*;
 
+    /// Recordings read back as they were written, and damaged ones are refused.
     #[test]
-    fn recordings_come_back_as_they_were_written_and_damaged_ones_are_refused() {
+    fn recordings_survive_a_round_trip() {
         let boxes = |x: f32| {
             vec![
                 [x, 0.0, 0.0, x + 1.0, 1.0, 1.0],

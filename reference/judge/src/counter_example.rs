@@ -3,11 +3,11 @@
 use std::fmt;
 
 use super::score::Miss;
-use super::shrink::Smallest;
+use super::shrink::SmallestCase;
 use super::witness::DEEPEST;
 use crate::contestant::WorldBox;
 
-impl Smallest {
+impl SmallestCase {
     /// The boxes of the missed pair, for the claim that is about boxes.
     #[must_use]
     pub fn boxes(&self) -> Option<[WorldBox; 2]> {
@@ -55,7 +55,7 @@ impl Smallest {
     }
 }
 
-impl fmt::Display for Smallest {
+impl fmt::Display for SmallestCase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Miss {
             frame,
@@ -181,8 +181,9 @@ mod tests {
         );
     }
 
+    /// Numbers have an exponent where zeros would hide their digits.
     #[test]
-    fn numbers_have_an_exponent_where_zeros_would_hide_them() {
+    fn tiny_numbers_have_an_exponent() {
         assert_eq!(coordinate(-0.0), "0");
         assert_eq!(coordinate(1e-45), "1e-45");
         assert_eq!(coordinate(2.5e17), "2.5e17");

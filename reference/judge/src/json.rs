@@ -11,9 +11,9 @@ use serde::Serialize;
 use serde_json::ser::{Formatter, Serializer};
 
 /// Writes compact JSON with exact numbers.
-struct Exact;
+struct ExactNumbers;
 
-impl Formatter for Exact {
+impl Formatter for ExactNumbers {
     fn write_f32<W: ?Sized + io::Write>(&mut self, writer: &mut W, value: f32) -> io::Result<()> {
         self.write_f64(writer, f64::from(value))
     }
@@ -24,7 +24,7 @@ impl Formatter for Exact {
 /// # Errors
 /// A writer that fails, or a map whose keys aren't text.
 pub fn to_writer(writer: impl io::Write, value: &impl Serialize) -> serde_json::Result<()> {
-    value.serialize(&mut Serializer::with_formatter(writer, Exact))
+    value.serialize(&mut Serializer::with_formatter(writer, ExactNumbers))
 }
 
 /// A value as compact JSON.

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::answer::{Answer, Seconds, Stop, Trouble};
+use super::answer::{Answer, AnswerError, Seconds, StopReason};
 use super::case::Case;
 use super::subject::Subject;
 use super::wire::{Wire, beginning, book};
@@ -34,13 +34,13 @@ const CHATTER: usize = 1 << 16;
 
 impl Program {
     /// The case as the program reads it.
-    fn input(&self, case: &Case) -> Result<Vec<u8>, Trouble> {
-        let start = |e: serde_json::Error| Trouble::Start { why: e.to_string() };
+    fn input(&self, case: &Case) -> Result<Vec<u8>, AnswerError> {
+        let start = |e: serde_json::Error| AnswerError::Start { why: e.to_string() };
         self.wire.encode(case).map_err(start)
     }
 
-    fn start(&self) -> Result<RunningProgram, Trouble> {
-        let start = |e: std::io::Error| Trouble::Start { why: e.to_string() };
+    fn start(&self) -> Result<RunningProgram, AnswerError> {
+        let start = |e: std::io::Error| AnswerError::Start { why: e.to_string() };
         RunningProgram::start(&self.command).map_err(start)
     }
 
@@ -51,7 +51,7 @@ impl Program {
 }
 
 impl Subject for Program {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         let input = self.input(case)?;
         let (mut running, time) = (self.start()?, self.time(input.len()));
         running.feed(input);
@@ -82,14 +82,14 @@ impl Service {
 }
 
 impl Subject for Service {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         let input = self.program.input(case)?;
         let time = self.program.time(input.len());
         let idle = self.idle().pop();
         let mut running = idle.map_or_else(|| self.program.start(), Ok)?;
         running.feed(input);
         let answered = running.answers(self.program.wire, case, time);
-        let is_in_step = matches!(answered, Ok(_) | Err(Stop::Skipped { .. }));
+        let is_in_step = matches!(answered, Ok(_) | Err(StopReason::Skipped { .. }));
         if is_in_step && running.buffer.is_empty() {
             self.idle().push(running);
         }
@@ -156,7 +156,12 @@ impl RunningProgram {
 
     /// The answers to the case that was fed; unless other cases may follow, the process has to end
     /// after them.
-    fn answers(&mut self, wire: Wire, case: &Case, time: Duration) -> Result<Vec<Answer>, Stop> {
+    fn answers(
+        &mut self,
+        wire: Wire,
+        case: &Case,
+        time: Duration,
+    ) -> Result<Vec<Answer>, StopReason> {
         let goes_on = self.input.is_some();
         self.bytes = 0;
         let deadline = Instant::now() + time;
@@ -170,13 +175,13 @@ impl RunningProgram {
             let line = match self.line(deadline, most) {
                 Ok(Some(line)) => line,
                 Ok(None) => break,
-                Err(LineError::Flood) => return Err(Trouble::Flood { bytes: most }.into()),
+                Err(LineError::Flood) => return Err(AnswerError::Flood { bytes: most }.into()),
                 Err(LineError::Late) if answers.len() == frames => {
-                    return Err(Trouble::Hanging { seconds }.into());
+                    return Err(AnswerError::Hanging { seconds }.into());
                 }
                 Err(LineError::Late) => {
                     let frame = answers.len();
-                    return Err(Trouble::Timeout { frame, seconds }.into());
+                    return Err(AnswerError::Timeout { frame, seconds }.into());
                 }
             };
             if line.trim_ascii().is_empty() {
@@ -184,23 +189,23 @@ impl RunningProgram {
             }
             if answers.len() == frames {
                 let line = beginning(&line);
-                return Err(Trouble::TooMany { frames, line }.into());
+                return Err(AnswerError::TooMany { frames, line }.into());
             }
             let said = wire.decode(answers.len(), &line)?;
             book(&mut answers, said, &line)?;
         }
         let answered = answers.len();
         let Some(status) = self.status(deadline) else {
-            return Err(Trouble::Hanging { seconds }.into());
+            return Err(AnswerError::Hanging { seconds }.into());
         };
         if !status.success() {
             let (how, said) = (ending(status), self.said());
             // What the shell says of a command that it can't execute or find.
             if answered == 0 && matches!(status.code(), Some(126 | 127)) {
                 let why = format!("{how}{said}");
-                return Err(Trouble::Start { why }.into());
+                return Err(AnswerError::Start { why }.into());
             }
-            return Err(Trouble::Crashed {
+            return Err(AnswerError::Crashed {
                 how,
                 answered,
                 said,
@@ -209,7 +214,7 @@ impl RunningProgram {
         }
         if answered < frames {
             let said = self.said();
-            return Err(Trouble::Early {
+            return Err(AnswerError::Early {
                 answered,
                 frames,
                 said,

@@ -7,7 +7,7 @@ use super::case::Case;
 use super::claim::Claim;
 use super::score::Outcome;
 pub use super::shrink::STEM;
-use super::shrink::Smallest;
+use super::shrink::SmallestCase;
 use super::verdict::Verdict;
 use super::wire::ndjson;
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
@@ -22,7 +22,7 @@ pub type NamedFile = (String, Vec<u8>);
 ///
 /// # Errors
 /// A mesh that can't be written: none that was read.
-pub fn counter_example(smallest: &Smallest) -> std::io::Result<Vec<NamedFile>> {
+pub fn counter_example(smallest: &SmallestCase) -> std::io::Result<Vec<NamedFile>> {
     let mut files = vec![case_file(smallest)?];
     if let Some(axes) = axes_of_scene(&smallest.case) {
         let k = smallest.case.shapes[0].ordop.directions;
@@ -36,7 +36,7 @@ pub fn counter_example(smallest: &Smallest) -> std::io::Result<Vec<NamedFile>> {
 ///
 /// # Errors
 /// As [`counter_example`].
-pub fn case_file(smallest: &Smallest) -> std::io::Result<NamedFile> {
+pub fn case_file(smallest: &SmallestCase) -> std::io::Result<NamedFile> {
     let case = ndjson::encode(&smallest.case, &smallest.pairs)?;
     Ok((format!("{STEM}.ndjson"), case))
 }

@@ -11,12 +11,12 @@ use sdop::volume::Shape;
 use super::case::{Case, Frame};
 use super::catalogue::{CaseId, CatalogueError, select};
 use super::claim::Claim;
-use super::score::{Judged, Outcome, judge_case};
+use super::score::{CaseScore, Outcome, judge_case};
 use super::shrink::shrink;
-use super::subject::{Function, Made, Pairwise, Scene, Subject};
+use super::subject::{ContestantFactory, CullFunction, PairwiseTest, Scene, Subject};
 use super::verdict::{CaseVerdict, Verdict};
 use crate::contestant::Contestant;
-use crate::ours::judged::InvalidInput;
+use crate::ours::reference_shapes::InvalidInput;
 
 /// The error if nothing could be judged.
 #[derive(Debug, thiserror::Error)]
@@ -93,36 +93,36 @@ pub struct Judge<S> {
 }
 
 /// Judges a Rust culler, made anew for each case by `make`.
-pub fn judge<F, C>(make: F) -> Judge<Made<F>>
+pub fn judge<F, C>(make: F) -> Judge<ContestantFactory<F>>
 where
     F: Fn(&Scene<'_>) -> C + Sync,
     C: Contestant,
 {
     Judge {
-        subject: Made(make),
+        subject: ContestantFactory(make),
         options: Options::default(),
     }
 }
 
 /// Judges a culler that keeps nothing between frames: a function of the shapes and of a frame. The
 /// frame has the bodies' poses and boxes. Pairs are i < j, each once.
-pub fn judge_function<F>(cull: F) -> Judge<Function<F>>
+pub fn judge_function<F>(cull: F) -> Judge<CullFunction<F>>
 where
     F: Fn(&[Shape], &Frame) -> Vec<[u32; 2]> + Sync,
 {
     Judge {
-        subject: Function(cull),
+        subject: CullFunction(cull),
         options: Options::default(),
     }
 }
 
 /// Judges a test of single pairs: whether two bodies of a frame overlap, as far as it can tell.
-pub fn judge_pair_test<T>(overlap: T) -> Judge<Pairwise<T>>
+pub fn judge_pair_test<T>(overlap: T) -> Judge<PairwiseTest<T>>
 where
     T: Fn(&[Shape], &Frame, [usize; 2]) -> bool + Sync,
 {
     Judge {
-        subject: Pairwise(overlap),
+        subject: PairwiseTest(overlap),
         options: Options::default(),
     }
 }
@@ -290,7 +290,7 @@ fn conclude(
     }
 }
 
-fn line(case: &Case, judged: &Judged, known: &BTreeSet<String>) -> CaseVerdict {
+fn line(case: &Case, judged: &CaseScore, known: &BTreeSet<String>) -> CaseVerdict {
     CaseVerdict {
         name: case.name.clone(),
         flag: case.flag.clone(),

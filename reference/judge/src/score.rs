@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use super::answer::{Answer, Stop, Trouble, sorted};
+use super::answer::{Answer, AnswerError, StopReason, sorted};
 use super::case::{Case, Frame};
 use super::claim::Claim;
 use super::subject::Subject;
 use super::truth::{Truth, boxes_meet};
 use crate::contestant::WorldBox;
-use crate::ours::judged::InvalidInput;
+use crate::ours::reference_shapes::InvalidInput;
 
 /// Pairs counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -69,7 +69,7 @@ pub enum Outcome {
     /// There is no answer to judge.
     Error {
         /// What happened.
-        trouble: Trouble,
+        trouble: AnswerError,
     },
 }
 
@@ -84,7 +84,7 @@ pub struct Miss {
 
 /// A case's result.
 #[derive(Clone, Debug)]
-pub struct Judged {
+pub struct CaseScore {
     /// How it ended.
     pub outcome: Outcome,
     /// Pairs counted; all zero unless it was judged.
@@ -95,7 +95,7 @@ pub struct Judged {
     pub lists: Vec<Vec<[u32; 2]>>,
 }
 
-impl Judged {
+impl CaseScore {
     fn without_answers(outcome: Outcome) -> Self {
         Self {
             outcome,
@@ -111,7 +111,11 @@ impl Judged {
 ///
 /// # Errors
 /// A case that the reference refuses.
-pub fn judge_case(subject: &dyn Subject, case: &Case, twice: bool) -> Result<Judged, InvalidInput> {
+pub fn judge_case(
+    subject: &dyn Subject,
+    case: &Case,
+    twice: bool,
+) -> Result<CaseScore, InvalidInput> {
     let judge = || match subject.answer(case) {
         Ok(answers) => judge_answers(case, &answers),
         Err(stop) => stopped(case, stop),
@@ -141,8 +145,8 @@ pub fn judge_case(subject: &dyn Subject, case: &Case, twice: bool) -> Result<Jud
 fn in_other_orders(
     subject: &dyn Subject,
     case: &Case,
-    judged: &Judged,
-) -> Result<Option<Judged>, InvalidInput> {
+    judged: &CaseScore,
+) -> Result<Option<CaseScore>, InvalidInput> {
     let bodies = case.frames.first().map_or(0, |frame| frame.bodies.len());
     let by_threes = (0..3).flat_map(|first| (first..bodies).step_by(3));
     for order in [(0..bodies).rev().collect::<Vec<_>>(), by_threes.collect()] {
@@ -201,10 +205,12 @@ fn not_restored(case: &Case, lists: &[Vec<[u32; 2]>]) -> Option<usize> {
 
 /// The result of a case without all answers. A wrong answer counts, also if the rest of the case is
 /// skipped.
-fn stopped(case: &Case, stop: Stop) -> Result<Judged, InvalidInput> {
+fn stopped(case: &Case, stop: StopReason) -> Result<CaseScore, InvalidInput> {
     let (why, answered) = match stop {
-        Stop::Skipped { why, answered } => (why, answered),
-        Stop::Trouble(trouble) => return Ok(Judged::without_answers(Outcome::Error { trouble })),
+        StopReason::Skipped { why, answered } => (why, answered),
+        StopReason::Trouble(trouble) => {
+            return Ok(CaseScore::without_answers(Outcome::Error { trouble }));
+        }
     };
     let mut begun = case.clone();
     begun.frames.truncate(answered.len());
@@ -212,7 +218,7 @@ fn stopped(case: &Case, stop: Stop) -> Result<Judged, InvalidInput> {
     Ok(match judged.outcome {
         Outcome::Fail { .. } | Outcome::Error { .. } => judged,
         Outcome::Pass | Outcome::Skipped { .. } => {
-            Judged::without_answers(Outcome::Skipped { why })
+            CaseScore::without_answers(Outcome::Skipped { why })
         }
     })
 }
@@ -221,20 +227,20 @@ fn stopped(case: &Case, stop: Stop) -> Result<Judged, InvalidInput> {
 ///
 /// # Errors
 /// A case that the reference refuses.
-pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<Judged, InvalidInput> {
+pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, InvalidInput> {
     if answers.len() != case.frames.len() {
-        let trouble = Trouble::Early {
+        let trouble = AnswerError::Early {
             answered: answers.len(),
             frames: case.frames.len(),
             said: String::new(),
         };
-        return Ok(Judged::without_answers(Outcome::Error { trouble }));
+        return Ok(CaseScore::without_answers(Outcome::Error { trouble }));
     }
     let mut lists = Vec::new();
     for (number, (frame, answer)) in case.frames.iter().zip(answers).enumerate() {
         match sorted(number, frame, answer) {
             Ok(list) => lists.push(list),
-            Err(trouble) => return Ok(Judged::without_answers(Outcome::Error { trouble })),
+            Err(trouble) => return Ok(CaseScore::without_answers(Outcome::Error { trouble })),
         }
     }
     let (truth, balls) = (
@@ -288,7 +294,7 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<Judged, InvalidI
         (None, None, None) => None,
     };
     let outcome = wrong.map_or(Outcome::Pass, |why| Outcome::Fail { why });
-    Ok(Judged {
+    Ok(CaseScore {
         outcome,
         count,
         miss,

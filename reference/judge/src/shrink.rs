@@ -16,7 +16,7 @@ pub const STEM: &str = "missed-pair";
 
 /// A small case that shows a missed pair.
 #[derive(Clone, Debug)]
-pub struct Smallest {
+pub struct SmallestCase {
     /// The name of the case from which it was reduced.
     pub from: String,
     /// The case, under a new name.
@@ -31,7 +31,7 @@ pub struct Smallest {
 
 /// Makes a case that a subject fails smaller, for so long at most. `None` when it doesn't fail
 /// again.
-pub fn shrink(subject: &dyn Subject, case: &Case, time: Duration) -> Option<Smallest> {
+pub fn shrink(subject: &dyn Subject, case: &Case, time: Duration) -> Option<SmallestCase> {
     shrink_while(case, time, &|case| {
         let answers = subject.answer(case).ok()?;
         let judged = judge_answers(case, &answers).ok()?;
@@ -46,7 +46,7 @@ pub type Lists = Vec<Vec<[u32; 2]>>;
 pub type FailureCheck<'a> = &'a dyn Fn(&Case) -> Option<(Miss, Lists)>;
 
 /// Makes a case smaller while something is wrong with it, for so long at most.
-pub fn shrink_while(case: &Case, time: Duration, wrong: FailureCheck<'_>) -> Option<Smallest> {
+pub fn shrink_while(case: &Case, time: Duration, wrong: FailureCheck<'_>) -> Option<SmallestCase> {
     let (miss, pairs) = wrong(case)?;
     let mut search = Search {
         wrong,
@@ -73,7 +73,7 @@ pub fn shrink_while(case: &Case, time: Duration, wrong: FailureCheck<'_>) -> Opt
         case.name = format!("{STEM}/{from}");
     }
     let witness = Witness::of(&case, miss);
-    Some(Smallest {
+    Some(SmallestCase {
         from,
         case,
         pairs,
@@ -318,7 +318,7 @@ mod tests {
     use super::rounded;
 
     #[test]
-    fn numbers_lose_digits_and_keep_their_size() {
+    fn rounded_numbers_keep_their_size() {
         assert_eq!(rounded(1.999_999_9, 2), 2.0);
         assert_eq!(rounded(-0.3, 0), 0.0);
         assert_eq!(rounded(1.3, 4), 1.25);

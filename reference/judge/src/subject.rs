@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use super::answer::{Answer, Stop, Trouble};
+use super::answer::{Answer, AnswerError, StopReason};
 use super::case::{Case, Frame};
 use super::claim::Claim;
 use crate::contestant::{Contestant, WorldBox};
@@ -29,24 +29,26 @@ pub trait Subject: Sync {
     ///
     /// # Errors
     /// It skips the case, or fails.
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop>;
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason>;
 }
 
 /// A maker of Rust cullers, one for each case.
-pub struct Made<F>(pub F);
+pub struct ContestantFactory<F>(pub F);
 
-impl<F, C> Subject for Made<F>
+impl<F, C> Subject for ContestantFactory<F>
 where
     F: Fn(&Scene<'_>) -> C + Sync,
     C: Contestant,
 {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         guarded(|answers| self.run(case, answers))
     }
 }
 
 /// The answers that `run` collects; a panic is an error of the case.
-fn guarded(run: impl FnOnce(&mut Vec<Answer>) -> Result<(), Stop>) -> Result<Vec<Answer>, Stop> {
+fn guarded(
+    run: impl FnOnce(&mut Vec<Answer>) -> Result<(), StopReason>,
+) -> Result<Vec<Answer>, StopReason> {
     let mut answers = Vec::new();
     match catch_unwind(AssertUnwindSafe(|| run(&mut answers))) {
         Ok(Ok(())) => Ok(answers),
@@ -54,7 +56,7 @@ fn guarded(run: impl FnOnce(&mut Vec<Answer>) -> Result<(), Stop>) -> Result<Vec
         Err(payload) => {
             let text = payload.downcast_ref::<String>().map(String::as_str);
             let text = text.or(payload.downcast_ref::<&str>().copied());
-            Err(Stop::Trouble(Trouble::Crashed {
+            Err(StopReason::Trouble(AnswerError::Crashed {
                 how: format!("panicked: {}", text.unwrap_or("without a message")),
                 answered: answers.len(),
                 said: String::new(),
@@ -63,12 +65,12 @@ fn guarded(run: impl FnOnce(&mut Vec<Answer>) -> Result<(), Stop>) -> Result<Vec
     }
 }
 
-impl<F, C> Made<F>
+impl<F, C> ContestantFactory<F>
 where
     F: Fn(&Scene<'_>) -> C + Sync,
     C: Contestant,
 {
-    fn run(&self, case: &Case, answers: &mut Vec<Answer>) -> Result<(), Stop> {
+    fn run(&self, case: &Case, answers: &mut Vec<Answer>) -> Result<(), StopReason> {
         let Some(first) = case.frames.first() else {
             return Ok(());
         };
@@ -92,7 +94,7 @@ where
             }
             if let Some(why) = why {
                 let (why, answered) = (why.to_owned(), std::mem::take(answers));
-                return Err(Stop::Skipped { why, answered });
+                return Err(StopReason::Skipped { why, answered });
             }
         }
         Ok(())
@@ -121,13 +123,13 @@ fn prepared(culler: &mut impl Contestant, frame: &Frame) -> Result<(), &'static 
 }
 
 /// A culler that keeps nothing between frames: a function of a case's shapes and of a frame.
-pub struct Function<F>(pub F);
+pub struct CullFunction<F>(pub F);
 
-impl<F> Subject for Function<F>
+impl<F> Subject for CullFunction<F>
 where
     F: Fn(&[Shape], &Frame) -> Vec<[u32; 2]> + Sync,
 {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         guarded(|answers| {
             answers.extend(case.frames.iter().map(|frame| Answer {
                 pairs: (self.0)(&case.shapes, frame),
@@ -139,18 +141,18 @@ where
 }
 
 /// A test of single pairs, run over all pairs, which makes a culler of it.
-pub struct Pairwise<T>(pub T);
+pub struct PairwiseTest<T>(pub T);
 
-impl<T> Subject for Pairwise<T>
+impl<T> Subject for PairwiseTest<T>
 where
     T: Fn(&[Shape], &Frame, [usize; 2]) -> bool + Sync,
 {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         let cull = |shapes: &[Shape], frame: &Frame| {
             let overlap = |&[i, j]: &[u32; 2]| (self.0)(shapes, frame, [i as usize, j as usize]);
             let pairs = all_pairs(&frame.bodies.dynamic).map(|(i, j)| [i, j]);
             pairs.filter(overlap).collect()
         };
-        Function(cull).answer(case)
+        CullFunction(cull).answer(case)
     }
 }

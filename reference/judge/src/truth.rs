@@ -7,7 +7,7 @@ use sdop_reference::exact::{meeting, ordop, sphere};
 use super::case::Frame;
 use super::claim::Claim;
 use crate::contestant::WorldBox;
-use crate::ours::judged::{InvalidInput, body, slabs};
+use crate::ours::reference_shapes::{InvalidInput, body, slabs};
 use sdop::volume::{Hull, Shape};
 
 /// Judges pairs of one claim.
@@ -190,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sums_are_decided_to_the_last_bit() {
+    fn sums_are_exact_to_one_bit() {
         let tiny = f32::from_bits(1);
         for (terms, positive) in [
             ([1.0, -1.0, 0.0, 0.0], false),
@@ -211,7 +211,7 @@ mod tests {
 
     /// At their margins' distance boxes are near, one ulp further they are not.
     #[test]
-    fn margins_reach_as_far_as_they_say() {
+    fn margins_have_their_exact_reach() {
         let first = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let beside = |x: f32| [x, 0.0, 0.0, x + 1.0, 1.0, 1.0];
         let margins = [0.25, 0.5];

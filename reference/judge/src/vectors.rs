@@ -6,11 +6,11 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::catalogue::{CatalogueError, Group, groups};
+use super::catalogue::{CaseGroup, CatalogueError, groups};
 use super::report::NamedFile;
 use super::truth::Truth;
 use crate::json;
-use crate::ours::judged::InvalidInput;
+use crate::ours::reference_shapes::InvalidInput;
 use crate::record::ShapeLine;
 
 /// What the files' versions count.
@@ -72,7 +72,7 @@ pub fn files() -> Result<Vec<NamedFile>, VectorError> {
     Ok(files)
 }
 
-fn vector(group: &Group, number: u32) -> Result<Option<Vector>, VectorError> {
+fn vector(group: &CaseGroup, number: u32) -> Result<Option<Vector>, VectorError> {
     let Some(case) = group.pair_case(number)? else {
         return Ok(None);
     };
@@ -103,7 +103,7 @@ fn vector(group: &Group, number: u32) -> Result<Option<Vector>, VectorError> {
 }
 
 /// The file's text: its head, then one case per line.
-fn text(group: &Group, cases: &[Vector]) -> serde_json::Result<String> {
+fn text(group: &CaseGroup, cases: &[Vector]) -> serde_json::Result<String> {
     let quoted = serde_json::to_string;
     let mut text = format!(
         "{{\n\"format\": \"sdop-vectors\", \"version\": {VERSION}, \"group\": {}, \"flag\": {}, \"source\": {},\n\"cases\": [\n",

@@ -4,11 +4,11 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::answer::Trouble;
+use super::answer::AnswerError;
 use super::case::group_of;
 use super::claim::Claim;
 use super::score::{Count, Miss, Outcome};
-use super::shrink::Smallest;
+use super::shrink::SmallestCase;
 
 /// A case's line.
 #[derive(Clone, Debug, Serialize)]
@@ -43,7 +43,7 @@ impl CaseVerdict {
             Outcome::Error { trouble } => trouble,
             _ => return false,
         };
-        matches!(trouble, Trouble::Start { .. })
+        matches!(trouble, AnswerError::Start { .. })
     }
 }
 
@@ -116,7 +116,7 @@ pub struct Verdict {
     pub extra_limit: Option<f64>,
     /// The smallest scene of the first miss.
     #[serde(skip)]
-    pub smallest: Option<Smallest>,
+    pub smallest: Option<SmallestCase>,
 }
 
 impl Verdict {

@@ -8,7 +8,7 @@
 
 mod across;
 mod cells;
-mod late;
+mod late_bodies;
 mod level;
 mod near;
 mod plan;

@@ -157,7 +157,7 @@ fn at_f32(name: &str, bits: &[u64]) -> Option<Vec<u64>> {
 
 /// Along one axis `inflate_slab` gives the same ends.
 #[test]
-fn at_f32_a_slab_is_the_code_s() {
+fn slabs_at_f32_match_the_code() {
     let mut inputs = super::inputs::Inputs::new(5);
     let margin = [power(-17), power(-110)];
     for _ in 0..2000 {

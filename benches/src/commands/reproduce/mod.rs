@@ -1,8 +1,8 @@
 //! `sdop reproduce`: the paper's experiments, from the runs to their tables and figures.
 
-mod brief;
 mod figures;
 mod rows;
+mod terminal;
 
 use std::path::{Path, PathBuf};
 
@@ -152,7 +152,7 @@ impl OutputPlace<'_> {
         match format {
             Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new()),
             format => emit_with_reason(format, tables, why, |tables| {
-                brief::brief(tables, self.seconds, &self.numbers.display().to_string())
+                terminal::brief(tables, self.seconds, &self.numbers.display().to_string())
             }),
         }
     }

@@ -1,7 +1,7 @@
 //! `mpirun -n R sdop run`: each rank builds its share of the scene, rank 0 prints.
 //!
-//! Whatever goes wrong, all ranks learn of it before any of them ends, so that none waits for one
-//! that is gone.
+//! An error on one rank reaches all ranks before any of them ends, so that none waits for a rank
+//! that has ended.
 
 use miette::IntoDiagnostic as _;
 use sdop::bodies::Bodies;

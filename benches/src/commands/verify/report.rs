@@ -4,12 +4,12 @@
 mod coverage;
 
 use sdop_judge::Conclusion;
-use sdop_judge::every_way::{Judged, Ledger};
+use sdop_judge::every_way::{Ledger, LedgerKey};
 use sdop_judge::ours::Predicate;
 use sdop_judge::ours::boxes::BoxLedger;
+use sdop_judge::ours::configurations::Rotation;
 use sdop_judge::ours::histories::HistoryLedger;
 use sdop_judge::ours::matrix::Matrix;
-use sdop_judge::ours::ways::Rotation;
 use serde::Serialize;
 
 use crate::commands::output::table;
@@ -234,7 +234,7 @@ impl Report {
     }
 }
 
-fn strategy((row, count): (&Judged, &sdop_judge::ours::Count)) -> StrategyReport {
+fn strategy((row, count): (&LedgerKey, &sdop_judge::ours::ListCount)) -> StrategyReport {
     let rate = |part: u64, of: u64| (of > 0).then(|| 1e6 * part as f64 / of as f64);
     // What a budget leaves untested is no rounding margin.
     let budgeted = row.strategy.scheme().has_budget();

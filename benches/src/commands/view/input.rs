@@ -1,4 +1,4 @@
-//! What is to be shown: a scene is simulated, a record read, a group of hard cases made.
+//! Loads the run to be shown: simulates a scene, reads a record, or builds a group of hard cases.
 
 use std::fs::File;
 use std::io::{BufReader, Read as _};
@@ -8,8 +8,8 @@ use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop::Tier;
 use sdop_bench::remedy::OrReport as _;
 use sdop_bench::view::ShownRun;
-use sdop_judge::answer::{Answer, Stop, sorted};
-use sdop_judge::ours::hard::Group;
+use sdop_judge::answer::{Answer, StopReason, sorted};
+use sdop_judge::ours::hard::HardCaseGroup;
 use sdop_judge::record::RecordError;
 use sdop_judge::wire::{Wire, ndjson::StoredCase};
 use sdop_judge::{Case, Claim};
@@ -163,8 +163,8 @@ fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> 
             "{name}: {} answers to {frames} frames",
             answers.len()
         )),
-        Err(Stop::Skipped { why, .. }) => Err(miette!("{name}: the case was skipped: {why}")),
-        Err(Stop::Trouble(trouble)) => Err(miette!(help = hint, "{name}: {trouble}")),
+        Err(StopReason::Skipped { why, .. }) => Err(miette!("{name}: the case was skipped: {why}")),
+        Err(StopReason::Trouble(trouble)) => Err(miette!(help = hint, "{name}: {trouble}")),
     }
 }
 
@@ -196,7 +196,7 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<ShownRun> {
     let text = std::fs::read_to_string(path)
         .into_diagnostic()
         .wrap_err_with(|| format!("{name}: cannot be read"))?;
-    let group = Group::parse(&text)
+    let group = HardCaseGroup::parse(&text)
         .into_diagnostic()
         .wrap_err_with(|| format!("{name}: no group of hard cases"))?;
     if args.seed().is_some() {

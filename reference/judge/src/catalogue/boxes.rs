@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::{CatalogueError, Drawn};
+use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use crate::contestant::WorldBox;
 use crate::ours::forms::Form;
@@ -23,7 +23,7 @@ pub enum Kind {
 }
 
 /// So many boxes of a kind, in one frame.
-pub fn boxes(kind: Kind, count: usize, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+pub fn boxes(kind: Kind, count: usize, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
     let mut boxes: Vec<WorldBox> = Vec::new();
     for n in 0..count {
         let drawn = match kind {
@@ -54,7 +54,7 @@ pub fn boxes(kind: Kind, count: usize, rng: &mut impl Rng) -> Result<Drawn, Cata
     let fixed = |i: usize| i % 5 == 4;
     let dynamic = (0..boxes.len()).map(|i| !fixed(i)).collect();
     let (shape, frame) = of_boxes(boxes, dynamic)?;
-    Ok(Drawn {
+    Ok(DrawnCase {
         shapes: vec![shape],
         frames: vec![frame],
     })

@@ -7,7 +7,7 @@
 use rand::{Rng, RngExt};
 
 use super::crowds::Kind;
-use super::{CatalogueError, Drawn};
+use super::{CatalogueError, DrawnCase};
 use crate::case::{Frame, picked};
 use crate::ours::forms::Form;
 use glam::Vec3;
@@ -29,7 +29,11 @@ pub(super) const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 pub(super) const ALONG: [[f32; 4]; 3] = [[0.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0], UNTURNED];
 
 /// A case whose changes are along the axis of this number, modulo 3.
-pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+pub fn along_an_axis(
+    kind: Kind,
+    number: u32,
+    rng: &mut impl Rng,
+) -> Result<DrawnCase, CatalogueError> {
     let shapes = vec![cube(rng)?, needle()?];
     let axis = number as usize % 3;
     let early = [0, 1].map(|side| 2 * rng.random_range(0..ROWS / 2) + side);
@@ -44,7 +48,7 @@ pub fn along_an_axis(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Draw
         _ => Frame::fitted(rows.changed(kind, n), &shapes),
     });
     let frames = frames.collect();
-    Ok(Drawn { shapes, frames })
+    Ok(DrawnCase { shapes, frames })
 }
 
 /// Where rows are, far from each other, whose changes are along an axis.

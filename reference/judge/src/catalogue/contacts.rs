@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use rand::{Rng, RngExt};
 
-use super::Drawn;
+use super::DrawnCase;
 use crate::case::Frame;
 use crate::ours::contact::Kind;
-use crate::ours::draw::{ContactSpec, TurnKind, probe};
 use crate::ours::forms::{self, Form, FormError};
+use crate::ours::seeded_draws::{ContactSpec, TurnKind, probe};
 use sdop::volume::{Axes, DirectionSet};
 
 /// Small forms, flat ones among them.
@@ -56,7 +56,7 @@ pub fn around_a_probe(
     number: u32,
     partners: usize,
     rng: &mut impl Rng,
-) -> Result<Drawn, FormError> {
+) -> Result<DrawnCase, FormError> {
     let (k, axes) = volumes(number);
     let mut forms = forms(rng, 3);
     if number % 4 == 3 {
@@ -77,7 +77,7 @@ pub fn around_a_probe(
     let shape = rng.random_range(0..shapes.built.len());
     let bodies = probe(&shapes, &spec, shape, partners, rng);
     let frames = vec![Frame::fitted(bodies, &shapes.built)];
-    Ok(Drawn {
+    Ok(DrawnCase {
         shapes: shapes.built,
         frames,
     })

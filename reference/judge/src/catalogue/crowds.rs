@@ -2,12 +2,12 @@
 
 use rand::{Rng, RngExt};
 
-use super::Drawn;
+use super::DrawnCase;
 use super::contacts::forms;
 use crate::case::{Frame, picked};
-use crate::ours::draw::{crowd as uniform, rotation};
 use crate::ours::forms::{self, Form, FormError};
-use crate::ours::judged::Shapes;
+use crate::ours::reference_shapes::Shapes;
+use crate::ours::seeded_draws::{crowd as uniform, rotation};
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet, Shape};
 
@@ -45,7 +45,7 @@ pub enum Kind {
 }
 
 /// Draws a crowd.
-pub fn crowd(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, FormError> {
+pub fn crowd(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, FormError> {
     let shapes = shapes(kind, rng)?;
     let bodies = match kind {
         Kind::Growth => dense(&shapes.built, 96, rng),
@@ -67,7 +67,7 @@ pub fn crowd(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, FormE
         ..Frame::fitted(bodies, &shapes.built)
     };
     let frames = bodies.into_iter().zip(was).map(frame).collect();
-    Ok(Drawn {
+    Ok(DrawnCase {
         shapes: shapes.built,
         frames,
     })

@@ -7,8 +7,8 @@
 
 use rand::{Rng, RngExt};
 
-use super::exact::solids;
-use super::{CatalogueError, Drawn};
+use super::exact_touches::solids;
+use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use sdop::bodies::Bodies;
 
@@ -21,7 +21,7 @@ const PLACES: usize = 4096;
 
 /// How a grid counts cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Counting {
+enum CellCount {
     /// (x − least) / side.
     Quotient,
     /// x · (1 / side).
@@ -30,7 +30,7 @@ enum Counting {
     ProductFromLeast,
 }
 
-impl Counting {
+impl CellCount {
     const ALL: [Self; 3] = [Self::Quotient, Self::Product, Self::ProductFromLeast];
 
     fn cell(self, x: f32, least: f32, side: f32) -> f32 {
@@ -44,14 +44,14 @@ impl Counting {
 
 /// A grid whose cells are as large as the bodies.
 #[derive(Clone, Copy)]
-struct Cells {
-    counting: Counting,
+struct CellGrid {
+    counting: CellCount,
     /// Where cells begin.
     least: f32,
     side: f32,
 }
 
-impl Cells {
+impl CellGrid {
     /// Two places at most `reach` apart, as exact numbers, whose cells have another between them.
     fn pair_across(self, reach: f32, rng: &mut impl Rng) -> Option<[f32; 2]> {
         (0..PLACES).find_map(|_| {
@@ -66,9 +66,9 @@ impl Cells {
         let (least, side) = (f64::from(self.least), f64::from(self.side));
         let border = match self.counting {
             // Rounding steps double at powers of two.
-            Counting::Product => side * f64::from(1_u32 << rng.random_range(1..12)),
+            CellCount::Product => side * f64::from(1_u32 << rng.random_range(1..12)),
             // Near zero coordinates are finer than their distance from the least one.
-            Counting::Quotient | Counting::ProductFromLeast => {
+            CellCount::Quotient | CellCount::ProductFromLeast => {
                 let cells = (-least / side).round() + f64::from(rng.random_range(1..=4));
                 least + cells * side
             }
@@ -88,8 +88,8 @@ impl Cells {
 
 /// Pairs of octahedra, tip to tip along an axis, each pair where cells as large as they are lose
 /// it.
-pub fn tips_across_borders(number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
-    let counting = Counting::ALL[number as usize % Counting::ALL.len()];
+pub fn tips_across_borders(number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
+    let counting = CellCount::ALL[number as usize % CellCount::ALL.len()];
     let axis = rng.random_range(0..3);
     let mut drawn = None;
     for _ in 0..SIZES {
@@ -97,15 +97,15 @@ pub fn tips_across_borders(number: u32, rng: &mut impl Rng) -> Result<Drawn, Cat
         let [_, octahedron] = solids(size)?;
         let radius = octahedron.ball.radius;
         let most_left = match counting {
-            Counting::Product => 0.0,
-            Counting::Quotient | Counting::ProductFromLeast => {
+            CellCount::Product => 0.0,
+            CellCount::Quotient | CellCount::ProductFromLeast => {
                 -size * rng.random_range(100.0..2000.0_f32)
             }
         };
         // Cells begin at the least centre or at the least end.
         let pairs: Vec<[f32; 2]> = (0..PAIRS)
             .map_while(|n| {
-                let cells = Cells {
+                let cells = CellGrid {
                     counting,
                     least: [most_left, most_left - radius][n % 2],
                     side: 2.0 * radius,
@@ -139,7 +139,7 @@ pub fn tips_across_borders(number: u32, rng: &mut impl Rng) -> Result<Drawn, Cat
     }
     let shapes = vec![octahedron];
     let frames = vec![Frame::fitted(bodies, &shapes)];
-    Ok(Drawn { shapes, frames })
+    Ok(DrawnCase { shapes, frames })
 }
 
 #[cfg(test)]
@@ -151,7 +151,7 @@ mod tests {
 
     /// Whether a grid of cells as large as the bodies, counted from the least centre, sees the
     /// neighbours of both.
-    fn finds(counting: Counting, from_ends: bool, drawn: &Drawn) -> usize {
+    fn finds(counting: CellCount, from_ends: bool, drawn: &DrawnCase) -> usize {
         let radius = drawn.shapes[0].ball.radius;
         let places = &drawn.frames[0].bodies.translation;
         let cells = |t: &[f32; 3]| {
@@ -169,14 +169,15 @@ mod tests {
         pairs.filter(near).count()
     }
 
+    /// A grid whose cells are as wide as the bodies loses pairs that touch.
     #[test]
-    fn grids_of_the_diameter_lose_pairs_that_touch() {
+    fn diameter_grids_lose_touching_pairs() {
         for number in 0..12 {
             for seed in 0..4 {
                 let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
                 rng.set_stream(u64::from(number));
                 let drawn = tips_across_borders(number, &mut rng).unwrap();
-                let counting = Counting::ALL[number as usize % 3];
+                let counting = CellCount::ALL[number as usize % 3];
                 assert_eq!(drawn.frames[0].bodies.len(), 1 + 2 * PAIRS);
                 for from_ends in [false, true] {
                     let found = finds(counting, from_ends, &drawn);

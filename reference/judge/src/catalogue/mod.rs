@@ -5,15 +5,15 @@
 //! same bodies on every machine. With a seed the same group draws other bodies,
 //! `touch/edge-edge/0017@42`: nobody can prepare for those.
 
-mod asked;
+mod approaches;
 mod boxes;
 mod changes;
+mod claim_inputs;
 mod contacts;
 mod crowds;
-mod exact;
+mod exact_touches;
 mod grid;
-mod listed;
-mod stale;
+mod stale_data;
 
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -21,9 +21,9 @@ use rand_chacha::ChaCha8Rng;
 use super::case::{Case, Frame, matches};
 use super::claim::Claim;
 use crate::ours::contact::Kind;
-use crate::ours::draw::TurnKind;
 use crate::ours::forms::FormError;
-use crate::ours::hard::{self, GroupError, Recipe};
+use crate::ours::hard::{self, HardCaseError, Recipe};
+use crate::ours::seeded_draws::TurnKind;
 use sdop::mesh::MeshError;
 use sdop::volume::{Axes, DirectionSet, Shape, VolumeError};
 
@@ -37,7 +37,7 @@ pub enum CatalogueError {
     Form(#[from] FormError),
     /// A group of hard cases.
     #[error(transparent)]
-    Hard(#[from] GroupError),
+    Hard(#[from] HardCaseError),
     /// A mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
@@ -48,20 +48,20 @@ pub enum CatalogueError {
 
 /// Shapes and frames as drawn.
 #[derive(Clone, Debug)]
-pub(super) struct Drawn {
+pub(super) struct DrawnCase {
     pub(super) shapes: Vec<Shape>,
     pub(super) frames: Vec<Frame>,
 }
 
 /// How a group's cases are drawn.
 #[derive(Clone, Copy, Debug)]
-enum Draw {
+enum CaseDraw {
     /// Bodies in contact with a probe.
     Contact(Kind, TurnKind),
     /// The same far from the world's origin.
     Far(Kind),
     /// Cubes and octahedra on short binary coordinates.
-    Exact(exact::Touch),
+    Exact(exact_touches::Touch),
     /// Tips that touch across the borders of cells.
     CellBorder,
     /// Crowds and what happens to them.
@@ -71,18 +71,18 @@ enum Draw {
     /// Boxes without bodies.
     Boxes(boxes::Kind),
     /// Changes of all kinds.
-    Stale(stale::Kind),
+    Stale(stale_data::Kind),
     /// Slow approaches.
-    Listed(listed::Kind),
+    Listed(approaches::Kind),
     /// Boxes with what one claim asks on top.
-    Asked(asked::Kind, &'static [Claim; 1]),
+    Asked(claim_inputs::Kind, &'static [Claim; 1]),
     /// A file of the hard cases.
     Hard(&'static str),
 }
 
 /// A group of cases.
 #[derive(Clone, Copy, Debug)]
-pub struct Group {
+pub struct CaseGroup {
     /// The beginning of its cases' names.
     pub name: &'static str,
     /// The bug that it looks for.
@@ -91,7 +91,7 @@ pub struct Group {
     pub source: &'static str,
     /// How many cases are published.
     pub cases: u32,
-    draw: Draw,
+    draw: CaseDraw,
 }
 
 /// One list of groups: the catalogue's own, then the files of hard cases. It also generates a test
@@ -101,8 +101,8 @@ macro_rules! groups {
         hard { $($hard:ident = $file:literal;)+ }
         $($test:ident $name:literal, $cases:literal, $draw:expr, $flag:literal $(, after $reports:literal)?;)+
     ) => {
-        const OWN: &[Group] =
-            &[$(Group { name: $name, flag: $flag, source: groups!(@source $($reports)?), cases: $cases, draw: $draw }),+];
+        const OWN: &[CaseGroup] =
+            &[$(CaseGroup { name: $name, flag: $flag, source: groups!(@source $($reports)?), cases: $cases, draw: $draw }),+];
         const HARD: &[&str] = &[$(concat!("hard/", $file)),+];
         groups! { @stamp ($) $($test = $name;)+ $($hard = concat!("hard/", $file);)+ }
     };
@@ -130,72 +130,72 @@ macro_rules! groups {
 }
 
 sdop_data::with_hard_cases! { groups! {
-    touch_ball_ball "touch/ball-ball", 12, Draw::Contact(Kind::Ball, TurnKind::Any), "a radius or a distance rounded down";
-    touch_edge_edge "touch/edge-edge", 12, Draw::Contact(Kind::Edges, TurnKind::Any), "an axis that is a rounded cross product";
-    touch_face_corner "touch/face-corner", 12, Draw::Contact(Kind::FirstFace, TurnKind::Any), "a slab of the first body rounded inward";
-    touch_corner_face "touch/corner-face", 12, Draw::Contact(Kind::SecondFace, TurnKind::Any), "a slab of the second body rounded inward";
-    touch_oriented_box "touch/oriented-box", 12, Draw::Contact(Kind::Box, TurnKind::Any), "an oriented box smaller than its mesh";
-    touch_world_extent "touch/world-extent", 12, Draw::Contact(Kind::World, TurnKind::Any), "a world-aligned extent rounded inward";
-    touch_vertex "touch/vertex", 12, Draw::Contact(Kind::Mesh, TurnKind::Any), "vertices that only just meet";
-    touch_triangle "touch/triangle", 12, Draw::Contact(Kind::Triangle, TurnKind::Any), "a vertex that only just meets a triangle";
-    touch_near_parallel "touch/near-parallel", 8, Draw::Contact(Kind::Edges, TurnKind::NearlyParallel), "edges nearly parallel: a cross product of noise";
-    touch_quarter_turns "touch/quarter-turns", 8, Draw::Contact(Kind::Mesh, TurnKind::Quarter), "coinciding faces and edges";
-    pose_norms "pose/norms", 8, Draw::Contact(Kind::Mesh, TurnKind::Norm), "a quaternion taken for a unit one";
-    pose_signs "pose/signs", 8, Draw::Contact(Kind::Mesh, TurnKind::Sign), "q and -q told apart, negative zeros";
-    pose_far "pose/far", 12, Draw::Far(Kind::Mesh), "differences of large world coordinates";
-    exact_face_to_face "exact/face-to-face", 8, Draw::Exact(exact::Touch::Faces), "touching taken for apart: < in place of <=";
-    exact_edge_to_edge "exact/edge-to-edge", 8, Draw::Exact(exact::Touch::Edges), "touching taken for apart: < in place of <=";
-    exact_corner_to_corner "exact/corner-to-corner", 8, Draw::Exact(exact::Touch::Corners), "touching taken for apart: < in place of <=";
-    exact_tip_on_face "exact/tip-on-face", 8, Draw::Exact(exact::Touch::TipOnFace), "touching taken for apart: < in place of <=";
-    exact_tip_to_tip "exact/tip-to-tip", 8, Draw::Exact(exact::Touch::Tips), "touching taken for apart: < in place of <=";
-    grid_cell_border "grid/cell-border", 12, Draw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
-    buffer_growth "buffer/growth", 2, Draw::Crowd(crowds::Kind::Growth), "a full buffer of pairs, and one that is never emptied";
-    buffer_hub "buffer/hub", 2, Draw::Crowd(crowds::Kind::Hub), "a full buffer of one body's partners";
-    order_repeated "order/repeated", 4, Draw::Crowd(crowds::Kind::Repeated), "answers that depend on the frames before";
-    order_renumbered "order/renumbered", 4, Draw::Crowd(crowds::Kind::Renumbered), "answers that depend on the bodies' numbers";
-    churn_swap "churn/swap", 7, Draw::Changes(crowds::Kind::Swap, 4), "stale places of bodies that jump";
-    churn_teleport "churn/teleport", 7, Draw::Changes(crowds::Kind::Teleport, 4), "stale bounds of bodies that jump far";
-    churn_insert_remove "churn/insert-remove", 7, Draw::Changes(crowds::Kind::InsertRemove, 4), "stale bodies that were removed, new ones not taken up";
-    churn_move "churn/move", 3, Draw::Changes(crowds::Kind::Move, 0), "stale bounds of bodies that move";
-    churn_turn "churn/turn", 3, Draw::Changes(crowds::Kind::Turn, 0), "stale bounds of bodies that turn in place";
-    random_crowd "random/crowd", 6, Draw::Crowd(crowds::Kind::Still), "anything";
-    random_moving "random/moving", 6, Draw::Crowd(crowds::Kind::Moving), "caches kept for too long";
-    random_sizes "random/sizes", 6, Draw::Crowd(crowds::Kind::Sizes), "cells or trees for one size of body";
-    box_grid "box/grid", 8, Draw::Boxes(boxes::Kind::Grid), "touching taken for apart: < in place of <=";
-    box_ulp "box/ulp", 8, Draw::Boxes(boxes::Kind::Ulp), "ends rounded inward, centre and half size in place of ends";
-    box_flat "box/flat", 8, Draw::Boxes(boxes::Kind::Flat), "boxes without a volume, zeros of both signs";
-    box_range "box/range", 8, Draw::Boxes(boxes::Kind::Range), "overflow and underflow of areas and volumes";
-    crowd_new_pairs "crowd/new-pairs", 2, Draw::Crowd(crowds::Kind::NewPairs), "a fixed buffer of new pairs", after "mujoco_warp #1461, newton #3702 and Box3D's \"ignoring this pair\"";
-    crowd_partners "crowd/partners", 1, Draw::Crowd(crowds::Kind::Partners), "a fixed buffer of one body's partners, a fixed stack or pool of nodes", after "Jolt #1520 and #1235";
-    stale_reshape "stale/reshape", 6, Draw::Stale(stale::Kind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";
-    stale_reorder "stale/reorder", 6, Draw::Stale(stale::Kind::Reorder), "stale bounds of bodies that get another number", after "fcl #368";
-    stale_rebase "stale/rebase", 6, Draw::Stale(stale::Kind::Rebase), "stale bounds after another origin", after "newton #4008";
-    stale_all_at_once "stale/all-at-once", 6, Draw::Stale(stale::Kind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
-    list_both "list/both", 3, Draw::Listed(listed::Kind::Both), "a list kept until one body has moved as far as two together may", after "lammps #1701";
-    list_one "list/one", 3, Draw::Listed(listed::Kind::One), "a list kept for a number of frames", after "lammps #4239 and sisl #1016";
-    list_return "list/return", 3, Draw::Listed(listed::Kind::Return), "a list whose age is measured from frame to frame", after "lammps #1701";
-    filter_groups "filter/groups", 6, Draw::Asked(asked::Kind::Groups, &[Claim::Filter]), "masks asked of one body alone, or of a few bits", after "newton #3713 and #990";
-    filter_excluded "filter/excluded", 6, Draw::Asked(asked::Kind::Excluded, &[Claim::Filter]), "excluded pairs that are reported", after "newton #1553";
-    filter_at_rest "filter/at-rest", 6, Draw::Asked(asked::Kind::AtRest, &[Claim::Filter]), "filters of bodies at rest that are not asked again", after "godot #54110";
-    order_insertion "order/insertion", 6, Draw::Asked(asked::Kind::Insertion, &[Claim::Order]), "answers that depend on the order of insertion", after "fcl #368";
-    restore_replay "restore/replay", 6, Draw::Asked(asked::Kind::Restored, &[Claim::Restore]), "a state that is not in the snapshot", after "parry #402 and rapier #966";
-    margin_global "margin/global", 6, Draw::Asked(asked::Kind::Margin, &[Claim::Margin]), "a margin that only the later test knows of", after "coal #625 and #685";
-    margin_by_body "margin/by-body", 6, Draw::Asked(asked::Kind::Margins, &[Claim::Margin]), "one body's margin taken for both, a rounded sum", after "avian #952 and coal #802";
+    touch_ball_ball "touch/ball-ball", 12, CaseDraw::Contact(Kind::Ball, TurnKind::Any), "a radius or a distance rounded down";
+    touch_edge_edge "touch/edge-edge", 12, CaseDraw::Contact(Kind::Edges, TurnKind::Any), "an axis that is a rounded cross product";
+    touch_face_corner "touch/face-corner", 12, CaseDraw::Contact(Kind::FirstFace, TurnKind::Any), "a slab of the first body rounded inward";
+    touch_corner_face "touch/corner-face", 12, CaseDraw::Contact(Kind::SecondFace, TurnKind::Any), "a slab of the second body rounded inward";
+    touch_oriented_box "touch/oriented-box", 12, CaseDraw::Contact(Kind::Box, TurnKind::Any), "an oriented box smaller than its mesh";
+    touch_world_extent "touch/world-extent", 12, CaseDraw::Contact(Kind::World, TurnKind::Any), "a world-aligned extent rounded inward";
+    touch_vertex "touch/vertex", 12, CaseDraw::Contact(Kind::Mesh, TurnKind::Any), "vertices that only just meet";
+    touch_triangle "touch/triangle", 12, CaseDraw::Contact(Kind::Triangle, TurnKind::Any), "a vertex that only just meets a triangle";
+    touch_near_parallel "touch/near-parallel", 8, CaseDraw::Contact(Kind::Edges, TurnKind::NearlyParallel), "edges nearly parallel: a cross product of noise";
+    touch_quarter_turns "touch/quarter-turns", 8, CaseDraw::Contact(Kind::Mesh, TurnKind::Quarter), "coinciding faces and edges";
+    pose_norms "pose/norms", 8, CaseDraw::Contact(Kind::Mesh, TurnKind::Norm), "a quaternion taken for a unit one";
+    pose_signs "pose/signs", 8, CaseDraw::Contact(Kind::Mesh, TurnKind::Sign), "q and -q told apart, negative zeros";
+    pose_far "pose/far", 12, CaseDraw::Far(Kind::Mesh), "differences of large world coordinates";
+    exact_face_to_face "exact/face-to-face", 8, CaseDraw::Exact(exact_touches::Touch::Faces), "touching taken for apart: < in place of <=";
+    exact_edge_to_edge "exact/edge-to-edge", 8, CaseDraw::Exact(exact_touches::Touch::Edges), "touching taken for apart: < in place of <=";
+    exact_corner_to_corner "exact/corner-to-corner", 8, CaseDraw::Exact(exact_touches::Touch::Corners), "touching taken for apart: < in place of <=";
+    exact_tip_on_face "exact/tip-on-face", 8, CaseDraw::Exact(exact_touches::Touch::TipOnFace), "touching taken for apart: < in place of <=";
+    exact_tip_to_tip "exact/tip-to-tip", 8, CaseDraw::Exact(exact_touches::Touch::Tips), "touching taken for apart: < in place of <=";
+    grid_cell_border "grid/cell-border", 12, CaseDraw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
+    buffer_growth "buffer/growth", 2, CaseDraw::Crowd(crowds::Kind::Growth), "a full buffer of pairs, and one that is never emptied";
+    buffer_hub "buffer/hub", 2, CaseDraw::Crowd(crowds::Kind::Hub), "a full buffer of one body's partners";
+    order_repeated "order/repeated", 4, CaseDraw::Crowd(crowds::Kind::Repeated), "answers that depend on the frames before";
+    order_renumbered "order/renumbered", 4, CaseDraw::Crowd(crowds::Kind::Renumbered), "answers that depend on the bodies' numbers";
+    churn_swap "churn/swap", 7, CaseDraw::Changes(crowds::Kind::Swap, 4), "stale places of bodies that jump";
+    churn_teleport "churn/teleport", 7, CaseDraw::Changes(crowds::Kind::Teleport, 4), "stale bounds of bodies that jump far";
+    churn_insert_remove "churn/insert-remove", 7, CaseDraw::Changes(crowds::Kind::InsertRemove, 4), "stale bodies that were removed, new ones not taken up";
+    churn_move "churn/move", 3, CaseDraw::Changes(crowds::Kind::Move, 0), "stale bounds of bodies that move";
+    churn_turn "churn/turn", 3, CaseDraw::Changes(crowds::Kind::Turn, 0), "stale bounds of bodies that turn in place";
+    random_crowd "random/crowd", 6, CaseDraw::Crowd(crowds::Kind::Still), "anything";
+    random_moving "random/moving", 6, CaseDraw::Crowd(crowds::Kind::Moving), "caches kept for too long";
+    random_sizes "random/sizes", 6, CaseDraw::Crowd(crowds::Kind::Sizes), "cells or trees for one size of body";
+    box_grid "box/grid", 8, CaseDraw::Boxes(boxes::Kind::Grid), "touching taken for apart: < in place of <=";
+    box_ulp "box/ulp", 8, CaseDraw::Boxes(boxes::Kind::Ulp), "ends rounded inward, centre and half size in place of ends";
+    box_flat "box/flat", 8, CaseDraw::Boxes(boxes::Kind::Flat), "boxes without a volume, zeros of both signs";
+    box_range "box/range", 8, CaseDraw::Boxes(boxes::Kind::Range), "overflow and underflow of areas and volumes";
+    crowd_new_pairs "crowd/new-pairs", 2, CaseDraw::Crowd(crowds::Kind::NewPairs), "a fixed buffer of new pairs", after "mujoco_warp #1461, newton #3702 and Box3D's \"ignoring this pair\"";
+    crowd_partners "crowd/partners", 1, CaseDraw::Crowd(crowds::Kind::Partners), "a fixed buffer of one body's partners, a fixed stack or pool of nodes", after "Jolt #1520 and #1235";
+    stale_reshape "stale/reshape", 6, CaseDraw::Stale(stale_data::Kind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";
+    stale_reorder "stale/reorder", 6, CaseDraw::Stale(stale_data::Kind::Reorder), "stale bounds of bodies that get another number", after "fcl #368";
+    stale_rebase "stale/rebase", 6, CaseDraw::Stale(stale_data::Kind::Rebase), "stale bounds after another origin", after "newton #4008";
+    stale_all_at_once "stale/all-at-once", 6, CaseDraw::Stale(stale_data::Kind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
+    list_both "list/both", 3, CaseDraw::Listed(approaches::Kind::Both), "a list kept until one body has moved as far as two together may", after "lammps #1701";
+    list_one "list/one", 3, CaseDraw::Listed(approaches::Kind::One), "a list kept for a number of frames", after "lammps #4239 and sisl #1016";
+    list_return "list/return", 3, CaseDraw::Listed(approaches::Kind::Return), "a list whose age is measured from frame to frame", after "lammps #1701";
+    filter_groups "filter/groups", 6, CaseDraw::Asked(claim_inputs::Kind::Groups, &[Claim::Filter]), "masks asked of one body alone, or of a few bits", after "newton #3713 and #990";
+    filter_excluded "filter/excluded", 6, CaseDraw::Asked(claim_inputs::Kind::Excluded, &[Claim::Filter]), "excluded pairs that are reported", after "newton #1553";
+    filter_at_rest "filter/at-rest", 6, CaseDraw::Asked(claim_inputs::Kind::AtRest, &[Claim::Filter]), "filters of bodies at rest that are not asked again", after "godot #54110";
+    order_insertion "order/insertion", 6, CaseDraw::Asked(claim_inputs::Kind::Insertion, &[Claim::Order]), "answers that depend on the order of insertion", after "fcl #368";
+    restore_replay "restore/replay", 6, CaseDraw::Asked(claim_inputs::Kind::Restored, &[Claim::Restore]), "a state that is not in the snapshot", after "parry #402 and rapier #966";
+    margin_global "margin/global", 6, CaseDraw::Asked(claim_inputs::Kind::Margin, &[Claim::Margin]), "a margin that only the later test knows of", after "coal #625 and #685";
+    margin_by_body "margin/by-body", 6, CaseDraw::Asked(claim_inputs::Kind::Margins, &[Claim::Margin]), "one body's margin taken for both, a rounded sum", after "avian #952 and coal #802";
 } }
 
 /// Every group: the catalogue's own, then the files of hard cases as `hard/…`.
 ///
 /// # Errors
 /// A file of hard cases that can't be read: none that is compiled in.
-pub fn groups() -> Result<Vec<Group>, CatalogueError> {
+pub fn groups() -> Result<Vec<CaseGroup>, CatalogueError> {
     let mut groups = OWN.to_vec();
     for (&name, &(source, text)) in HARD.iter().zip(hard::FILES) {
-        groups.push(Group {
+        groups.push(CaseGroup {
             name,
             flag: why(text),
             source,
-            cases: runs(&hard::Group::parse(text)?.recipe),
-            draw: Draw::Hard(text),
+            cases: runs(&hard::HardCaseGroup::parse(text)?.recipe),
+            draw: CaseDraw::Hard(text),
         });
     }
     Ok(groups)
@@ -218,19 +218,19 @@ fn runs(recipe: &Recipe) -> u32 {
     runs as u32 // a few
 }
 
-impl Group {
+impl CaseGroup {
     /// The claims that its cases are about.
     #[must_use]
     pub fn claims(&self) -> &'static [Claim] {
         match self.draw {
-            Draw::Boxes(_) => &[Claim::Aabb],
-            Draw::Asked(_, claims) => claims,
+            CaseDraw::Boxes(_) => &[Claim::Aabb],
+            CaseDraw::Asked(_, claims) => claims,
             // So many bodies that meshes would take minutes.
-            Draw::Crowd(crowds::Kind::NewPairs | crowds::Kind::Partners) => {
+            CaseDraw::Crowd(crowds::Kind::NewPairs | crowds::Kind::Partners) => {
                 &[Claim::Sphere, Claim::Aabb]
             }
             // Their balls are set, and don't contain the meshes.
-            Draw::Hard(_) if self.sets_radii() => &[Claim::Sphere],
+            CaseDraw::Hard(_) if self.sets_radii() => &[Claim::Sphere],
             _ => Claim::PLAIN,
         }
     }
@@ -270,7 +270,7 @@ impl Group {
         let mut rng = ChaCha8Rng::seed_from_u64(key(self.name));
         rng.set_stream(u64::from(number) + (2 << 32));
         Ok(match self.draw {
-            Draw::Contact(..) | Draw::Far(_) | Draw::Exact(_) | Draw::Boxes(_) => {
+            CaseDraw::Contact(..) | CaseDraw::Far(_) | CaseDraw::Exact(_) | CaseDraw::Boxes(_) => {
                 let drawn = self.drawn(number, None, [1, 1, 2], &mut rng)?;
                 Some(self.named(self.case_name(number, None), drawn))
             }
@@ -278,7 +278,7 @@ impl Group {
         })
     }
 
-    fn named(&self, name: String, drawn: Drawn) -> Case {
+    fn named(&self, name: String, drawn: DrawnCase) -> Case {
         Case {
             name,
             flag: self.flag.to_owned(),
@@ -297,33 +297,35 @@ impl Group {
         seed: Option<u64>,
         [near, exact, boxes]: [usize; 3],
         rng: &mut ChaCha8Rng,
-    ) -> Result<Drawn, CatalogueError> {
+    ) -> Result<DrawnCase, CatalogueError> {
         match self.draw {
-            Draw::Contact(kind, turn) => Ok(contacts::around_a_probe(
+            CaseDraw::Contact(kind, turn) => Ok(contacts::around_a_probe(
                 kind, turn, None, number, near, rng,
             )?),
-            Draw::Far(kind) => {
+            CaseDraw::Far(kind) => {
                 let (turn, origin) = (TurnKind::Any, Some([8.0, 20.0]));
                 Ok(contacts::around_a_probe(
                     kind, turn, origin, number, near, rng,
                 )?)
             }
-            Draw::Exact(touch) => exact::touching(touch, number, exact, rng),
-            Draw::CellBorder => grid::tips_across_borders(number, rng),
-            Draw::Crowd(kind) => Ok(crowds::crowd(kind, number, rng)?),
-            Draw::Changes(kind, crowds) if number < crowds => Ok(crowds::crowd(kind, number, rng)?),
-            Draw::Changes(kind, crowds) => changes::along_an_axis(kind, number - crowds, rng),
-            Draw::Boxes(kind) => boxes::boxes(kind, boxes, rng),
-            Draw::Stale(kind) => stale::changing(kind, number, rng),
-            Draw::Listed(kind) => Ok(listed::approach(kind, number, rng)?),
-            Draw::Asked(kind, _) => asked::asked(kind, number, rng),
-            Draw::Hard(text) => hard_case(text, number, seed),
+            CaseDraw::Exact(touch) => exact_touches::touching(touch, number, exact, rng),
+            CaseDraw::CellBorder => grid::tips_across_borders(number, rng),
+            CaseDraw::Crowd(kind) => Ok(crowds::crowd(kind, number, rng)?),
+            CaseDraw::Changes(kind, crowds) if number < crowds => {
+                Ok(crowds::crowd(kind, number, rng)?)
+            }
+            CaseDraw::Changes(kind, crowds) => changes::along_an_axis(kind, number - crowds, rng),
+            CaseDraw::Boxes(kind) => boxes::boxes(kind, boxes, rng),
+            CaseDraw::Stale(kind) => stale_data::changing(kind, number, rng),
+            CaseDraw::Listed(kind) => Ok(approaches::approach(kind, number, rng)?),
+            CaseDraw::Asked(kind, _) => claim_inputs::asked(kind, number, rng),
+            CaseDraw::Hard(text) => hard_case(text, number, seed),
         }
     }
 }
 
-fn hard_case(text: &str, number: u32, seed: Option<u64>) -> Result<Drawn, CatalogueError> {
-    let mut group = hard::Group::parse(text)?;
+fn hard_case(text: &str, number: u32, seed: Option<u64>) -> Result<DrawnCase, CatalogueError> {
+    let mut group = hard::HardCaseGroup::parse(text)?;
     group.seed ^= seed.unwrap_or(0);
     let mut cases = group.cases(DirectionSet::K18, Axes::Principal)?;
     let shapes = cases.shapes.built;
@@ -334,7 +336,7 @@ fn hard_case(text: &str, number: u32, seed: Option<u64>) -> Result<Drawn, Catalo
         .into_iter()
         .map(|bodies| Frame::fitted(bodies, &shapes))
         .collect();
-    Ok(Drawn { shapes, frames })
+    Ok(DrawnCase { shapes, frames })
 }
 
 /// FNV-1a: a name as the start of its draws.
@@ -348,7 +350,7 @@ fn key(name: &str) -> u64 {
 #[derive(Clone, Copy, Debug)]
 pub struct CaseId {
     /// Its group.
-    pub group: Group,
+    pub group: CaseGroup,
     /// Its number in the group.
     pub number: u32,
     /// What draws it; absent: it is published.
@@ -367,7 +369,7 @@ impl CaseId {
     /// Draws it.
     ///
     /// # Errors
-    /// As [`Group::case`].
+    /// As [`CaseGroup::case`].
     pub fn case(&self) -> Result<Case, CatalogueError> {
         let claim = self.claim;
         let drawn = self.group.case(self.number, self.seed)?;

@@ -7,10 +7,10 @@ use sdop_reference::exact::Tally;
 use crate::case::Case;
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::BoxLedger;
-use crate::ours::compare::Count;
+use crate::ours::compare::ListCount;
+use crate::ours::configurations::Mode;
 use crate::ours::histories::HistoryLedger;
 use crate::ours::matrix::Matrix;
-use crate::ours::ways::Mode;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 
 /// Failures that a ledger keeps.
@@ -18,7 +18,7 @@ pub(super) const MOST_FAILURES: usize = 8;
 
 /// What lists are counted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Judged {
+pub struct LedgerKey {
     /// The strategy.
     pub strategy: Strategy,
     /// The overlap test, for strategies that have one.
@@ -31,7 +31,7 @@ pub struct Ledger {
     /// Answers by predicate: pairs that overlap, and which stage decided.
     pub predicates: [(u64, Tally); Predicate::ALL.len()],
     /// Lists against answers; a pair counts once for each finder that listed it.
-    pub rows: BTreeMap<Judged, Count>,
+    pub rows: BTreeMap<LedgerKey, ListCount>,
     /// Pairs missed or found by one finder alone, with all that is needed to see it again.
     pub failures: Vec<Failure>,
     /// In which cells lists were judged.
@@ -68,8 +68,8 @@ impl Ledger {
     }
 
     /// Counts one list.
-    pub fn count(&mut self, settings: &CullSettings, count: &Count) {
-        let row = Judged {
+    pub fn count(&mut self, settings: &CullSettings, count: &ListCount) {
+        let row = LedgerKey {
             strategy: settings.strategy,
             overlap: settings
                 .strategy

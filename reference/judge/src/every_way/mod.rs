@@ -6,5 +6,5 @@ pub mod rounds;
 pub mod run;
 pub mod subject;
 
-pub use ledger::{Failure, Judged, Ledger};
+pub use ledger::{Failure, Ledger, LedgerKey};
 pub use run::{RoundError, Run};

@@ -8,12 +8,12 @@ use super::ledger::Ledger;
 use super::run::{RoundError, Run};
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes;
-use crate::ours::draw::{ContactSpec, crowd, probe};
+use crate::ours::configurations::Rotation;
 use crate::ours::forms::{self, Form};
-use crate::ours::hard::Group;
+use crate::ours::hard::HardCaseGroup;
 use crate::ours::histories::{draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes};
-use crate::ours::judged::Shapes;
-use crate::ours::ways::Rotation;
+use crate::ours::reference_shapes::Shapes;
+use crate::ours::seeded_draws::{ContactSpec, crowd, probe};
 use sdop::bodies::Bodies;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet};
@@ -47,7 +47,7 @@ pub fn judge_and_check(
 
 /// What a seed draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum SeedSource {
     /// A probe among partners that nearly touch it.
     Near,
     /// A crowd in a box, uniform.
@@ -119,7 +119,7 @@ pub const CROWD: usize = 150;
 /// # Errors
 /// As [`judge_and_check`].
 pub fn round(
-    source: Source,
+    source: SeedSource,
     seed: u64,
     (k, axes): (DirectionSet, Axes),
     rotation: &Rotation,
@@ -128,12 +128,12 @@ pub fn round(
     rng.set_stream(1 + source as u64);
     let shapes = forms::build(&pool(), 1, k, axes, &mut rng)?;
     let frame = match source {
-        Source::Near => {
+        SeedSource::Near => {
             let shape = seed as usize % shapes.built.len();
             probe(&shapes, &contacts(seed), shape, PROBE_PARTNERS, &mut rng)
         }
         // About a tenth of the pairs' spheres overlap.
-        Source::Random => crowd(&shapes, CROWD, 6.5, &mut rng),
+        SeedSource::Random => crowd(&shapes, CROWD, 6.5, &mut rng),
     };
     let volumes = &Predicate::ALL[..7];
     // Both sources of one seed take modes that are far apart.
@@ -180,7 +180,7 @@ fn contacts(seed: u64) -> ContactSpec {
 /// As [`judge_and_check`], and groups that can't be made.
 pub fn group(
     number: usize,
-    group: &Group,
+    group: &HardCaseGroup,
     (k, axes): (DirectionSet, Axes),
     rotation: &Rotation,
 ) -> Result<Ledger, RoundError> {
@@ -200,7 +200,7 @@ mod tests {
 
     use super::*;
     use crate::ours::histories::HistoryCell;
-    use crate::ours::ways::variants;
+    use crate::ours::configurations::variants;
     use sdop::simd::Tier;
 
     /// Our worlds pass, and a seed's histories fill every cell.

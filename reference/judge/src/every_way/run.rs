@@ -10,13 +10,13 @@ use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::ours::answers::{Answers, Predicate, explained_by_margins};
 use crate::ours::compare::{compare, culler, difference, found, settings};
+use crate::ours::configurations::{Mode, rows};
 use crate::ours::forms::FormError;
-use crate::ours::hard::GroupError;
+use crate::ours::hard::HardCaseError;
 use crate::ours::histories::HistoryError;
-use crate::ours::judged::{InvalidInput, Shapes};
-use crate::ours::ways::{Mode, rows};
+use crate::ours::reference_shapes::{InvalidInput, Shapes};
 use crate::score::Miss;
-use crate::shrink::{Lists, Smallest, shrink_while};
+use crate::shrink::{Lists, SmallestCase, shrink_while};
 use sdop::bodies::Bodies;
 use sdop::culler::CullError;
 use sdop::settings::{CullSettings, Finder};
@@ -40,7 +40,7 @@ pub enum RoundError {
     Form(#[from] FormError),
     /// A group of hard cases.
     #[error(transparent)]
-    Group(#[from] GroupError),
+    Group(#[from] HardCaseError),
 }
 
 /// Frames that one culler sees, and their exact answers.
@@ -214,7 +214,7 @@ impl<'a> ExpectedLists<'a> {
 impl Failure {
     /// The smallest case that fails by these settings; `None` when it doesn't fail again.
     #[must_use]
-    pub fn smallest(&self, time: Duration) -> Option<Smallest> {
+    pub fn smallest(&self, time: Duration) -> Option<SmallestCase> {
         shrink_while(&self.case, time, &|case| self.again(case).ok().flatten())
     }
 

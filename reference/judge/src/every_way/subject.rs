@@ -1,12 +1,12 @@
 //! Our cullers as one more subject: in every way that they have, each in the mode whose turn it is.
 
-use crate::answer::{Answer, Stop, Trouble};
+use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::contestant::WorldBox;
 use crate::ours::boxes::BoxCell;
 use crate::ours::compare::{culler, settings};
-use crate::ours::ways::{Mode, Rotation, ways};
+use crate::ours::configurations::{Mode, Rotation, ways};
 use crate::subject::Subject;
 use sdop::bodies::Aabb;
 use sdop::culler::CullError;
@@ -65,8 +65,8 @@ impl EveryWay {
 }
 
 impl Subject for EveryWay {
-    fn answer(&self, case: &Case) -> Result<Vec<Answer>, Stop> {
-        let lists = self.lists(case).map_err(|error| Trouble::Crashed {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
+        let lists = self.lists(case).map_err(|error| AnswerError::Crashed {
             how: error.to_string(),
             answered: 0,
             said: String::new(),

@@ -6,7 +6,7 @@ use sdop_reference as reference;
 use reference::exact::world::Extents;
 use reference::exact::{Decision, Tally, meeting, ordop, sphere, world};
 
-use super::judged::{self, InvalidInput, Shapes};
+use super::reference_shapes::{self, InvalidInput, Shapes};
 use sdop::bodies::Bodies;
 use sdop::rounding::{U, up};
 use sdop::settings::{CullSettings, Interest, Overlap, Strategy};
@@ -108,7 +108,7 @@ impl Answers {
 
     fn ask(&mut self, bodies: &[reference::Body<'_>], k: DirectionSet, predicate: Predicate) {
         let extents = |directions| -> Vec<Extents<'_>> {
-            let directions = judged::directions(directions);
+            let directions = reference_shapes::directions(directions);
             bodies
                 .iter()
                 .map(|body| Extents::new(body, directions))
@@ -125,7 +125,7 @@ impl Answers {
             let (a, b) = (&bodies[i], &bodies[j]);
             let decision = match predicate {
                 Predicate::Sphere => sphere::overlap(a, b),
-                Predicate::OrDop(test) => ordop::overlap(a, b, judged::overlap(test)),
+                Predicate::OrDop(test) => ordop::overlap(a, b, reference_shapes::overlap(test)),
                 Predicate::Aabb | Predicate::KDop => world::overlap_extents(&fitted[i], &fitted[j]),
                 Predicate::Obb => ordop::overlap_obb(a, b),
                 Predicate::Mesh => mesh(a, b),
@@ -197,7 +197,7 @@ pub fn explained_by_margins(
                 let (ball_a, ball_b) = (world_ball(&a), world_ball(&b));
                 sphere::overlap_balls((&ball_a, &a.pose), (&ball_b, &b.pose)).value
             }
-            Predicate::OrDop(test) => ordop::overlap(&a, &b, judged::overlap(test)).value,
+            Predicate::OrDop(test) => ordop::overlap(&a, &b, reference_shapes::overlap(test)).value,
             Predicate::Obb => ordop::overlap_obb(&a, &b).value,
             Predicate::Aabb | Predicate::KDop | Predicate::Mesh => true,
         },

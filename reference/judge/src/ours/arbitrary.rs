@@ -5,7 +5,7 @@
 
 use proptest::prelude::*;
 
-use crate::ours::contact::{Contact, Kind, Placed};
+use crate::ours::contact::{Contact, Kind, PlacedShape};
 
 /// A quaternion: any direction with a norm of 0.1 to 2, small integers, or a tiny or huge norm.
 pub fn rotation() -> impl Strategy<Value = [f32; 4]> {
@@ -45,8 +45,8 @@ pub fn contact() -> impl Strategy<Value = Contact> {
 }
 
 /// A body in one of `shapes` shapes.
-pub fn placed(shapes: usize) -> impl Strategy<Value = Placed> {
-    (0..shapes, rotation(), translation()).prop_map(|(shape, rotation, translation)| Placed {
+pub fn placed(shapes: usize) -> impl Strategy<Value = PlacedShape> {
+    (0..shapes, rotation(), translation()).prop_map(|(shape, rotation, translation)| PlacedShape {
         shape,
         rotation,
         translation,
@@ -58,7 +58,7 @@ pub fn placed(shapes: usize) -> impl Strategy<Value = Placed> {
 pub fn probe(
     shapes: usize,
     most: usize,
-) -> impl Strategy<Value = (Placed, Vec<(usize, [f32; 4], Contact)>)> {
+) -> impl Strategy<Value = (PlacedShape, Vec<(usize, [f32; 4], Contact)>)> {
     let partner = (0..shapes, rotation(), contact());
     (placed(shapes), prop::collection::vec(partner, 1..=most))
 }

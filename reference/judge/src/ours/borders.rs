@@ -34,7 +34,7 @@ pub struct Borders {
 
 /// A finder's list that isn't that of all pairs.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Difference {
+pub struct FinderDifference {
     /// Who.
     pub finder: Finder,
     /// In which frame.
@@ -96,7 +96,7 @@ impl Borders {
         settings: &CullSettings,
         tier: Tier,
         frames: usize,
-    ) -> Result<(usize, Option<Difference>), CullError> {
+    ) -> Result<(usize, Option<FinderDifference>), CullError> {
         let culler = |pairs: Finder| {
             let settings = CullSettings {
                 pairs,
@@ -116,7 +116,7 @@ impl Borders {
                     let lost: Vec<_> = wanted.iter().filter(|pair| !found.contains(pair)).collect();
                     let surplus = found.len() + lost.len() - wanted.len();
                     let lost = lost.into_iter().copied().collect();
-                    let difference = Difference {
+                    let difference = FinderDifference {
                         finder,
                         frame,
                         lost,
@@ -140,7 +140,7 @@ impl Borders {
 
     /// A scene.
     pub fn draw(choose: NumberChoice<'_>) -> Self {
-        Draw { choose }.scene()
+        BorderDraw { choose }.scene()
     }
 }
 
@@ -172,7 +172,7 @@ struct Axis {
 
 /// What is the same for all axes.
 #[derive(Clone, Copy, Debug)]
-struct Plan {
+struct BorderPlan {
     radii: [f32; 2],
     /// The level's widest ball, as inflated.
     widest: f32,
@@ -180,7 +180,7 @@ struct Plan {
     layout: TableLayout,
 }
 
-impl Plan {
+impl BorderPlan {
     fn cells(&self, axes: &[Axis; 3]) -> Cells {
         let bounds = BallBounds {
             lo: axes.map(|axis| axis.lo),
@@ -202,11 +202,11 @@ impl Plan {
     }
 }
 
-struct Draw<'a> {
+struct BorderDraw<'a> {
     choose: NumberChoice<'a>,
 }
 
-impl Draw<'_> {
+impl BorderDraw<'_> {
     fn below(&mut self, n: u32) -> u32 {
         (self.choose)(n)
     }
@@ -248,7 +248,7 @@ impl Draw<'_> {
         let radii = [radius, other];
         let fill = self.pick(&[0, 4, 40, 40, 200]);
         let joint = target_moves == seeker_moves && self.below(2) == 0;
-        let plan = Plan {
+        let plan = BorderPlan {
             radii,
             widest: inflate_radius(if joint { radius.max(other) } else { radius }),
             bodies: (CORNERS + fill) as usize,
@@ -272,7 +272,7 @@ impl Draw<'_> {
 
     /// Extents first, whose cells have some size; then coordinates on the borders between cells of
     /// that size.
-    fn axes(&mut self, plan: &Plan) -> ([Axis; 3], f64, bool) {
+    fn axes(&mut self, plan: &BorderPlan) -> ([Axis; 3], f64, bool) {
         let least = plan.cells(&[Axis::default(); 3]).size();
         let on: [BorderItem; 3] = std::array::from_fn(|_| {
             self.pick(&[
@@ -312,7 +312,7 @@ impl Draw<'_> {
         (axes, size, divides)
     }
 
-    fn axis(&mut self, plan: &Plan, on: BorderItem, number: f64, size: f64) -> Axis {
+    fn axis(&mut self, plan: &BorderPlan, on: BorderItem, number: f64, size: f64) -> Axis {
         let border = (number + 0.5) * size;
         let border = self.nudge(border);
         let beyond = self.pick(&[0.0, 0.0, 1.0, 2.0]) * self.unit() * size;
@@ -358,7 +358,7 @@ impl Draw<'_> {
     fn fill(
         &mut self,
         bodies: &mut Bodies,
-        plan: &Plan,
+        plan: &BorderPlan,
         axes: &[Axis; 3],
         (fill, size): (u32, f64),
         [target_moves, seeker_moves]: [bool; 2],

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use super::compare::difference;
-use super::ways::{Mode, Rotation};
+use super::configurations::{Mode, Rotation};
 use sdop::bodies::Aabb;
 use sdop::boxes::BoxCuller;
 use sdop::culler::CullError;

@@ -2,7 +2,7 @@
 //! causes.
 
 use super::answers::{Answers, Predicate};
-use super::ways::Mode;
+use super::configurations::Mode;
 use sdop::bodies::Bodies;
 use sdop::culler::{CullError, Culler};
 use sdop::settings::{Budget, CullSettings, Interest, Strategy};
@@ -11,7 +11,7 @@ use sdop::volume::Shape;
 /// What a comparison counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Count {
+pub struct ListCount {
     /// Pairs judged.
     pub judged: u64,
     /// Pairs that had to be reported.
@@ -35,7 +35,7 @@ pub struct Count {
     pub meshes_judged: u64,
 }
 
-impl Count {
+impl ListCount {
     /// Adds another count.
     pub fn add(&mut self, other: &Self) {
         self.judged += other.judged;
@@ -119,17 +119,17 @@ pub fn compare(
     answers: &Answers,
     settings: &CullSettings,
     sorted: &[[u32; 2]],
-) -> (Count, Vec<[u32; 2]>, Vec<[u32; 2]>) {
+) -> (ListCount, Vec<[u32; 2]>, Vec<[u32; 2]>) {
     let interest: &[u32] = match &settings.interest {
         Some(Interest::Bodies(list)) => list,
         _ => &[],
     };
     let culls = settings.strategy.scheme().culls();
     let meshes = answers.of(Predicate::Mesh);
-    let mut count = Count {
+    let mut count = ListCount {
         judged: answers.pairs.len() as u64,
         reported: sorted.len() as u64,
-        ..Count::default()
+        ..ListCount::default()
     };
     let (mut missed, mut extra) = (Vec::new(), Vec::new());
     let mut rest = sorted.iter().peekable();
@@ -157,8 +157,9 @@ pub fn compare(
 mod tests {
     use super::*;
 
+    /// Lists differ in the pairs that one has more often than the other.
     #[test]
-    fn lists_differ_in_what_one_has_more_often() {
+    fn repeated_pairs_are_differences() {
         let (a, b, c) = ([0, 1], [0, 2], [3, 4]);
         assert!(difference(&[a, b, c], &[a, b, c]).is_empty());
         assert_eq!(difference(&[a, b, b], &[a, b]), vec![b]);
@@ -166,8 +167,9 @@ mod tests {
         assert_eq!(difference(&[], &[a]), vec![a]);
     }
 
+    /// A list with a pair twice, or with a pair that cannot exist, does not pass.
     #[test]
-    fn a_list_with_a_pair_twice_or_an_impossible_pair_is_no_pass() {
+    fn invalid_lists_do_not_pass() {
         let answers = Answers {
             pairs: vec![[0, 1], [0, 2]],
             ..Answers::default()

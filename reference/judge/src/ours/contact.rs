@@ -9,7 +9,7 @@
 use glam::{DMat3, DVec3};
 use sdop_reference as reference;
 
-use super::judged::Shapes;
+use super::reference_shapes::Shapes;
 use reference::overlap::ordop::TurnedPolytope;
 use sdop::rounding::U;
 
@@ -68,7 +68,7 @@ pub struct Contact {
 
 /// A shape's number and its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct PlacedShape {
     /// Index into the shapes.
     pub shape: usize,
     /// Orientation quaternion (x, y, z, w).
@@ -84,12 +84,12 @@ impl Contact {
     pub fn place(
         &self,
         shapes: &Shapes,
-        first: &Placed,
+        first: &PlacedShape,
         shape: usize,
         rotation: [f32; 4],
     ) -> Option<[f32; 3]> {
-        let a = Side::new(shapes, first.shape, first.rotation)?;
-        let b = Side::new(shapes, shape, rotation)?;
+        let a = ContactSide::new(shapes, first.shape, first.rotation)?;
+        let b = ContactSide::new(shapes, shape, rotation)?;
         let reach = f64::from(a.built.reach) + f64::from(b.built.reach);
         let (n, delta) = self.touching(&a, &b)?;
         let from = DVec3::from(first.translation.map(f64::from));
@@ -101,7 +101,7 @@ impl Contact {
     }
 
     /// The separating axis, a unit vector, and Δ at which the features share a point.
-    fn touching(&self, a: &Side<'_>, b: &Side<'_>) -> Option<(DVec3, DVec3)> {
+    fn touching(&self, a: &ContactSide<'_>, b: &ContactSide<'_>) -> Option<(DVec3, DVec3)> {
         let any = DVec3::from(self.direction).try_normalize()?;
         let between = a.ball() - b.ball();
         let toward = |n: DVec3| if n.dot(any) < 0.0 { -n } else { n };
@@ -165,14 +165,14 @@ fn support(points: &[[f64; 3]], n: DVec3) -> Option<DVec3> {
 }
 
 /// One body about its own origin, turned.
-struct Side<'a> {
+struct ContactSide<'a> {
     built: &'a sdop::volume::Shape,
     judged: &'a reference::Shape,
     pose: reference::Pose,
     matrix: DMat3,
 }
 
-impl<'a> Side<'a> {
+impl<'a> ContactSide<'a> {
     fn new(shapes: &'a Shapes, shape: usize, rotation: [f32; 4]) -> Option<Self> {
         let pose = reference::Pose::new(rotation, [0.0; 3]).ok()?;
         let [x, y, z] = pose.rotation().map(DVec3::from);

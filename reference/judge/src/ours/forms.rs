@@ -6,7 +6,7 @@ use glam::Vec3;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
-use super::judged::Shapes;
+use super::reference_shapes::Shapes;
 use sdop::mesh::{ProceduralShape, TriangleMesh};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 

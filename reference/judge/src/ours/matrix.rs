@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::ways::{Mode, Rotation, variants, ways};
+use super::configurations::{Mode, Rotation, variants, ways};
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
 use sdop::volume::{Axes, DirectionSet};
 

@@ -2,9 +2,9 @@
 //! intersection`.
 //!
 //! [`answers`] are the reference's, pair by pair; [`compare()`] compares a culler's list with them.
-//! What is judged comes from seeds ([`draw`]: random crowds, and contacts put together on purpose),
-//! from the corpus of [`hard`] cases, and from scenes. Given [`boxes`] are compared with their
-//! definition.
+//! What is judged comes from seeds ([`seeded_draws`]: random crowds, and contacts put together on
+//! purpose), from the corpus of [`hard`] cases, and from scenes. Given [`boxes`] are compared with
+//! their definition.
 
 pub mod answers;
 #[cfg(feature = "proptest")]
@@ -12,17 +12,17 @@ pub mod arbitrary;
 pub mod borders;
 pub mod boxes;
 pub mod compare;
+pub mod configurations;
 pub mod contact;
-pub mod draw;
 pub mod forms;
 pub mod hard;
 pub mod histories;
-pub mod judged;
 pub mod matrix;
 pub mod naive;
-pub mod ways;
+pub mod reference_shapes;
+pub mod seeded_draws;
 
 pub use answers::{Answers, Predicate};
-pub use compare::{Count, compare};
+pub use compare::{ListCount, compare};
 pub use contact::Contact;
-pub use judged::Shapes;
+pub use reference_shapes::Shapes;

@@ -9,7 +9,7 @@ use reference::exact::meeting;
 use reference::exact::mesh::Mesh;
 
 use super::answers::{Answers, Predicate};
-use super::judged::{InvalidInput, Shapes};
+use super::reference_shapes::{InvalidInput, Shapes};
 use sdop::bodies::Bodies;
 use sdop::settings::Overlap;
 
@@ -17,7 +17,7 @@ type Vector = [f32; 3];
 
 /// What the naive tests lose in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Misses {
+pub struct NaiveMisses {
     /// Sphere pairs.
     pub sphere: u64,
     /// World-aligned box pairs.
@@ -28,7 +28,7 @@ pub struct Misses {
     pub surface: u64,
 }
 
-impl Misses {
+impl NaiveMisses {
     /// Adds another frame's.
     pub fn add(&mut self, other: &Self) {
         self.sphere += other.sphere;

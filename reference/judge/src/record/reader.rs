@@ -28,7 +28,7 @@ pub struct Reader<R> {
 
 /// What distinguishes a record from other files.
 #[derive(Deserialize)]
-struct Mark {
+struct FormatMark {
     format: String,
     version: u64,
 }
@@ -262,7 +262,7 @@ fn parse_header(text: &[u8], name: &str) -> Result<Header, RecordError> {
     if text.trim_ascii().is_empty() {
         return Err(stranger("the first line is empty".to_owned()));
     }
-    let mark: Mark = serde_json::from_slice(text).map_err(|error| stranger(said(&error)))?;
+    let mark: FormatMark = serde_json::from_slice(text).map_err(|error| stranger(said(&error)))?;
     if mark.format != FORMAT {
         return Err(stranger(format!("its format is {:?}", mark.format)));
     }

@@ -50,7 +50,7 @@ const PLACES: [[f32; 5]; 3] = [
 ];
 
 #[test]
-fn every_pair_is_counted_by_its_cause() {
+fn extra_pairs_count_by_cause() {
     let case = cubes(&PLACES);
     // Extra: 02 by its volume, 34 static, 04 for no reason; then 01 by rounding.
     let first: &[[u32; 2]] = &[[0, 1], [0, 2], [0, 4], [3, 4]];
@@ -91,9 +91,9 @@ fn exact_answers_pass() {
 struct Skips(Vec<Answer>);
 
 impl Subject for Skips {
-    fn answer(&self, _: &Case) -> Result<Vec<Answer>, Stop> {
+    fn answer(&self, _: &Case) -> Result<Vec<Answer>, StopReason> {
         let (why, answered) = ("enough".to_owned(), self.0.clone());
-        Err(Stop::Skipped { why, answered })
+        Err(StopReason::Skipped { why, answered })
     }
 }
 

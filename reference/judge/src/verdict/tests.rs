@@ -1,5 +1,5 @@
 use super::*;
-use crate::answer::Trouble;
+use crate::answer::AnswerError;
 
 /// A case of a name that ended so, with as many pairs judged, required, missed and extra.
 fn case(name: &str, outcome: Outcome, pairs: [u64; 4]) -> CaseVerdict {
@@ -35,7 +35,7 @@ fn skipped(name: &str) -> CaseVerdict {
 }
 
 fn erred(name: &str) -> CaseVerdict {
-    let trouble = Trouble::SelfPair { frame: 0, body: 3 };
+    let trouble = AnswerError::SelfPair { frame: 0, body: 3 };
     case(name, Outcome::Error { trouble }, [0; 4])
 }
 

@@ -7,7 +7,7 @@
 pub mod ndjson;
 pub mod text;
 
-use super::answer::{Answer, Stop, Trouble};
+use super::answer::{Answer, AnswerError, StopReason};
 use super::case::Case;
 use sdop::choice::choices;
 
@@ -48,7 +48,7 @@ impl Wire {
     ///
     /// # Errors
     /// An invalid line, or one about another frame.
-    pub fn decode(self, expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trouble> {
+    pub fn decode(self, expected: usize, line: &[u8]) -> Result<ProgramAnswer, AnswerError> {
         match self {
             Self::Ndjson => ndjson::decode(expected, line),
             Self::Text => text::decode(expected, line),
@@ -60,7 +60,7 @@ impl Wire {
 ///
 /// # Errors
 /// That it skips the case, or that an answer before the first still holds.
-pub fn book(answers: &mut Vec<Answer>, said: ProgramAnswer, line: &[u8]) -> Result<(), Stop> {
+pub fn book(answers: &mut Vec<Answer>, said: ProgramAnswer, line: &[u8]) -> Result<(), StopReason> {
     match said {
         ProgramAnswer::Answer(answer) => answers.push(answer),
         ProgramAnswer::Same => {
@@ -70,7 +70,7 @@ pub fn book(answers: &mut Vec<Answer>, said: ProgramAnswer, line: &[u8]) -> Resu
         }
         ProgramAnswer::Skipped(why) => {
             let answered = std::mem::take(answers);
-            return Err(Stop::Skipped { why, answered });
+            return Err(StopReason::Skipped { why, answered });
         }
     }
     Ok(())
@@ -88,8 +88,8 @@ pub(super) fn beginning(line: &[u8]) -> String {
 }
 
 /// A line that is no answer.
-pub(super) fn malformed(frame: usize, line: &[u8], why: impl Into<String>) -> Trouble {
-    Trouble::Malformed {
+pub(super) fn malformed(frame: usize, line: &[u8], why: impl Into<String>) -> AnswerError {
+    AnswerError::Malformed {
         frame,
         why: why.into(),
         line: beginning(line),

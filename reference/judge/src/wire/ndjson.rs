@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{ProgramAnswer, malformed};
-use crate::answer::{Answer, Trouble};
+use crate::answer::{Answer, AnswerError};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::contestant::{Filter, WorldBox};
@@ -295,12 +295,12 @@ struct SameLine {
     same: bool,
 }
 
-pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trouble> {
+pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, AnswerError> {
     match serde_json::from_slice::<AnswerLine>(line) {
         Ok(AnswerLine { frame, pairs, ns }) if frame == expected as u64 => {
             Ok(ProgramAnswer::Answer(Answer { pairs, ns }))
         }
-        Ok(AnswerLine { frame, .. }) => Err(Trouble::OutOfTurn {
+        Ok(AnswerLine { frame, .. }) => Err(AnswerError::OutOfTurn {
             expected,
             found: frame,
         }),
@@ -313,7 +313,7 @@ fn diagnose(
     expected: usize,
     line: &[u8],
     error: &serde_json::Error,
-) -> Result<ProgramAnswer, Trouble> {
+) -> Result<ProgramAnswer, AnswerError> {
     let value: Value = match serde_json::from_slice(line) {
         Ok(value) => value,
         Err(_)
@@ -330,7 +330,7 @@ fn diagnose(
         if found == expected as u64 {
             return Ok(ProgramAnswer::Same);
         }
-        return Err(Trouble::OutOfTurn { expected, found });
+        return Err(AnswerError::OutOfTurn { expected, found });
     }
     if let Some(why) = value.get("skipped") {
         return Ok(ProgramAnswer::Skipped(
@@ -381,7 +381,7 @@ mod tests {
     /// Old text may have 7.038531e-26, which is the f32 0x15ae43fd. By way of an f64 it would be
     /// the next one.
     #[test]
-    fn old_cases_are_read_without_rounding_twice() {
+    fn old_cases_are_rounded_once() {
         let group = groups()
             .unwrap()
             .into_iter()

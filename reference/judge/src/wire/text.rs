@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use super::{ProgramAnswer, malformed};
-use crate::answer::{Answer, Trouble};
+use crate::answer::{Answer, AnswerError};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::contestant::Filter;
@@ -120,7 +120,7 @@ fn word(name: &str) -> String {
 }
 
 /// `frame N COUNT I J …`, with `ns TIME` at the end if it likes, or `skip REASON`.
-pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trouble> {
+pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, AnswerError> {
     let wrong = |why: String| malformed(expected, line, why);
     let text = str::from_utf8(line).map_err(|e| wrong(e.to_string()))?;
     let mut words = text.split_whitespace();
@@ -133,7 +133,7 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trou
             )));
         }
     }
-    let mut number = |what: &str| -> Result<u64, Trouble> {
+    let mut number = |what: &str| -> Result<u64, AnswerError> {
         let word = words
             .next()
             .ok_or_else(|| wrong(format!("ends before {what}")))?;
@@ -142,7 +142,7 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trou
     };
     let found = number("frame number")?;
     if found != expected as u64 {
-        return Err(Trouble::OutOfTurn { expected, found });
+        return Err(AnswerError::OutOfTurn { expected, found });
     }
     if text.trim_start().starts_with("same") {
         return Ok(ProgramAnswer::Same);
@@ -150,7 +150,7 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trou
     let count = number("count of pairs")?;
     let mut pairs = Vec::new();
     for _ in 0..count {
-        let mut body = || -> Result<u32, Trouble> {
+        let mut body = || -> Result<u32, AnswerError> {
             let id = number("body")?;
             u32::try_from(id).map_err(|_| wrong(format!("`{id}` is no body")))
         };
@@ -168,8 +168,9 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Trou
 mod tests {
     use super::*;
 
+    /// Answers are read, and what is not an answer is refused.
     #[test]
-    fn answers_are_read_and_what_is_none_is_refused() {
+    fn invalid_answers_are_refused() {
         let pairs = |line: &str| decode(3, line.as_bytes());
         let answer = |pairs: &[[u32; 2]], ns| {
             Ok(ProgramAnswer::Answer(Answer {
@@ -186,7 +187,7 @@ mod tests {
             [pairs("same 3"), pairs("same 2")],
             [
                 Ok(ProgramAnswer::Same),
-                Err(Trouble::OutOfTurn {
+                Err(AnswerError::OutOfTurn {
                     expected: 3,
                     found: 2
                 })
@@ -198,7 +199,7 @@ mod tests {
         );
         assert_eq!(
             pairs("frame 2 0"),
-            Err(Trouble::OutOfTurn {
+            Err(AnswerError::OutOfTurn {
                 expected: 3,
                 found: 2
             })
@@ -215,7 +216,7 @@ mod tests {
             "frame 3 1 0 99999999999",
         ] {
             assert!(
-                matches!(pairs(line), Err(Trouble::Malformed { frame: 3, .. })),
+                matches!(pairs(line), Err(AnswerError::Malformed { frame: 3, .. })),
                 "{line}"
             );
         }

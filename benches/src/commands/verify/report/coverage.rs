@@ -3,9 +3,9 @@
 
 use sdop::settings::Strategy;
 use sdop_judge::ours::boxes::{BoxCell, BoxLedger};
+use sdop_judge::ours::configurations::Rotation;
 use sdop_judge::ours::histories::{ChangeKind, HistoryCell, HistoryLedger, Subject};
 use sdop_judge::ours::matrix::{Cell, Matrix, MatrixPart};
-use sdop_judge::ours::ways::Rotation;
 use serde::Serialize;
 
 use crate::commands::output::table;

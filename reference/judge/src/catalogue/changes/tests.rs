@@ -8,7 +8,7 @@ use sdop::bodies::Bodies;
 
 /// What is kept when a frame changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Keeps {
+enum KeptBound {
     /// Nothing: the control.
     Nothing,
     /// A body's ends of the frame before.
@@ -20,8 +20,8 @@ enum Keeps {
 }
 
 /// All pairs of boxes, of which one end or both along an axis are stale.
-struct Stale {
-    keeps: Keeps,
+struct StaleCuller {
+    keeps: KeptBound,
     ends: Vec<usize>,
     given: Vec<WorldBox>,
     kept: Vec<WorldBox>,
@@ -29,19 +29,19 @@ struct Stale {
     pairs: Vec<[u32; 2]>,
 }
 
-impl Stale {
+impl StaleCuller {
     /// The stale box of a body, if there is one.
     fn old(&self, body: usize) -> Option<WorldBox> {
         let number = match (&self.was, self.keeps) {
-            (_, Keeps::Nothing) => return None,
-            (Some(was), Keeps::Body | Keeps::First) => was[body]? as usize,
+            (_, KeptBound::Nothing) => return None,
+            (Some(was), KeptBound::Body | KeptBound::First) => was[body]? as usize,
             _ => body,
         };
         self.kept.get(number).copied()
     }
 }
 
-impl Contestant for Stale {
+impl Contestant for StaleCuller {
     fn boxes(&mut self, boxes: &[WorldBox]) {
         self.given = boxes.to_vec();
     }
@@ -64,7 +64,7 @@ impl Contestant for Stale {
             }
         }
         self.kept = match self.keeps {
-            Keeps::First => old
+            KeptBound::First => old
                 .iter()
                 .zip(&self.given)
                 .map(|(old, given)| old.unwrap_or(*given))
@@ -86,8 +86,8 @@ impl Contestant for Stale {
 
 /// Whether the published cases of a group pass a culler with these stale ends: 0 to 2 lower ones, 3
 /// to 5 upper ones.
-fn passes(group: &str, keeps: Keeps, ends: &[usize]) -> bool {
-    let make = |_: &Scene<'_>| Stale {
+fn passes(group: &str, keeps: KeptBound, ends: &[usize]) -> bool {
+    let make = |_: &Scene<'_>| StaleCuller {
         keeps,
         ends: ends.to_vec(),
         given: Vec::new(),
@@ -113,12 +113,12 @@ fn stale_ends_are_caught() {
         "stale/all-at-once",
     ] {
         assert!(
-            passes(group, Keeps::Nothing, &[0, 1, 2, 3, 4, 5]),
+            passes(group, KeptBound::Nothing, &[0, 1, 2, 3, 4, 5]),
             "{group}"
         );
         for axis in 0..3 {
             for ends in [vec![axis], vec![axis + 3], vec![axis, axis + 3]] {
-                for keeps in [Keeps::Body, Keeps::Number, Keeps::First] {
+                for keeps in [KeptBound::Body, KeptBound::Number, KeptBound::First] {
                     assert!(!passes(group, keeps, &ends), "{group} {keeps:?} {ends:?}");
                 }
             }

@@ -12,18 +12,18 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::answers::{Answers, Predicate};
-use super::draw::ContactSpec;
+use super::configurations::variants;
 use super::forms::{Form, FormError};
-use super::judged::InvalidInput;
-use super::naive::Misses;
-use super::ways::variants;
+use super::naive::NaiveMisses;
+use super::reference_shapes::InvalidInput;
+use super::seeded_draws::ContactSpec;
 use sdop::volume::{Axes, DirectionSet};
 
 mod readme;
 pub mod recipe;
 
 pub use readme::page;
-pub use recipe::{Cases, Recipe};
+pub use recipe::{HardCases, Recipe};
 
 /// The text of each group's file, by name.
 pub use sdop_data::HARD_CASES as FILES;
@@ -31,7 +31,7 @@ pub use sdop_data::HARD_CASES as FILES;
 /// One group of hard cases.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct Group {
+pub struct HardCaseGroup {
     /// What breaks here.
     pub why: String,
     /// Where all draws start.
@@ -54,7 +54,7 @@ pub struct Group {
 
 /// A group that can't be made.
 #[derive(Debug, thiserror::Error)]
-pub enum GroupError {
+pub enum HardCaseError {
     /// The file.
     #[error("{0}")]
     File(#[from] toml::de::Error),
@@ -66,12 +66,12 @@ pub enum GroupError {
     Input(#[from] InvalidInput),
 }
 
-impl Group {
+impl HardCaseGroup {
     /// Reads a group's file.
     ///
     /// # Errors
     /// Text that is no group.
-    pub fn parse(text: &str) -> Result<Self, GroupError> {
+    pub fn parse(text: &str) -> Result<Self, HardCaseError> {
         Ok(toml::from_str(text)?)
     }
 
@@ -79,7 +79,7 @@ impl Group {
     ///
     /// # Errors
     /// Forms that can't be had.
-    pub fn cases(&self, k: DirectionSet, axes: Axes) -> Result<Cases, GroupError> {
+    pub fn cases(&self, k: DirectionSet, axes: Axes) -> Result<HardCases, HardCaseError> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         Ok(self
             .recipe
@@ -90,7 +90,11 @@ impl Group {
     ///
     /// # Errors
     /// Poses outside the contract.
-    pub fn judge(&self, cases: &Cases, k: DirectionSet) -> Result<Vec<Vec<Answers>>, GroupError> {
+    pub fn judge(
+        &self,
+        cases: &HardCases,
+        k: DirectionSet,
+    ) -> Result<Vec<Vec<Answers>>, HardCaseError> {
         let judge = |frame| Answers::judge(&cases.shapes, frame, k, &Predicate::ALL);
         let runs = cases.runs.iter();
         let judged = runs.map(|run| run.iter().map(judge).collect::<Result<_, _>>());
@@ -100,8 +104,8 @@ impl Group {
     /// Recomputes the answers.
     ///
     /// # Errors
-    /// As [`Group::cases`] and [`Group::judge`].
-    pub fn record(&mut self) -> Result<(), GroupError> {
+    /// As [`HardCaseGroup::cases`] and [`HardCaseGroup::judge`].
+    pub fn record(&mut self) -> Result<(), HardCaseError> {
         self.answers.clear();
         for (k, axes) in variants() {
             let judged = self.judge(&self.cases(k, axes)?, k)?;
@@ -127,13 +131,13 @@ impl Group {
 /// What naive f32 tests miss in a group, with k = 18 along principal axes, and of how many pairs.
 ///
 /// # Errors
-/// As [`Group::cases`] and [`Group::judge`].
-pub fn naive_misses(group: &Group) -> Result<(Misses, u64), GroupError> {
-    let (mut misses, mut pairs) = (Misses::default(), 0);
+/// As [`HardCaseGroup::cases`] and [`HardCaseGroup::judge`].
+pub fn naive_misses(group: &HardCaseGroup) -> Result<(NaiveMisses, u64), HardCaseError> {
+    let (mut misses, mut pairs) = (NaiveMisses::default(), 0);
     let cases = group.cases(DirectionSet::K18, Axes::Principal)?;
     let judged = group.judge(&cases, DirectionSet::K18)?;
     for (frame, answers) in cases.runs.iter().flatten().zip(judged.iter().flatten()) {
-        misses.add(&Misses::count(&cases.shapes, frame, answers)?);
+        misses.add(&NaiveMisses::count(&cases.shapes, frame, answers)?);
         pairs += answers.pairs.len() as u64;
     }
     Ok((misses, pairs))

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Group, GroupError, naive_misses};
+use super::{HardCaseError, HardCaseGroup, naive_misses};
 
 const HEAD: &str = "\
 # Hard cases
@@ -29,10 +29,10 @@ the other, which a test of surfaces misses.
 /// Groups that can't be made.
 pub fn page<'a>(
     groups: impl IntoIterator<Item = (&'a str, &'a str)>,
-) -> Result<String, GroupError> {
+) -> Result<String, HardCaseError> {
     let mut page = HEAD.to_owned();
     for (name, text) in groups {
-        let group = Group::parse(text)?;
+        let group = HardCaseGroup::parse(text)?;
         let (m, pairs) = naive_misses(&group)?;
         // Formatting into a String cannot fail.
         let _ = writeln!(

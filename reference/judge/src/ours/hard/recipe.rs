@@ -5,10 +5,10 @@ use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
 use crate::ours::borders::{Borders, bar_within};
-use crate::ours::contact::Placed;
-use crate::ours::draw::{ContactSpec, add, probe};
+use crate::ours::contact::PlacedShape;
 use crate::ours::forms::{self, Form, FormError};
-use crate::ours::judged::Shapes;
+use crate::ours::reference_shapes::Shapes;
+use crate::ours::seeded_draws::{ContactSpec, add, probe};
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet};
 
@@ -72,7 +72,7 @@ fn one() -> usize {
 
 /// The cases that a recipe makes: shapes, and runs of frames that one culler sees.
 #[derive(Clone, Debug)]
-pub struct Cases {
+pub struct HardCases {
     /// Their shapes.
     pub shapes: Shapes,
     /// Each run is a list of frames with the same bodies.
@@ -90,7 +90,7 @@ impl Recipe {
         contacts: &ContactSpec,
         (k, axes): (DirectionSet, Axes),
         rng: &mut impl Rng,
-    ) -> Result<Cases, FormError> {
+    ) -> Result<HardCases, FormError> {
         let exact = |count: usize, rng: &mut _| {
             let forms: Vec<Form> = forms.iter().cycle().take(count).cloned().collect();
             forms::build(&forms, 1, k, axes, rng)
@@ -123,7 +123,7 @@ impl Recipe {
                     vec![probe(&shapes, contacts, shape, partners, rng)]
                 };
                 let runs = (0..frames).map(run).collect();
-                Ok(Cases { shapes, runs })
+                Ok(HardCases { shapes, runs })
             }
             Self::Chain {
                 ref bodies,
@@ -137,7 +137,7 @@ impl Recipe {
                     jumping(first, jumps)
                 };
                 let runs = bodies.iter().map(run).collect();
-                Ok(Cases { shapes, runs })
+                Ok(HardCases { shapes, runs })
             }
         }
     }
@@ -151,7 +151,7 @@ fn chain(
     rng: &mut impl Rng,
 ) -> Bodies {
     let mut bodies = Bodies::default();
-    let mut placed: Vec<Placed> = Vec::new();
+    let mut placed: Vec<PlacedShape> = Vec::new();
     while bodies.len() < n {
         let shape = rng.random_range(0..shapes.built.len());
         let next = match placed.len() {
@@ -167,7 +167,7 @@ fn chain(
             let shape = (shape + shift) % shapes.built.len();
             // Every fifth body is static.
             let dynamic = bodies.len() % 5 != 4;
-            add(&mut bodies, &Placed { shape, ..next }, dynamic);
+            add(&mut bodies, &PlacedShape { shape, ..next }, dynamic);
         }
     }
     bodies
@@ -209,12 +209,12 @@ fn quadruple(rng: &mut impl Rng) -> ([f32; 3], f32) {
 
 /// Every pair of the probe and a partner touches, exactly (unless nudged); the bounding balls are
 /// set, not computed.
-fn quadruples(mut shapes: Shapes, nudged: bool, rng: &mut impl Rng) -> Cases {
+fn quadruples(mut shapes: Shapes, nudged: bool, rng: &mut impl Rng) -> HardCases {
     let mut bodies = Bodies::default();
     let last = shapes.built.len() - 1;
     let radius = rng.random_range(1 << 19..1 << 20) as f32;
     set_radius(&mut shapes, last, radius);
-    let at_rest = |shape: usize, translation: [f32; 3]| Placed {
+    let at_rest = |shape: usize, translation: [f32; 3]| PlacedShape {
         shape,
         rotation: [0.0, 0.0, 0.0, 1.0],
         translation,
@@ -233,7 +233,7 @@ fn quadruples(mut shapes: Shapes, nudged: bool, rng: &mut impl Rng) -> Cases {
         add(&mut bodies, &at_rest(partner, d), false);
     }
     add(&mut bodies, &at_rest(last, [0.0; 3]), true);
-    Cases {
+    HardCases {
         shapes,
         runs: vec![vec![bodies]],
     }
@@ -257,7 +257,7 @@ fn border(divides: bool, most: usize, rng: &mut impl Rng) -> Borders {
 }
 
 /// The scenes as cases of one list of shapes, two per scene.
-fn bars(scenes: Vec<Borders>, k: DirectionSet, axes: Axes) -> Result<Cases, FormError> {
+fn bars(scenes: Vec<Borders>, k: DirectionSet, axes: Axes) -> Result<HardCases, FormError> {
     let (mut built, mut runs) = (Vec::new(), Vec::new());
     for mut scene in scenes {
         let first = built.len() as u32;
@@ -272,10 +272,10 @@ fn bars(scenes: Vec<Borders>, k: DirectionSet, axes: Axes) -> Result<Cases, Form
         runs.push(vec![scene.bodies]);
     }
     let shapes = Shapes::new(built).map_err(|error| FormError::of("bar", error))?;
-    Ok(Cases { shapes, runs })
+    Ok(HardCases { shapes, runs })
 }
 
-fn lattice(mut shapes: Shapes, edge: usize, rng: &mut impl Rng) -> Cases {
+fn lattice(mut shapes: Shapes, edge: usize, rng: &mut impl Rng) -> HardCases {
     // The columns of R(q)|q|² are three quadruples of one length, exactly orthogonal.
     let (columns, length) = loop {
         let q: [i32; 4] = std::array::from_fn(|_| rng.random_range(-1023..=1023));
@@ -297,14 +297,14 @@ fn lattice(mut shapes: Shapes, edge: usize, rng: &mut impl Rng) -> Cases {
         let along = [cell % edge, cell / edge % edge, cell / edge / edge];
         let [i, j, k] = along.map(|x| (x as f64 - middle).floor());
         let centre = columns[0] * i + columns[1] * j + columns[2] * k;
-        let placed = Placed {
+        let placed = PlacedShape {
             shape: 0,
             rotation: [0.0, 0.0, 0.0, 1.0],
             translation: centre.as_vec3().to_array(),
         };
         add(&mut bodies, &placed, true);
     }
-    Cases {
+    HardCases {
         shapes,
         runs: vec![vec![bodies]],
     }

@@ -8,10 +8,10 @@ use rand_chacha::ChaCha8Rng;
 use super::subject::Properties;
 use super::{Change, ChangeKind, History};
 use crate::ours::boxes::beside;
-use crate::ours::contact::Placed;
-use crate::ours::draw::{ContactSpec, TurnKind};
+use crate::ours::contact::PlacedShape;
+use crate::ours::seeded_draws::{ContactSpec, TurnKind};
 use crate::ours::forms::{Form, FormError, build};
-use crate::ours::judged::Shapes;
+use crate::ours::reference_shapes::Shapes;
 use sdop::bodies::Aabb;
 use sdop::boxes::BoxBody;
 use sdop::volume::{Axes, DirectionSet};
@@ -91,14 +91,14 @@ pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> Histo
         let shape = below(count) as usize;
         let placed = match other(others, below) {
             Some(other) if below(8) > 0 => {
-                let first = Placed {
+                let first = PlacedShape {
                     shape: other.shape as usize,
                     rotation: other.rotation,
                     translation: other.translation.map(|x| x as f32),
                 };
                 spec.partner(shapes, &first, shape, &mut rng)
             }
-            _ => Placed {
+            _ => PlacedShape {
                 translation: [(); 3].map(|()| below(64) as f32 / 8.0),
                 ..spec.start(shape, &mut rng)
             },

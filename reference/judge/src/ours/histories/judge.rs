@@ -9,8 +9,8 @@ use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedge
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::meeting;
 use crate::ours::compare::difference;
-use crate::ours::judged::{Shapes, grown};
-use crate::ours::ways::{Mode, rows};
+use crate::ours::reference_shapes::{Shapes, grown};
+use crate::ours::configurations::{Mode, rows};
 use sdop::Motion;
 use sdop::bodies::{Aabb, Bodies};
 use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};

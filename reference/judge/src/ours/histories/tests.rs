@@ -9,7 +9,7 @@ use super::judge::{Life, Truth, required_boxes};
 use super::state::State;
 use super::subject::JudgedWorld;
 use super::*;
-use crate::ours::ways::Mode;
+use crate::ours::configurations::Mode;
 use sdop::boxes::{BoxBody, BoxWorld};
 use sdop::simd::Tier;
 use sdop::world::{BodyId, Events};

@@ -1,5 +1,5 @@
-//! [`Waiting`]: how long this thread was ready to run and waited for a processor, which is the part
-//! of a measured time that other processes took.
+//! [`WaitingTime`]: how long this thread was ready to run and waited for a processor, which is the
+//! part of a measured time that other processes took.
 //!
 //! Linux counts it per thread, in nanoseconds. On other systems nothing is subtracted.
 
@@ -8,9 +8,9 @@ use std::io::{Read as _, Seek as _, SeekFrom};
 
 /// The thread's own count.
 #[derive(Debug)]
-pub struct Waiting(Option<File>);
+pub struct WaitingTime(Option<File>);
 
-impl Waiting {
+impl WaitingTime {
     /// The count of the calling thread, which alone may read it.
     #[must_use]
     pub fn of_this_thread() -> Self {
@@ -39,7 +39,7 @@ mod tests {
 
     #[test]
     fn waiting_never_shrinks() {
-        let mut waiting = Waiting::of_this_thread();
+        let mut waiting = WaitingTime::of_this_thread();
         let before = waiting.seconds();
         std::thread::yield_now();
         assert!(waiting.seconds() >= before && before >= 0.0);

@@ -7,7 +7,7 @@ use crate::pairs::{PairList, PairSorter};
 
 /// The pairs of one cull by slot, with the generations of slots at that time.
 #[derive(Debug, Default)]
-pub(crate) struct Reported {
+pub(crate) struct ReportedPairs {
     /// In any order; empty from the time at which they are sorted.
     found: Mutex<PairList>,
     sorted: OnceLock<PairList>,
@@ -16,7 +16,7 @@ pub(crate) struct Reported {
     sorter: Arc<Mutex<PairSorter>>,
 }
 
-impl Reported {
+impl ReportedPairs {
     /// Pairs in any order.
     pub fn found(
         found: PairList,

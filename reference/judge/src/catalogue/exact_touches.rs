@@ -4,7 +4,7 @@
 use glam::Vec3;
 use rand::{Rng, RngExt};
 
-use super::{CatalogueError, Drawn};
+use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use sdop::bodies::Bodies;
 use sdop::mesh::TriangleMesh;
@@ -82,7 +82,7 @@ pub fn touching(
     number: u32,
     partners: usize,
     rng: &mut impl Rng,
-) -> Result<Drawn, CatalogueError> {
+) -> Result<DrawnCase, CatalogueError> {
     let size = 2_f32.powi(rng.random_range(-12..=12));
     let shapes = solids(size)?.to_vec();
     let (first, second) = match touch {
@@ -109,7 +109,7 @@ pub fn touching(
         bodies.push(second, false, turn(rng), t);
     }
     let frames = vec![Frame::fitted(bodies, &shapes)];
-    Ok(Drawn { shapes, frames })
+    Ok(DrawnCase { shapes, frames })
 }
 
 /// Where the partner is, in half sizes, and an axis along which the contact ends.

@@ -133,8 +133,9 @@ impl Rotation {
 mod tests {
     use super::*;
 
+    /// In as many turns as there are modes, each way has each mode once.
     #[test]
-    fn each_way_has_each_mode_once_in_as_many_turns_as_there_are_modes() {
+    fn each_way_has_each_mode_once() {
         let rotation = Rotation::new(&Tier::available());
         let all = rotation.modes().len();
         assert_eq!(
@@ -153,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn no_mode_follows_the_turn_in_step() {
+    fn modes_vary_from_turn_to_turn() {
         // Rounds draw by their seed's remainder: of two and of three, for instance.
         let rotation = Rotation::new(&[Tier::SCALAR]);
         for step in [2, 3, rotation.modes().len() as u64] {

@@ -3,7 +3,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::Drawn;
+use super::DrawnCase;
 use crate::case::Frame;
 use crate::ours::forms::{self, Form, FormError};
 use sdop::bodies::Bodies;
@@ -25,7 +25,7 @@ const FRAMES: usize = 33;
 
 /// Pairs of cubes, each with its own speed and gap. Speeds are from a 64th of the radius per frame,
 /// which no list notices from one frame to the next, to a quarter.
-pub fn approach(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, FormError> {
+pub fn approach(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, FormError> {
     let form = Form::of("box", [0.0, 0.0]);
     let shapes = forms::build(&[form], 1, DirectionSet::K18, Axes::Model, rng)?.built;
     let axis = number as usize % 3;
@@ -66,5 +66,5 @@ pub fn approach(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, Fo
         Frame::fitted(bodies, &shapes)
     };
     let frames = (0..FRAMES).map(frame).collect();
-    Ok(Drawn { shapes, frames })
+    Ok(DrawnCase { shapes, frames })
 }

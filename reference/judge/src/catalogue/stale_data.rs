@@ -8,7 +8,7 @@
 use rand::Rng;
 
 use super::changes::{ALONG, AWAY, NEAR, REACH, UNTURNED, cube, needle, places};
-use super::{CatalogueError, Drawn};
+use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use sdop::bodies::Bodies;
 
@@ -32,7 +32,7 @@ const FRAMES: usize = 6;
 const ORIGINS: [f32; FRAMES] = [0.0, 4096.0, -4096.0, 65_536.0, 0.0, -8192.0];
 
 /// A body in a frame.
-struct Placed {
+struct RowBody {
     /// The same for the same body in all frames.
     id: usize,
     shape: u32,
@@ -42,14 +42,14 @@ struct Placed {
 }
 
 /// A case whose changes are along the axis of this number, modulo 3.
-pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
     let shapes = vec![cube(rng)?, needle()?];
     let axis = number as usize % 3;
     let places = places(axis, ROWS, rng);
     let mut frames: Vec<Frame> = Vec::new();
     let mut before: Vec<usize> = Vec::new();
     for n in 0..FRAMES {
-        let mut all: Vec<Placed> = (0..ROWS)
+        let mut all: Vec<RowBody> = (0..ROWS)
             .flat_map(|row| placed(kind, axis, &places, row, n))
             .collect();
         if matches!(kind, Kind::Reorder | Kind::AllAtOnce) {
@@ -57,7 +57,7 @@ pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, Ca
             all.rotate_left(by);
         }
         let number = |id: usize| before.iter().position(|&known| known == id);
-        let former = |body: &Placed| number(body.id).map(|at| at as u32);
+        let former = |body: &RowBody| number(body.id).map(|at| at as u32);
         let was = (n > 0).then(|| all.iter().map(former).collect());
         let mut bodies = Bodies::default();
         for body in &all {
@@ -69,12 +69,12 @@ pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, Ca
             ..Frame::fitted(bodies, &shapes)
         });
     }
-    Ok(Drawn { shapes, frames })
+    Ok(DrawnCase { shapes, frames })
 }
 
 /// A row's bodies in a frame: the static one, and the other, which meets it in every other frame.
 /// On either side there are rows that meet in the first frame and rows that don't.
-fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) -> Vec<Placed> {
+fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) -> Vec<RowBody> {
     let after = (n % 2 == 1) != (row / 2 % 2 == 1);
     let side = if row.is_multiple_of(2) { 1.0 } else { -1.0 };
     let origin = match kind {
@@ -86,14 +86,14 @@ fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) ->
         place[axis] += side * distance + origin;
         place
     };
-    let moving = |id: usize, shape: u32, distance: f32| Placed {
+    let moving = |id: usize, shape: u32, distance: f32| RowBody {
         id,
         shape,
         dynamic: true,
         rotation: ALONG[axis],
         translation: at(distance),
     };
-    let mut all = vec![Placed {
+    let mut all = vec![RowBody {
         id: 2 * row,
         shape: 0,
         dynamic: false,

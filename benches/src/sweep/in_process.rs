@@ -4,14 +4,14 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
 
-use super::{OnEnd, Sweep, attempt};
+use super::{EndHandler, Sweep, attempt};
 
 /// Does these units; `on` is called for each when it ends. Those that need all threads come last,
 /// one at a time. When one fails, running ones are still finished and reported.
 ///
 /// # Errors
 /// A unit that fails, the first that is seen; what `on` says.
-pub fn here(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> {
+pub fn run_in_process(work: &dyn Sweep, units: &[usize], on: EndHandler) -> miette::Result<()> {
     let (alone, beside): (Vec<usize>, Vec<usize>) =
         units.iter().partition(|&&unit| work.alone(unit));
     side_by_side(work, &beside, on)?;
@@ -23,7 +23,7 @@ pub fn here(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> 
 
 /// Uses its own threads, because a pool's worker that waits within a unit would start another unit
 /// on top of it.
-fn side_by_side(work: &dyn Sweep, units: &[usize], on: OnEnd) -> miette::Result<()> {
+fn side_by_side(work: &dyn Sweep, units: &[usize], on: EndHandler) -> miette::Result<()> {
     let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     thread::scope(|scope| {
         let (send, receive) = mpsc::channel();
@@ -112,7 +112,7 @@ mod tests {
             told.push((unit, result));
             Ok(())
         };
-        let ended = here(&work, units, &mut on);
+        let ended = run_in_process(&work, units, &mut on);
         told.sort();
         (ended, told)
     }

@@ -4,7 +4,7 @@
 use rand::{Rng, RngExt};
 
 use super::boxes::{self, Kind as Boxes, of_boxes};
-use super::{CatalogueError, Drawn};
+use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use crate::contestant::{Filter, WorldBox};
 use crate::truth::boxes_meet;
@@ -31,7 +31,7 @@ pub enum Kind {
 const COUNT: usize = 48;
 
 /// A case.
-pub fn asked(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+pub fn asked(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
     match kind {
         Kind::Margin | Kind::Margins => margins(kind, rng),
         Kind::Restored => restored(rng),
@@ -40,7 +40,7 @@ pub fn asked(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, Catal
             boxes::boxes(of, COUNT, rng)
         }
         Kind::Groups | Kind::Excluded | Kind::AtRest => {
-            let Drawn { shapes, frames } = boxes::boxes(Boxes::Grid, COUNT, rng)?;
+            let DrawnCase { shapes, frames } = boxes::boxes(Boxes::Grid, COUNT, rng)?;
             let (first, count) = (&frames[0], if kind == Kind::AtRest { 5 } else { 1 });
             let frame = |n: usize| Frame {
                 filter: Some(match (kind, n) {
@@ -51,7 +51,7 @@ pub fn asked(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<Drawn, Catal
                 ..first.clone()
             };
             let frames = (0..count).map(frame).collect();
-            Ok(Drawn { shapes, frames })
+            Ok(DrawnCase { shapes, frames })
         }
     }
 }
@@ -96,7 +96,7 @@ fn excluded(frame: &Frame, rng: &mut impl Rng) -> Vec<[u32; 2]> {
 }
 
 /// Rows of two boxes, as far apart along an axis as their margins reach, or an ulp more or less.
-fn margins(kind: Kind, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
+fn margins(kind: Kind, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
     const MARGINS: [f32; 6] = [0.0, 1e-3, 0.1, 0.25, 0.7, 3.0];
     let pick = |rng: &mut _| MARGINS[RngExt::random_range(rng, 0..MARGINS.len())];
     let all = MARGINS[rng.random_range(1..MARGINS.len())];
@@ -128,7 +128,7 @@ fn margins(kind: Kind, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
         margins: Some(margins),
         ..frame
     }];
-    Ok(Drawn {
+    Ok(DrawnCase {
         shapes: vec![shape],
         frames,
     })
@@ -136,8 +136,8 @@ fn margins(kind: Kind, rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
 
 /// Steps 0 and 1, after which the state is saved; 2 to 4; back, and the same steps again; back, and
 /// the last step alone. Half of the boxes move in each step.
-fn restored(rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
-    let Drawn { shapes, frames } = boxes::boxes(Boxes::Grid, COUNT, rng)?;
+fn restored(rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
+    let DrawnCase { shapes, frames } = boxes::boxes(Boxes::Grid, COUNT, rng)?;
     let mut steps = frames;
     for n in 1..5 {
         let mut next = steps[n - 1].clone();
@@ -169,7 +169,7 @@ fn restored(rng: &mut impl Rng) -> Result<Drawn, CatalogueError> {
         (4, false, false),
         (4, false, true),
     ];
-    Ok(Drawn {
+    Ok(DrawnCase {
         shapes,
         frames: run.map(frame).to_vec(),
     })

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::Ids;
 use super::pair_log::PairLog;
-use super::reported::Reported;
+use super::reported_pairs::ReportedPairs;
 use crate::bodies::ExcludedPairs;
 use crate::bodies::contract::{ContractError, check_number};
 use crate::pairs::PairList;
@@ -223,7 +223,7 @@ impl PairsSnapshot {
             return damaged(format!("the pair {i}, {j} has a slot that was empty"));
         }
         let generation = ids.generation().clone();
-        let last = Arc::new(Reported::sorted(slots, generation));
+        let last = Arc::new(ReportedPairs::sorted(slots, generation));
         let watched = match &self.watched {
             None => last.clone(),
             Some(WatchedSnapshot { pairs, generation }) => {
@@ -239,7 +239,7 @@ impl PairsSnapshot {
                     return damaged(format!("no watched pair names slot {slot}"));
                 }
                 let slots = sorted(pairs, generation.len())?;
-                Arc::new(Reported::sorted(slots, Arc::new(generation.clone())))
+                Arc::new(ReportedPairs::sorted(slots, Arc::new(generation.clone())))
             }
         };
         Ok(PairLog::of(last, watched))

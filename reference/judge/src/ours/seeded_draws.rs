@@ -3,8 +3,8 @@
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, Kind, Placed};
-use super::judged::Shapes;
+use super::contact::{Contact, Kind, PlacedShape};
+use super::reference_shapes::Shapes;
 use sdop::bodies::Bodies;
 use sdop::rounding::pose;
 
@@ -162,7 +162,7 @@ impl ContactSpec {
     }
 
     /// A body to start from.
-    pub fn start(&self, shape: usize, rng: &mut impl Rng) -> Placed {
+    pub fn start(&self, shape: usize, rng: &mut impl Rng) -> PlacedShape {
         let rotation = self.turn.first(rng);
         let translation = match self.origin {
             None => [0.0; 3],
@@ -177,7 +177,7 @@ impl ContactSpec {
                 d.map(|x| (x / size * distance) as f32)
             }
         };
-        Placed {
+        PlacedShape {
             shape,
             rotation,
             translation,
@@ -189,16 +189,16 @@ impl ContactSpec {
     pub fn partner(
         &self,
         shapes: &Shapes,
-        first: &Placed,
+        first: &PlacedShape,
         shape: usize,
         rng: &mut impl Rng,
-    ) -> Placed {
+    ) -> PlacedShape {
         let rotation = self.turn.second(first.rotation, rng);
         let contact = self.contact(rng);
         let translation = contact
             .place(shapes, first, shape, rotation)
             .unwrap_or(first.translation);
-        Placed {
+        PlacedShape {
             shape,
             rotation,
             translation,
@@ -207,7 +207,7 @@ impl ContactSpec {
 }
 
 /// Appends a body at rest.
-pub fn add(bodies: &mut Bodies, placed: &Placed, dynamic: bool) {
+pub fn add(bodies: &mut Bodies, placed: &PlacedShape, dynamic: bool) {
     let shape = placed.shape as u32; // shapes are few
     bodies.push(shape, dynamic, placed.rotation, placed.translation);
 }
@@ -249,7 +249,7 @@ pub fn crowd(shapes: &Shapes, bodies: usize, side: f64, rng: &mut impl Rng) -> B
         // The ball's centre is what is uniform, wherever the shape's origin is.
         let ball = shapes.built[shape].ball.centre;
         let offset = pose::rotate(&pose::rotation(rotation), ball);
-        let placed = Placed {
+        let placed = PlacedShape {
             shape,
             rotation,
             translation: std::array::from_fn(|i| centre[i] - offset[i] as f32),

@@ -1,0 +1,130 @@
+//! Bodies of several shapes, and the pairs of their parts.
+
+use std::sync::Mutex;
+
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use sdop::compound::{CompoundError, Part};
+
+use super::arrays::{check_length, pairs, rows, whole_column, wide_rows};
+use super::errors::{lock, locked, refused};
+use super::ids::bits_of;
+use super::shape::{Shape, built};
+use super::world::{ROUND, World};
+
+/// Several shapes that move as one body: a robot, a vehicle, a concave mesh in convex pieces.
+///
+/// Give `compound.shape` to a `World` and insert one body per robot; a `PartCuller` finds the pairs
+/// of parts within the world's pairs.
+///
+/// Parameters
+/// ----------
+/// shapes : list of Shape
+/// part_shapes : array of whole numbers, shape (n,)
+///     For each part, the index of its shape.
+/// rotations : array of float32, shape (n, 4)
+///     Quaternions x, y, z, w of any non-zero norm: each part's orientation in the body's frame.
+/// translations : array of floats, shape (n, 3)
+///     Position of each part's origin in the body's frame.
+/// name : str
+///     Its name in errors.
+#[pyclass(frozen, module = "sdop")]
+pub struct Compound(sdop::compound::Compound);
+
+#[pymethods]
+impl Compound {
+    #[new]
+    #[pyo3(signature = (shapes, part_shapes, rotations, translations, *, name="compound"))]
+    fn new(
+        shapes: Vec<PyRef<'_, Shape>>,
+        part_shapes: &Bound<'_, PyAny>,
+        rotations: &Bound<'_, PyAny>,
+        translations: &Bound<'_, PyAny>,
+        name: &str,
+    ) -> PyResult<Self> {
+        let part_shapes = whole_column(part_shapes, "part_shapes")?;
+        let rotations = rows::<4>(rotations, "rotations", ROUND)?;
+        let translations = wide_rows::<3>(translations, "translations")?;
+        check_length("rotations", rotations.rows().len(), part_shapes.len())?;
+        check_length("translations", translations.len(), part_shapes.len())?;
+        let poses = rotations.rows().iter().zip(translations);
+        let parts = part_shapes.into_iter().zip(poses);
+        let parts: Vec<Part> = parts
+            .map(|(shape, (&rotation, translation))| Part {
+                shape,
+                rotation,
+                translation,
+            })
+            .collect();
+        let compound = sdop::compound::Compound::build(name, &built(&shapes), &parts);
+        Ok(Self(compound.map_err(refused)?))
+    }
+
+    /// The shape that contains all parts, for a `World`.
+    #[getter]
+    fn shape(&self) -> Shape {
+        self.0.shape().clone().into()
+    }
+
+    /// Number of parts.
+    fn __len__(&self) -> usize {
+        self.0.parts()
+    }
+}
+
+/// Finds the pairs of parts within the pairs of bodies that a `World` reports. Parts of one body
+/// are never paired.
+///
+/// If the meshes of two parts, each grown by its body's margin and posed by its own pose and then
+/// by its body's, meet in exact arithmetic, and the world may report the bodies, the pair of parts
+/// is reported.
+#[pyclass(frozen, module = "sdop")]
+pub struct PartCuller(Mutex<sdop::compound::PartCuller>);
+
+/// Ids of bodies and numbers of parts.
+type PartPairs<'py> = (Bound<'py, PyArray2<u64>>, Bound<'py, PyArray2<u32>>);
+
+#[pymethods]
+impl PartCuller {
+    #[new]
+    fn new() -> Self {
+        Self(Mutex::default())
+    }
+
+    /// Says which parts a shape of the world has. The world's shape of that number has to be
+    /// `compound.shape`.
+    fn set_parts(&self, py: Python<'_>, shape: u32, compound: &Compound) {
+        let compound = compound.0.clone();
+        locked(py, &self.0, |culler| culler.set_parts(shape, compound));
+    }
+
+    /// From now on, the world's shape of that number is one part.
+    fn remove_parts(&self, py: Python<'_>, shape: u32) {
+        locked(py, &self.0, |culler| culler.remove_parts(shape));
+    }
+
+    /// The pairs of parts in the pairs of the world's last `cull`: call it after each.
+    ///
+    /// Returns
+    /// -------
+    /// array of uint64, shape (m, 2)
+    ///     Ids of the bodies, sorted.
+    /// array of uint32, shape (m, 2)
+    ///     The number of each body's part; 0 for a body whose shape is not a compound.
+    fn cull<'py>(&self, py: Python<'py>, world: &World) -> PyResult<PartPairs<'py>> {
+        let world = &world.0;
+        let found: Result<_, CompoundError> = locked(py, &self.0, |culler| {
+            let found = culler.cull(&lock(world))?;
+            let bodies = bits_of(found.iter().map(|pair| pair.bodies));
+            Ok((bodies, found.iter().map(|pair| pair.parts).collect()))
+        });
+        let (bodies, parts) = found.map_err(refused)?;
+        Ok((pairs(py, bodies)?, pairs(py, parts)?))
+    }
+
+    /// The pairs of bodies of which some parts may touch: ids of shape (m, 2), sorted.
+    fn body_pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let found = locked(py, &self.0, |culler| bits_of(culler.body_pairs()));
+        pairs(py, found)
+    }
+}

@@ -1,0 +1,235 @@
+//! Queries about the bodies of a world, many at a time.
+
+use std::sync::Mutex;
+
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use sdop::query::{Answers, LineHit, QueryShape, QueryVolume};
+use sdop::{BodyId, Line};
+
+use super::arrays::{check_length, pairs, rows, wide_column, wide_rows};
+use super::boxes::BoxWorld;
+use super::errors::{lock, locked, refused};
+use super::shape::Shape;
+use super::world::{ROUND, World};
+
+/// The bodies of a `World` or a `BoxWorld`, prepared for queries: which may touch a volume, and
+/// which does a segment meet?
+///
+/// Queries are about the bodies as they were at the last `update`; no cull is needed. No body is
+/// missed that has a point in common with the volume or the segment in exact arithmetic. Bodies of
+/// a `World` are grown by their margins and tested by their volumes, so some may be reported whose
+/// meshes don't touch. Groups, and whether a body moves, have no effect.
+///
+/// Coordinates are in the world's frame and of float64. An answer is an array of uint64 of shape
+/// (m, 2): in each row the number of a query, counted from 0, and the id of a body.
+///
+/// Parameters
+/// ----------
+/// threads : int
+///     Number of threads that share the queries of a call. Answers don't depend on it.
+#[pyclass(frozen, module = "sdop")]
+pub struct QueryIndex(Mutex<sdop::QueryIndex>);
+
+/// What an index reads.
+#[derive(FromPyObject)]
+enum AnyWorld<'py> {
+    #[pyo3(annotation = "World")]
+    Bodies(Bound<'py, World>),
+    #[pyo3(annotation = "BoxWorld")]
+    Boxes(Bound<'py, BoxWorld>),
+}
+
+/// Rows of a query's number and a body's id, and the hits' parameters.
+type Hits<'py> = (Bound<'py, PyArray2<u64>>, Bound<'py, PyArray1<f64>>);
+
+#[pymethods]
+impl QueryIndex {
+    #[new]
+    #[pyo3(signature = (*, threads=1))]
+    fn new(threads: usize) -> PyResult<Self> {
+        let index = sdop::QueryIndex::with_threads(threads).map_err(refused)?;
+        Ok(Self(Mutex::new(index)))
+    }
+
+    /// Brings the index up to date with a `World` or a `BoxWorld`. Only bodies that have changed
+    /// since the last update cost more than a comparison.
+    fn update(&self, py: Python<'_>, world: AnyWorld<'_>) {
+        match &world {
+            AnyWorld::Bodies(world) => {
+                let world = &world.get().0;
+                locked(py, &self.0, |index| index.update(&*lock(world)));
+            }
+            AnyWorld::Boxes(world) => {
+                let world = &world.get().0;
+                locked(py, &self.0, |index| index.update(&*lock(world)));
+            }
+        }
+    }
+
+    /// The bodies that may touch boxes on the world's axes.
+    ///
+    /// Parameters
+    /// ----------
+    /// boxes : array of floats, shape (n, 6) or (n, 2, 3)
+    ///     Lower corner x, y, z, then the upper one.
+    ///
+    /// Returns
+    /// -------
+    /// array of uint64, shape (m, 2)
+    ///     Rows of a box's number and a body's id, sorted by both.
+    fn touching_boxes<'py>(
+        &self,
+        py: Python<'py>,
+        boxes: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let boxes = wide_rows::<6>(boxes, "boxes")?;
+        let volumes = boxes.into_iter().map(|[ax, ay, az, bx, by, bz]| {
+            let (min, max) = ([ax, ay, az], [bx, by, bz]);
+            QueryVolume::Box { min, max }
+        });
+        self.touching(py, volumes.collect())
+    }
+
+    /// The bodies that may touch balls, or points where a radius is 0.
+    ///
+    /// Parameters
+    /// ----------
+    /// centres : array of floats, shape (n, 3)
+    /// radii : array of floats, shape (n,)
+    ///
+    /// Returns
+    /// -------
+    /// array of uint64, shape (m, 2)
+    ///     Rows of a ball's number and a body's id, sorted by both.
+    fn touching_balls<'py>(
+        &self,
+        py: Python<'py>,
+        centres: &Bound<'py, PyAny>,
+        radii: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let (centres, radii) = (
+            wide_rows::<3>(centres, "centres")?,
+            wide_column(radii, "radii")?,
+        );
+        check_length("radii", radii.len(), centres.len())?;
+        let balls = centres.into_iter().zip(radii);
+        let volumes = balls.map(|(centre, radius)| QueryVolume::Ball { centre, radius });
+        self.touching(py, volumes.collect())
+    }
+
+    /// The bodies that may touch a shape at poses, for example to find a free place for it.
+    ///
+    /// Parameters
+    /// ----------
+    /// shape : Shape
+    ///     Its ball and its or-DOP are tested.
+    /// rotations : array of float32, shape (n, 4)
+    ///     Quaternions x, y, z, w of any non-zero norm.
+    /// translations : array of floats, shape (n, 3)
+    /// margin : float
+    ///     A length by which the shape is grown.
+    ///
+    /// Returns
+    /// -------
+    /// array of uint64, shape (m, 2)
+    ///     Rows of a pose's number and a body's id, sorted by both.
+    #[pyo3(signature = (shape, rotations, translations, *, margin=0.0))]
+    fn touching_shapes<'py>(
+        &self,
+        py: Python<'py>,
+        shape: &Shape,
+        rotations: &Bound<'py, PyAny>,
+        translations: &Bound<'py, PyAny>,
+        margin: f32,
+    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let rotations = rows::<4>(rotations, "rotations", ROUND)?;
+        let translations = wide_rows::<3>(translations, "translations")?;
+        check_length("translations", translations.len(), rotations.rows().len())?;
+        let shape = &QueryShape::new(&shape.built);
+        let poses = rotations.rows().iter().zip(translations);
+        let volumes = poses.map(|(&rotation, translation)| QueryVolume::Shape {
+            shape,
+            rotation,
+            translation,
+            margin,
+        });
+        self.touching(py, volumes.collect())
+    }
+
+    /// All bodies that segments may meet.
+    ///
+    /// Parameters
+    /// ----------
+    /// starts, ends : arrays of floats, shape (n, 3)
+    ///     The points start + s·(end − start) for 0 ≤ s ≤ 1.
+    ///
+    /// Returns
+    /// -------
+    /// array of uint64, shape (m, 2)
+    ///     Rows of a segment's number and a body's id, sorted by the number and by s.
+    /// array of float64, shape (m,)
+    ///     For each row an s at or before the first point that the segment shares with the body.
+    fn along<'py>(
+        &self,
+        py: Python<'py>,
+        starts: &Bound<'py, PyAny>,
+        ends: &Bound<'py, PyAny>,
+    ) -> PyResult<Hits<'py>> {
+        let lines = segments(starts, ends)?;
+        let found = locked(py, &self.0, |index| index.along_all(&lines));
+        hits(py, &found.map_err(refused)?)
+    }
+
+    /// The body that each segment may meet first: none is met at a smaller s. Parameters and result
+    /// as for `along`, with at most one row per segment.
+    fn first<'py>(
+        &self,
+        py: Python<'py>,
+        starts: &Bound<'py, PyAny>,
+        ends: &Bound<'py, PyAny>,
+    ) -> PyResult<Hits<'py>> {
+        let lines = segments(starts, ends)?;
+        let found = locked(py, &self.0, |index| index.first_all(&lines));
+        hits(py, &found.map_err(refused)?)
+    }
+
+    fn __len__(&self, py: Python<'_>) -> usize {
+        locked(py, &self.0, |index| index.len())
+    }
+}
+
+impl QueryIndex {
+    fn touching<'py>(
+        &self,
+        py: Python<'py>,
+        volumes: Vec<QueryVolume<'_>>,
+    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let found = locked(py, &self.0, |index| index.touching_all(&volumes));
+        pairs(py, numbered(&found.map_err(refused)?, |&id| id))
+    }
+}
+
+fn segments(starts: &Bound<'_, PyAny>, ends: &Bound<'_, PyAny>) -> PyResult<Vec<Line>> {
+    let (starts, ends) = (wide_rows::<3>(starts, "starts")?, wide_rows(ends, "ends")?);
+    check_length("ends", ends.len(), starts.len())?;
+    let segments = starts.into_iter().zip(ends);
+    Ok(segments
+        .map(|(from, to)| Line::Segment { from, to })
+        .collect())
+}
+
+fn hits<'py>(py: Python<'py>, answers: &Answers<LineHit>) -> PyResult<Hits<'py>> {
+    let at: Vec<f64> = answers.iter().flatten().map(|hit| hit.at).collect();
+    let rows = pairs(py, numbered(answers, |hit| hit.body))?;
+    Ok((rows, PyArray1::from_vec(py, at)))
+}
+
+/// Rows of a query's number and the id in each of its answers.
+fn numbered<T>(answers: &Answers<T>, id: impl Fn(&T) -> BodyId) -> Vec<[u64; 2]> {
+    let mut rows = Vec::new();
+    for (query, found) in (0..).zip(answers.iter()) {
+        rows.extend(found.iter().map(|answer| [query, id(answer).to_bits()]));
+    }
+    rows
+}

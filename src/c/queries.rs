@@ -1,0 +1,218 @@
+//! Queries about the bodies of a world: those that may touch a volume or meet a segment.
+
+use super::border::{Refusal, SdopStatus, call, fill, free, give, handle, put, shared};
+use super::box_world::SdopBoxWorld;
+use super::world::SdopWorld;
+use crate::query::{Line, LineHit, QueryIndex, QueryVolume};
+use crate::world::BodyId;
+
+/// The bodies of a world, prepared for queries. Many threads may ask it at the same time, while
+/// none updates it.
+#[derive(Debug)]
+pub struct SdopQueryIndex(QueryIndex);
+
+/// The points from + s·(to − from) for 0 ≤ s ≤ 1, world frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SdopSegment {
+    /// The point of s = 0.
+    pub from: [f64; 3],
+    /// The point of s = 1.
+    pub to: [f64; 3],
+}
+
+impl From<SdopSegment> for Line {
+    fn from(segment: SdopSegment) -> Self {
+        let SdopSegment { from, to } = segment;
+        Self::Segment { from, to }
+    }
+}
+
+/// A body that a segment may meet.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SdopHit {
+    /// The body.
+    pub id: u64,
+    /// An s at or before the first point that the segment shares with the body.
+    pub at: f64,
+}
+
+impl From<LineHit> for SdopHit {
+    fn from(hit: LineHit) -> Self {
+        Self {
+            id: hit.body.to_bits(),
+            at: hit.at,
+        }
+    }
+}
+
+/// Makes an index without bodies.
+///
+/// # Safety
+/// `out` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_query_index_new(out: *mut *mut SdopQueryIndex) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    call(|| unsafe { give(out, SdopQueryIndex(QueryIndex::new())) })
+}
+
+/// Frees an index; null is fine.
+///
+/// # Safety
+/// It is from `sdop_query_index_new` and not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_query_index_free(index: *mut SdopQueryIndex) {
+    // SAFETY: the caller's promise.
+    unsafe { free(index) }
+}
+
+/// Brings the index up to date with a world: from now on queries are about its bodies as they are
+/// now. Only bodies that have changed since the last update cost more than a comparison. No cull is
+/// needed.
+///
+/// # Safety
+/// `index` and `world` are handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_query_index_update(
+    index: *mut SdopQueryIndex,
+    world: *const SdopWorld,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, world) = unsafe { (handle(index, "index")?, shared(world, "world")?) };
+        it.0.update(&world.0);
+        Ok(())
+    })
+}
+
+/// `sdop_query_index_update` for a world of boxes.
+///
+/// # Safety
+/// `index` and `world` are handles.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_query_index_update_boxes(
+    index: *mut SdopQueryIndex,
+    world: *const SdopBoxWorld,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, world) = unsafe { (handle(index, "index")?, shared(world, "world")?) };
+        it.0.update(&world.0);
+        Ok(())
+    })
+}
+
+/// The ids of the bodies that may touch a volume, in a caller's buffer.
+///
+/// # Safety
+/// `index` is a handle or null; `capacity` entries of `buffer` and `count` may be written.
+unsafe fn touching(
+    index: *const SdopQueryIndex,
+    volume: &QueryVolume<'_>,
+    buffer: *mut u64,
+    capacity: usize,
+    count: *mut usize,
+) -> Result<(), Refusal> {
+    // SAFETY: the caller's promise.
+    let found = unsafe { shared(index, "index") }?.0.touching(volume)?;
+    let ids = found.into_iter().map(BodyId::to_bits);
+    // SAFETY: the caller's promise.
+    unsafe { fill(ids, buffer, capacity, count) }
+}
+
+/// Writes the ids of the bodies that may touch a box on the world's axes into `buffer`, sorted by
+/// slots. None is missed that has a point in common with it. If they don't fit, `count` says how
+/// many there are.
+///
+/// # Safety
+/// `index` is a handle; `min` and `max` are the box's corners; `capacity` entries of `buffer` and
+/// `count` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_query_index_touching_box(
+    index: *const SdopQueryIndex,
+    min: *const [f64; 3],
+    max: *const [f64; 3],
+    buffer: *mut u64,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (min, max) = unsafe { (*shared(min, "min")?, *shared(max, "max")?) };
+        let volume = QueryVolume::Box { min, max };
+        // SAFETY: the caller's promise.
+        unsafe { touching(index, &volume, buffer, capacity, count) }
+    })
+}
+
+/// `sdop_query_index_touching_box` for a ball, or a point if the radius is 0.
+///
+/// # Safety
+/// `index` is a handle; `centre` is a point; `capacity` entries of `buffer` and `count` may be
+/// written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_query_index_touching_ball(
+    index: *const SdopQueryIndex,
+    centre: *const [f64; 3],
+    radius: f64,
+    buffer: *mut u64,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let centre = unsafe { *shared(centre, "centre")? };
+        let volume = QueryVolume::Ball { centre, radius };
+        // SAFETY: the caller's promise.
+        unsafe { touching(index, &volume, buffer, capacity, count) }
+    })
+}
+
+/// Finds the body whose volume a segment may meet first: none is met at a smaller s. `hit` gets it,
+/// and `found` whether there is one.
+///
+/// # Safety
+/// `index` is a handle, `segment` a segment; `hit` and `found` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_query_index_first(
+    index: *const SdopQueryIndex,
+    segment: *const SdopSegment,
+    hit: *mut SdopHit,
+    found: *mut bool,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, segment) = unsafe { (shared(index, "index")?, *shared(segment, "segment")?) };
+        let first = it.0.first(&segment.into())?;
+        // SAFETY: the caller's promise.
+        unsafe { put(found, first.is_some(), "found") }?;
+        let Some(first) = first else { return Ok(()) };
+        // SAFETY: the caller's promise.
+        unsafe { put(hit, first.into(), "hit") }
+    })
+}
+
+/// Writes all bodies that a segment may meet into `buffer`, sorted by s. If they don't fit, `count`
+/// says how many there are.
+///
+/// # Safety
+/// `index` is a handle, `segment` a segment; `capacity` entries of `buffer` and `count` may be
+/// written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_query_index_along(
+    index: *const SdopQueryIndex,
+    segment: *const SdopSegment,
+    buffer: *mut SdopHit,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, segment) = unsafe { (shared(index, "index")?, *shared(segment, "segment")?) };
+        let hits = it.0.along(&segment.into())?;
+        let hits = hits.into_iter().map(SdopHit::from);
+        // SAFETY: the caller's promise.
+        unsafe { fill(hits, buffer, capacity, count) }
+    })
+}
