@@ -151,6 +151,33 @@ fn cost_predicts_every_term() {
     assert!((sum / predicted - 1.0).abs() < 1e-12 && predicted > 0.0);
 }
 
+/// Scenes of one kind have the same prices; others are refused.
+#[test]
+fn scenes_of_one_kind_share_prices() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().to_str().unwrap();
+    let paper = |bodies: u32| format!("data/scenes/paper-{bodies}.toml");
+    let (few, more, crowd) = (paper(50), paper(150), "data/scenes/uniform-10k.toml");
+    let both = [
+        "cost", &few, "--also", &more, "--frames", "2", "--seeds", "2",
+    ];
+    let strategy = ["--strategy", "s-dop-batch", "--out", out];
+    let printed = json(&[&both[..], &strategy].concat());
+    let [one, other] = &printed.as_array().unwrap()[..] else {
+        panic!("{printed}");
+    };
+    assert_eq!([&one["scene"], &other["scene"]], ["paper-50", "paper-150"]);
+    assert_eq!(one["prices"], other["prices"]);
+    assert_ne!(one["costs"][0]["terms"], other["costs"][0]["terms"]);
+    let written = std::fs::read_to_string(directory.path().join("paper-150.json")).unwrap();
+    assert_eq!(
+        &serde_json::from_str::<serde_json::Value>(&written).unwrap(),
+        other
+    );
+    let refused = refusal(&["cost", &few, "--also", crowd]);
+    assert!(refused.contains("can't have the same prices"), "{refused}");
+}
+
 /// Cost covers every strategy that the scene has settings for.
 #[test]
 fn cost_covers_every_possible_strategy() {
