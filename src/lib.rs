@@ -13,6 +13,7 @@
 //! | bodies of several shapes, such as robots | [`compound`] in a [`World`]: pairs of parts |
 //! | boxes, all of them new in each frame | [`BoxCuller`]: exactly the boxes that meet |
 //! | boxes that come and go | [`BoxWorld`]: the same, with ids, groups and events |
+//! | any of these in space that repeats along some axes | [`periodic`] |
 //! | a volume, a line or another set to compare with a world | [`QueryIndex`] |
 //! | single pairs from your own broad phase | [`world::PairTest`] |
 //!
@@ -107,7 +108,7 @@
 //! - `sdop-bench` has scenes, measurements, studies and the program `sdop`.
 //!
 //! The repository has a guide, `paper/guide.md`, and short recipes, `paper/how-to.md`: excluded
-//! pairs, compound bodies, rollback, coming from rapier or Bullet.
+//! pairs, compound bodies, periodic axes, rollback, coming from rapier or Bullet.
 
 #![cfg_attr(
     not(feature = "shapes"),
@@ -128,6 +129,7 @@ pub mod culler;
 #[cfg(feature = "shapes")]
 pub mod mesh;
 pub mod pairs;
+pub mod periodic;
 pub mod query;
 pub mod settings;
 #[cfg(feature = "shapes")]

@@ -10,10 +10,10 @@ use sdop::{
 };
 use sha2::{Digest, Sha256};
 
-const BODIES: u32 = 800;
-const PAIRS: &str = "";
-const TOUCHING: &str = "";
-const PARTS: &str = "";
+const BODIES: u32 = 1600;
+const PAIRS: &str = "dd975ffe385c67426ced847af96edb364ab60e6bc5da94ab79f2bc33dbce7a22";
+const TOUCHING: &str = "11e4060fa18adb68bc45bf942c8b3549ee37c7d734098993f9b60d578626d9d6";
+const PARTS: &str = "955ba31aadad357eae3d7054477333fbe62551f35855c8eee73c8962aafeb42e";
 
 /// A mesh in the form of an L, from two boxes.
 fn bracket() -> Shape {
@@ -69,7 +69,11 @@ fn world(shape: Shape) -> (World, HashMap<BodyId, u32>) {
     let mut insert = |i: u32| {
         let (rotation, translation) = pose(i);
         let body = Body::at(0, rotation, translation.map(f64::from));
-        let body = if i % 5 == 0 { body.fixed() } else { body };
+        let body = if i.is_multiple_of(5) {
+            body.fixed()
+        } else {
+            body
+        };
         (world.insert(body).unwrap(), i)
     };
     let numbers = (0..BODIES).map(&mut insert).collect();
@@ -81,7 +85,7 @@ fn pairs_have_pythons_hash() {
     let mut bodies = Bodies::default();
     for i in 0..BODIES {
         let (rotation, translation) = pose(i);
-        bodies.push(0, i % 5 != 0, rotation, translation);
+        bodies.push(0, !i.is_multiple_of(5), rotation, translation);
     }
     let mut culler = Culler::new(&[bracket()], &bodies).unwrap();
     let pairs = culler.cull(&bodies).unwrap().sorted();

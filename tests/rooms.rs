@@ -30,6 +30,7 @@ const LIBRARY: &[&str] = &[
     "boxes",
     "query",
     "compound",
+    "periodic",
     "c",
 ];
 const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST, "every_way"];

@@ -42,10 +42,20 @@ function asked(found, bodies) {
   return [...seen.values()];
 }
 
+/** Carries the objects of bodies that stay to their new numbers, and lists those of the others. */
+function change(head, bodies) {
+  const stay = new Set(bodies.map(({ was }) => was));
+  head.gone.push(...head.objects.filter((object, number) => object !== undefined && !stay.has(number)));
+  head.objects = bodies.map(({ was }) => head.objects[was]);
+  head.bodies = bodies;
+}
+
 /**
  * Answers cases on standard input until it ends. `find` returns the pairs of a frame, which has
- * `boxes` or `poses`, the other inputs of its claim, `bodies` and `shapes`, and `kept`, an object
- * that stays for the whole case. With `--version`, prints the version of a package.
+ * `boxes` or `poses`, the other inputs of its claim, `bodies` and `shapes`, and what stays for the
+ * whole case: `kept`, an object; `objects`, for whatever the library has for each body, undefined
+ * for a new one; and `gone`, those of bodies that are removed. With `--version`, prints the version
+ * of a package.
  */
 export async function serve(name, find) {
   if (process.argv.includes("--version")) {
@@ -64,15 +74,16 @@ export async function serve(name, find) {
   for await (const line of readline.createInterface({ input: process.stdin })) {
     const frame = JSON.parse(line);
     if (frame.format) {
-      head = { ...frame, kept: {} };
+      head = { ...frame, kept: {}, gone: [], objects: frame.bodies.map(() => undefined) };
       continue;
     }
     if (head === null) continue; // the rest of a case that it has skipped
-    if (frame.bodies) head.bodies = frame.bodies;
+    if (frame.bodies) change(head, frame.bodies);
     let answer;
     const start = process.hrtime.bigint();
     try {
-      const found = await find({ ...frame, shapes: head.shapes, bodies: head.bodies, kept: head.kept });
+      const { shapes, bodies, kept, objects } = head;
+      const found = await find({ ...frame, shapes, bodies, kept, objects, gone: head.gone.splice(0) });
       answer = { pairs: asked(found, head.bodies), ns: Number(process.hrtime.bigint() - start) };
     } catch (error) {
       if (!(error instanceof CaseSkipped)) throw error;

@@ -53,6 +53,37 @@ class Culler:
         return 2.0 * max(float(np.nextafter(it, np.inf)) if offset else it for it, offset in zip(sums, far, strict=True))
 
 
+class ObjectCuller(Culler):
+    """A culler that keeps an object of the library for each body, from frame to frame. An adapter
+    has ``placed``, which takes a body's object (``None`` for a new body) and its box and returns
+    its object; ``remove`` for the object of a body that goes; and ``found``, all pairs."""
+
+    def __init__(self, scene: SimpleNamespace):
+        super().__init__(scene)
+        self.objects: list[Any] = [None] * len(self.body_shapes)
+
+    def change(self, body_shapes: Array, dynamic: Array, was: Array) -> None:
+        super().change(body_shapes, dynamic, was)
+        stay = set(was.tolist())
+        for number, gone in enumerate(self.objects):
+            if number not in stay:
+                self.remove(gone)
+        self.objects = [self.objects[number] if number >= 0 else None for number in was.tolist()]
+
+    def frame(self, boxes: Array) -> Array:
+        self.objects = [self.placed(it, box) for it, box in zip(self.objects, boxes, strict=True)]
+        return self.pairs(self.found(boxes))
+
+    def placed(self, it: Any, box: Array) -> Any:
+        raise NotImplementedError
+
+    def remove(self, it: Any) -> None:
+        raise NotImplementedError
+
+    def found(self, boxes: Array) -> object:
+        raise NotImplementedError
+
+
 def centres_and_halves(boxes: Array, dtype: type = np.float64) -> tuple[Array, Array]:
     """Centres and half sides of boxes. A box that they can't represent is replaced by a larger one
     around it: additional pairs are no failure."""
@@ -62,6 +93,11 @@ def centres_and_halves(boxes: Array, dtype: type = np.float64) -> tuple[Array, A
     while (small := (centres - halves > lower) | (centres + halves < upper)).any():
         halves = np.where(small, np.nextafter(halves, dtype(np.inf)), halves)
     return centres, halves
+
+
+def cover(kept: Array, halves: Array) -> bool:
+    """Whether half sides that a library has are those of a box, or larger by rounding alone."""
+    return bool(((kept >= halves) & (kept <= halves * (1.0 + 2.0**-20))).all())
 
 
 def serve(make: type[Culler], package: str) -> None:

@@ -11,9 +11,9 @@ use sdop::bodies::contract::check_bodies;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::every_way::{Ledger, Run};
+use sdop_judge::ours::configurations::Rotation;
 use sdop_judge::ours::contact::{Contact, Kind, PlacedShape};
 use sdop_judge::ours::seeded_draws::add;
-use sdop_judge::ours::configurations::Rotation;
 use sdop_judge::ours::{Answers, Predicate, Shapes};
 
 const NAMES: [&str; 4] = ["box", "l-shape", "needle", "plate"];
@@ -52,7 +52,12 @@ const BYTES: usize = HEAD + 2 * 28;
 /// The translation that brings the second body in touch with the first, along the direction that
 /// its bytes say; `None`, and bodies stay where they are, for seven in sixteen values of the head's
 /// second byte.
-fn in_touch(shapes: &Shapes, head: &[u8], first: &PlacedShape, second: &PlacedShape) -> Option<[f32; 3]> {
+fn in_touch(
+    shapes: &Shapes,
+    head: &[u8],
+    first: &PlacedShape,
+    second: &PlacedShape,
+) -> Option<[f32; 3]> {
     let contact = Contact {
         kind: *Kind::ALL.get(usize::from(head[1] % 16))?,
         pick: [head[4], head[5]].map(u32::from),

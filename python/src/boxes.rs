@@ -245,7 +245,7 @@ impl BoxWorld {
     /// The world as bytes, for `restore`.
     fn snapshot(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
         let snapshot = locked(py, &self.0, |world| world.snapshot());
-        super::world::snapshot_parts(&snapshot)
+        super::world::saved(&snapshot)
     }
 
     /// Replaces this world by that of a snapshot.

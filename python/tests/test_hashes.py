@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import sdop
 
-BODIES = 800
-PAIRS = ""
-TOUCHING = ""
-PARTS = ""
+BODIES = 1600
+PAIRS = "dd975ffe385c67426ced847af96edb364ab60e6bc5da94ab79f2bc33dbce7a22"
+TOUCHING = "11e4060fa18adb68bc45bf942c8b3549ee37c7d734098993f9b60d578626d9d6"
+PARTS = "955ba31aadad357eae3d7054477333fbe62551f35855c8eee73c8962aafeb42e"
 
 
 def bracket():

@@ -177,7 +177,7 @@ def test_a_body_says_that_it_rests():
         (lambda s: sdop.World([s]).set_poses([], [[0, 0, 0, 1]], []), "rotations has 1 rows for 0"),
         (lambda s: sdop.BoxWorld().insert([0, 0, 0, 1, 1]), r"bounds has shape \[5\]\nhelp: .*six"),
         (lambda s: sdop.exact_meet(s, ([0, 0, 1], [0] * 3), s, ([0, 0, 0, 1], [0] * 3)), "pose_a's rotation has shape"),
-        (lambda s: sdop.Culler([s], [0]).cull([[0, 0, np.nan, 1]], [[0, 0, 0]]), "quaternion.*NaN"),
+        (lambda s: sdop.Culler([s], [0]).cull([[0, 0, np.nan, 1]], [[0, 0, 0]]), "rotation.*NaN"),
         (lambda s: sdop.Culler([s], [[0]]), r"body_shapes has shape \[1, 1\]"),
         (lambda s: sdop.Shape(BRACKET, [[0, 1, 99]]), "99"),
         (lambda s: sdop.Shape(BRACKET * np.nan, [[0, 1, 2]]), "NaN"),

@@ -110,7 +110,7 @@ def test_shapes_at_poses_miss_no_body():
         (lambda i: i.first([[0, 0, np.nan]], [[0, 0, 1]]), sdop.SdopError, "query 0: from .*NaN"),
         (lambda i: i.along([[0, 0, 0]], [[0, 0, 1]] * 2), sdop.SdopError, "ends has 2 rows"),
         (lambda i: i.along("here", "there"), TypeError, "starts"),
-        (lambda i: i.touching_shapes(tetrahedron(), [[0, 0, 0, 0]], [[0, 0, 0]]), sdop.SdopError, "query 0: quaternion"),
+        (lambda i: i.touching_shapes(tetrahedron(), [[0, 0, 0, 0]], [[0, 0, 0]]), sdop.SdopError, "query 0: rotation"),
         (lambda i: i.update(3), TypeError, "World"),
     ],
 )

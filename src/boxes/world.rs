@@ -307,6 +307,11 @@ impl BoxWorld {
         self.ids.slots()
     }
 
+    /// The slot that the next box gets.
+    pub(crate) fn next_slot(&self) -> usize {
+        self.ids.next()
+    }
+
     /// Counters summed over all culls: boxes updated, candidates tested, pairs reported.
     #[must_use]
     pub fn counters(&self) -> &VolumeCounters {

@@ -442,6 +442,11 @@ impl World {
         self.ids.slots()
     }
 
+    /// The slot that the next body gets.
+    pub(crate) fn next_slot(&self) -> usize {
+        self.ids.next()
+    }
+
     /// The pair finder in use: the chosen one, or the last choice of `auto`.
     #[must_use]
     pub fn finder(&self) -> Finder {
@@ -494,7 +499,7 @@ impl World {
     }
 
     /// Checks a body for a slot.
-    fn check(&self, slot: usize, body: &Body) -> Result<(), ContractError> {
+    pub(crate) fn check(&self, slot: usize, body: &Body) -> Result<(), ContractError> {
         in_default_mode(|| {
             check_number(slot + 1)?;
             let reach = check_shape(slot, body.shape, &self.shapes)?;

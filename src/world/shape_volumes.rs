@@ -11,6 +11,12 @@ pub(crate) use super::offset::compose;
 pub(crate) type ShapeVolumes<'a> = (&'a OrDop, &'a ShapeFrame, [f64; 3]);
 
 impl World {
+    /// The ball about a present shape: its centre relative to the point that poses place, and its
+    /// radius.
+    pub(crate) fn ball(&self, shape: u32) -> ([f64; 3], f64) {
+        self.shapes[shape as usize].ball
+    }
+
     /// The volumes of each shape number, or `None` if it is free.
     pub(crate) fn shape_volumes(&self) -> impl Iterator<Item = Option<ShapeVolumes<'_>>> {
         let slots = self.shapes.iter().zip(&self.models);

@@ -15,6 +15,8 @@ pub(super) struct ShapeSlot {
     pub reach: f32,
     /// The position of the origin of the shape's vertices, relative to the point that poses place.
     pub pose_offset: [f64; 3],
+    /// The ball about the shape: its centre relative to the point that poses place, and its radius.
+    pub ball: ([f64; 3], f64),
     /// Number of bodies with this shape.
     pub bodies: usize,
     pub is_present: bool,
@@ -24,10 +26,13 @@ pub(super) struct ShapeSlot {
 
 impl ShapeSlot {
     pub fn new(shape: &Shape) -> Self {
+        let (ball, offset) = (&shape.ball, shape.pose_offset);
+        let centre = [0, 1, 2].map(|axis| f64::from(ball.centre[axis]) + offset[axis]);
         Self {
             name: shape.name.clone(),
             reach: shape.reach,
-            pose_offset: shape.pose_offset,
+            pose_offset: offset,
+            ball: (centre, ball.radius.into()),
             bodies: 0,
             is_present: true,
             #[cfg(feature = "serde")]

@@ -125,7 +125,7 @@ fn add(sum: &mut [usize; 2], [required, found]: [usize; 2]) {
 fn ball_finds_meshes() {
     for (scene, mut random) in scenes(1) {
         let mut sum = [0; 2];
-        for _ in 0..40 {
+        for _ in 0..120 {
             let centre = near(scene.at, 4.0, &mut random);
             let radius = f64::from(random.unit());
             let ball = QueryVolume::Ball { centre, radius };
@@ -151,7 +151,7 @@ fn box_mesh(size: [f32; 3]) -> sdop_reference::Shape {
 fn box_finds_meshes() {
     for (scene, mut random) in scenes(2) {
         let mut sum = [0; 2];
-        for _ in 0..40 {
+        for _ in 0..120 {
             let size = [(); 3].map(|()| random.unit());
             let min = near(scene.at, 4.0, &mut random);
             let max = [0, 1, 2].map(|axis| min[axis] + f64::from(size[axis]));

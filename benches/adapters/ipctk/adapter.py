@@ -24,8 +24,21 @@ class Adapter(Culler):
         vertices = np.asfortranarray(boxes.astype(np.float64).reshape(-1, 3))
         edges = np.asfortranarray(np.arange(2 * n, dtype=np.int32).reshape(-1, 2))
         phase = PHASES[sys.argv[1]]()
+        if "groups" in self.given:
+            phase.can_vertices_collide = ipctk.CollisionFilter(self.filter())
         phase.build(vertices, edges, np.asfortranarray(np.empty((0, 3), np.int32)), self.inflation())
         return self.pairs([(it.edge0_id, it.edge1_id) for it in phase.detect_edge_edge_candidates()])
+
+    def filter(self):
+        """Whether two vertices may collide; those of body i are 2 i and 2 i + 1."""
+        groups, excluded = self.given["groups"], {tuple(pair) for pair in self.given["excluded"]}
+
+        def may_collide(one, other):
+            i, j = sorted((one // 2, other // 2))
+            (in_a, meets_a), (in_b, meets_b) = groups[i], groups[j]
+            return (i, j) not in excluded and bool(in_a & meets_b and in_b & meets_a)
+
+        return may_collide
 
     def inflation(self):
         margins = set(self.given.get("margins", [0.0]))

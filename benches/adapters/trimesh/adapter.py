@@ -1,4 +1,4 @@
-"""trimesh: its CollisionManager, which asks python-fcl."""
+"""trimesh: one CollisionManager for all frames, which asks python-fcl."""
 
 import sys
 from pathlib import Path
@@ -9,21 +9,40 @@ from fractions import Fraction
 
 import numpy as np
 import trimesh
-from wire import CaseSkipped, Culler, serve
+from wire import CaseSkipped, ObjectCuller, serve
 
 
-class Adapter(Culler):
+class Adapter(ObjectCuller):
+    """An object is a name in the manager, and the number of its shape."""
+
+    def __init__(self, scene):
+        super().__init__(scene)
+        self.manager, self.named = trimesh.collision.CollisionManager(), 0
+        self.meshes = [trimesh.Trimesh(it["vertices"], it["triangles"], process=False) for it in self.shapes]
+
     def frame(self, rotations, translations):
-        manager = trimesh.collision.CollisionManager()
-        meshes = [trimesh.Trimesh(it["vertices"], it["triangles"], process=False) for it in self.shapes]
         bounds = []
         for number, (turn, place) in enumerate(zip(rotations, translations, strict=True)):
-            mesh, at = meshes[self.body_shapes[number]], transform(turn, place)
-            manager.add_object(str(number), mesh, at)
-            bounds.append(trimesh.bounds.corners(mesh.bounds) @ at[:3, :3].T + at[:3, 3])
+            shape, at = self.body_shapes[number], transform(turn, place)
+            self.objects[number] = self.posed(self.objects[number], shape, at)
+            bounds.append(trimesh.bounds.corners(self.meshes[shape].bounds) @ at[:3, :3].T + at[:3, 3])
         check_nesting(bounds)
-        _, names = manager.in_collision_internal(return_names=True)
-        return self.pairs([(int(a), int(b)) for a, b in names])
+        numbers = {name: number for number, (name, _) in enumerate(self.objects)}
+        _, names = self.manager.in_collision_internal(return_names=True)
+        return self.pairs([(numbers[a], numbers[b]) for a, b in names])
+
+    def posed(self, it, shape, at):
+        if it is not None and it[1] == shape:
+            self.manager.set_transform(it[0], at)
+            return it
+        if it is not None:
+            self.remove(it)
+        self.named += 1
+        self.manager.add_object(str(self.named), self.meshes[shape], at)
+        return str(self.named), shape
+
+    def remove(self, it):
+        self.manager.remove_object(it[0])
 
 
 def check_nesting(corners):

@@ -1,4 +1,5 @@
-"""warp on the CPU: a Bvh of given boxes, and one query for each of them."""
+"""warp on the CPU: a Bvh of given boxes, refitted while their number stays, and one query for each
+of them."""
 
 import sys
 from pathlib import Path
@@ -29,15 +30,22 @@ def find(
 
 
 class Adapter(Culler):
+    tree = None
+
     def frame(self, boxes):
         n = len(boxes)
         if n == 0:
             return self.pairs([])
         with warp.ScopedDevice("cpu"):
             lower, upper = (warp.array(corner.copy(), dtype=warp.vec3) for corner in (boxes[:, :3], boxes[:, 3:]))
-            tree = warp.Bvh(lower, upper, constructor=sys.argv[1])
+            if self.tree is not None and len(self.tree.lowers) == n:
+                warp.copy(self.tree.lowers, lower)
+                warp.copy(self.tree.uppers, upper)
+                self.tree.refit()
+            else:
+                self.tree = warp.Bvh(lower, upper, constructor=sys.argv[1])
             pairs, count = warp.zeros(n * n, dtype=warp.vec2i), warp.zeros(1, dtype=int)
-            warp.launch(find, dim=n, inputs=[tree.id, lower, upper, pairs, count])
+            warp.launch(find, dim=n, inputs=[self.tree.id, lower, upper, pairs, count])
             return self.pairs(pairs.numpy()[: count.numpy()[0]])
 
 

@@ -54,6 +54,32 @@ pub struct Adapter {
     /// Whether it is part of the short run.
     #[serde(default)]
     pub quick: bool,
+    /// Other properties of the same use, each of which becomes an adapter of its own.
+    #[serde(default, skip_serializing)]
+    pub also: Vec<FurtherClaim>,
+    /// The name of the adapter whose further claim this is, or its own.
+    #[serde(skip_deserializing)]
+    pub base: String,
+}
+
+/// A further claim of an adapter; what is left out is as for its first one.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FurtherClaim {
+    /// The property by which it is judged.
+    pub claim: Claim,
+    /// The library's documentation of that property.
+    pub says: Option<String>,
+    /// How it is used.
+    pub settings: Option<String>,
+    /// Arguments of its program.
+    pub arguments: Option<String>,
+    /// Whether it documents that touching pairs are reported.
+    pub touching: Option<bool>,
+    /// Its known verdict.
+    pub verdict: String,
+    /// Whether it is part of the short run.
+    pub quick: Option<bool>,
 }
 
 /// Cases for which a library makes no claim.
@@ -87,7 +113,12 @@ impl Claims {
     /// The text is not such a table (with line and column), or an adapter's language has no
     /// command.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let claims: Self = toml::from_str(text).map_err(|error| error.to_string())?;
+        let mut claims: Self = toml::from_str(text).map_err(|error| error.to_string())?;
+        claims.adapter = claims
+            .adapter
+            .into_iter()
+            .flat_map(Adapter::split)
+            .collect();
         let is_unknown = |adapter: &&Adapter| !claims.run.contains_key(&adapter.language);
         match claims.adapter.iter().find(is_unknown) {
             None => Ok(claims),
@@ -108,6 +139,25 @@ impl Claims {
 }
 
 impl Adapter {
+    /// The adapter of its first claim, then one for each further claim, named after both.
+    fn split(mut self) -> Vec<Self> {
+        self.base.clone_from(&self.name);
+        let also = std::mem::take(&mut self.also);
+        let first = std::iter::once(self.clone());
+        let further = also.into_iter().map(|it| Self {
+            name: format!("{}-{}", self.name, it.claim),
+            claim: it.claim,
+            says: it.says.unwrap_or_else(|| self.says.clone()),
+            settings: it.settings.unwrap_or_else(|| self.settings.clone()),
+            arguments: it.arguments.unwrap_or_else(|| self.arguments.clone()),
+            touching: it.touching.unwrap_or(self.touching),
+            verdict: it.verdict,
+            quick: it.quick.unwrap_or(self.quick),
+            ..self.clone()
+        });
+        first.chain(further).collect()
+    }
+
     /// The reason why a case is outside of the library's claim, if it is.
     #[must_use]
     pub fn disclaims(&self, case: &str) -> Option<&str> {

@@ -11,7 +11,7 @@ mod page;
 mod row;
 mod speed;
 
-pub use claims::{Adapter, Claims, NotRun, UnclaimedCases};
+pub use claims::{Adapter, Claims, FurtherClaim, NotRun, UnclaimedCases};
 pub use page::page;
 pub use row::{Cell, CellVerdict, Counter, Row, judge};
 pub use speed::Speed;

@@ -6,8 +6,8 @@
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 
-use super::Board;
 use super::speed::{SELF_REPORTED, Speed};
+use super::{Board, Row};
 use crate::report::digits::thousands;
 use crate::view::Page;
 
@@ -43,11 +43,18 @@ pub fn page(board: &Board) -> Result<String, minijinja::Error> {
         .collect();
     environment.get_template("board.html")?.render(context! {
         board => plain(board),
+        libraries => plain(&libraries(board)),
         families,
         around => Value::from_safe_string(around),
         pictures => pictures.into_iter().map(|(name, data)| (name, Value::from_safe_string(data))).collect::<Vec<_>>(),
         times => plain(&times(board)),
     })
+}
+
+/// The rows of each use of a library, which are one line of the page.
+fn libraries(board: &Board) -> Vec<&[Row]> {
+    let is_same = |a: &Row, b: &Row| a.adapter.base == b.adapter.base;
+    board.adapters.chunk_by(is_same).collect()
 }
 
 /// A value for the template.

@@ -13,26 +13,6 @@ Open Scope R_scope.
 Definition cubes_parted (a b : ball) : bool :=
   beyond (computed (centre a) (centre b)) (add gradual (radius a) (radius b)).
 
-(* A grown half side has room for the budget and for the rounding of differences, however small it
-   is. *)
-Lemma grown_half_side (s : skin) (moves : bool) (r : R) :
-  sound_skin s -> 0 <= r ->
-  (r * (1 + 16 * u) + (if moves then budget s r else 0)) * (1 + 12 * u) + 8 * radius_floor
-    <= reach_of (skin_for s moves) r.
-Proof.
-  intros Hs Hr. pose proof (proj1 half_step_value) as H0. pose proof (proj2 half_step_value) as HT.
-  pose proof tiny_value as T. destruct skin_floor_value as [KF RF]. rewrite floor_value in *.
-  destruct moves; cbn [skin_for].
-  - pose proof (reach_above s r Hs ltac:(lra)) as R. pose proof (skin_below s r Hs ltac:(lra)) as S.
-    unfold budget. destruct Hs as ((S0 & S1) & (L0 & L1)).
-    assert (P : 0 <= r * share s) by (apply Rmult_le_pos; lra).
-    replace (r * (1 + share s) * (1 + 59 * u)) with ((r + r * share s) * (1 + 59 * u)) in R by ring.
-    set (k := skin_of s r) in *. set (rs := r * share s) in *.
-    rewrite RF, KF in *. clearbody k rs. unfold u in *. lra.
-  - pose proof (reach_above still r still_sound ltac:(lra)) as R. cbn [share least still] in R.
-    rewrite Rplus_0_r, Rmult_1_r in R. rewrite RF, KF in *. unfold u in *. lra.
-Qed.
-
 (* One axis. *)
 Lemma axis_listed (x y x' y' ra rb ra' rb' pa pb la lb : R) :
   0 <= ra' -> 0 <= rb' -> 0 <= pa -> 0 <= pb ->
@@ -67,8 +47,8 @@ Proof.
   intros Hs Ha Hb Na Nb Fa Fb H.
   pose proof (follows_near s moves_a now_a a Hs Fa) as Wa.
   pose proof (follows_near s moves_b now_b b Hs Fb) as Wb.
-  pose proof (grown_half_side s moves_a (radius a) Hs Ha) as La.
-  pose proof (grown_half_side s moves_b (radius b) Hs Hb) as Lb.
+  pose proof (listed_large s moves_a (radius a) Hs Ha) as La.
+  pose proof (listed_large s moves_b (radius b) Hs Hb) as Lb.
   set (pa := radius a * (1 + 16 * u) + _) in *. set (pb := radius b * (1 + 16 * u) + _) in *.
   destruct (coordinates_of_norm _ _ (Rle_refl (norm (minus (centre now_a) (centre a)))))
     as (Xa & Ya & Za).

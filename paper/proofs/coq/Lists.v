@@ -303,9 +303,9 @@ Proof.
     replace (_ + _ + _) with 0 by ring. rewrite sqrt_0. lra.
 Qed.
 
-(* A grown radius has room for that, and for the margins of the sphere test. *)
+(* A grown radius has room for that, and for the margins of the sphere test, however small it is. *)
 Lemma listed_large (s : skin) (moves : bool) (r : R) :
-  sound_skin s -> radius_floor / 2 <= r ->
+  sound_skin s -> 0 <= r ->
   (r * (1 + 16 * u) + (if moves then budget s r else 0)) * (1 + 12 * u) + 8 * radius_floor
     <= reach_of (skin_for s moves) r.
 Proof.
@@ -337,8 +337,9 @@ Proof.
   pose proof (reported_near_norm now_a now_b Na Nb H) as D.
   pose proof (follows_near s moves_a now_a a Hs Fa) as Wa.
   pose proof (follows_near s moves_b now_b b Hs Fb) as Wb.
-  pose proof (listed_large s moves_a (radius a) Hs Ha) as La.
-  pose proof (listed_large s moves_b (radius b) Hs Hb) as Lb.
+  assert (Pf : 0 < radius_floor) by (rewrite floor_value; lra).
+  pose proof (listed_large s moves_a (radius a) Hs ltac:(lra)) as La.
+  pose proof (listed_large s moves_b (radius b) Hs ltac:(lra)) as Lb.
   set (pa := radius a * (1 + 16 * u) + _) in *. set (pb := radius b * (1 + 16 * u) + _) in *.
   pose proof (distance_triangle (centre a) (centre now_a) (centre b)) as T1.
   pose proof (distance_triangle (centre now_a) (centre now_b) (centre b)) as T2.

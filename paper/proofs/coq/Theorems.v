@@ -2,7 +2,8 @@
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
   Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody
-  SameOrDop OrDopRun Cubes CubeLists Binning Above Reach Rows Swept Query Examples.
+  SameOrDop OrDopRun Cubes CubeLists Binning Above Reach Rows Swept Query Examples
+  ExamplesOrDop.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -61,7 +62,9 @@ Definition theorems := (
   Query.beyond_is_certain,
   Swept.swept_contains,
   Examples.spheres_are_rejected,
-  Examples.spheres_are_reported
+  Examples.spheres_are_reported,
+  ExamplesOrDop.ordops_are_rejected,
+  ExamplesOrDop.ordops_are_reported
 ).
 
 Print Assumptions theorems.

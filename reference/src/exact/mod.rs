@@ -21,6 +21,7 @@ pub mod mesh;
 pub mod ordop;
 pub mod orientation;
 pub mod parity;
+pub mod period;
 pub mod polytope;
 pub mod query;
 pub mod relative;

@@ -35,6 +35,10 @@ pub struct Frame {
     pub gone: Vec<usize>,
     pub boxes: Vec<Box6>,
     pub poses: Vec<[f32; 7]>,
+    /// The groups and mask of each body, for the claim `filter`.
+    pub groups: Option<Vec<[u32; 2]>>,
+    /// Pairs of bodies that are not to be reported, by position.
+    pub excluded: Vec<[usize; 2]>,
 }
 
 /// Pairs of ids, in any order and possibly twice, or the reason why the library can't do this case.
@@ -48,6 +52,8 @@ struct Line {
     frame: Option<usize>,
     boxes: Option<Vec<Box6>>,
     poses: Option<Vec<[f32; 7]>>,
+    groups: Option<Vec<[u32; 2]>>,
+    excluded: Option<Vec<[usize; 2]>>,
 }
 
 /// Answers cases on standard input until it ends, each with a new culler, or prints the version of
@@ -96,6 +102,7 @@ pub fn serve<C: FnMut(&Frame) -> Found>(package: &str, make: impl Fn() -> C) {
             line.boxes.unwrap_or_default(),
             line.poses.unwrap_or_default(),
         );
+        (frame.groups, frame.excluded) = (line.groups, line.excluded.unwrap_or_default());
         let start = Instant::now();
         let found = find(&frame);
         let (number, ns) = (

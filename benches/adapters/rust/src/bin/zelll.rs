@@ -6,7 +6,10 @@ use zelll::CellGrid;
 fn main() {
     serve("zelll", || {
         |frame: &Frame| {
-            let balls = frame.bodies.iter().map(|body| frame.shapes[body.shape].ball.map(f64::from));
+            let balls = frame
+                .bodies
+                .iter()
+                .map(|body| frame.shapes[body.shape].ball.map(f64::from));
             // If balls are off the origins, more pairs than needed are found, which is no failure.
             let far = |[x, y, z, radius]: [f64; 4]| match (x * x + y * y + z * z).sqrt() {
                 0.0 => radius,

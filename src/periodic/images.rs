@@ -1,0 +1,94 @@
+//! The images of bodies: what a world has to know to hold them.
+
+use std::fmt::Debug;
+
+use super::PeriodicError;
+use super::periods::Periods;
+use crate::world::{BodyId, WorldError, WorldPairs};
+
+/// Where a body is within one period of each periodic axis, −½ to ½ of it about the origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// By how many periods the body is moved to where its middle is within the period.
+    pub shift: [i32; 3],
+    /// The ends of the moved body along the periodic axes, and a little more.
+    pub lo: [f64; 3],
+    pub hi: [f64; 3],
+}
+
+/// A body as the user has given it, and its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedBody<B> {
+    pub body: B,
+    pub place: Placement,
+}
+
+/// A world that can hold the images of bodies: [`World`](crate::World) or
+/// [`BoxWorld`](crate::BoxWorld).
+pub trait ImageWorld: sealed::Sealed {
+    /// A body as the user gives it, anywhere.
+    type Body: Copy + Debug + PartialEq;
+
+    /// Checks a body and finds its place.
+    #[doc(hidden)]
+    fn place(
+        &self,
+        slot: usize,
+        body: &Self::Body,
+        periods: &Periods,
+    ) -> Result<Placement, PeriodicError>;
+
+    /// Adds the image of a body that is moved by whole periods.
+    #[doc(hidden)]
+    fn add_image(
+        &mut self,
+        body: &Self::Body,
+        shift: [i32; 3],
+        periods: &Periods,
+    ) -> Result<BodyId, WorldError>;
+
+    /// Changes the image of a body.
+    #[doc(hidden)]
+    fn set_image(
+        &mut self,
+        id: BodyId,
+        body: &Self::Body,
+        shift: [i32; 3],
+        periods: &Periods,
+    ) -> Result<(), WorldError>;
+
+    #[doc(hidden)]
+    fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError>;
+
+    #[doc(hidden)]
+    fn cull_images(&mut self) -> Result<WorldPairs<'_>, WorldError>;
+
+    /// Whether a reported pair may touch, the second body moved by whole periods. It is true for at
+    /// most one such number.
+    #[doc(hidden)]
+    fn may_touch(
+        periods: &Periods,
+        a: &PlacedBody<Self::Body>,
+        b: &PlacedBody<Self::Body>,
+        image: [i32; 3],
+    ) -> bool;
+
+    #[doc(hidden)]
+    fn has_image(&self, id: BodyId) -> bool;
+
+    #[doc(hidden)]
+    fn next_image_slot(&self) -> usize;
+
+    #[doc(hidden)]
+    fn set_excluded(&mut self, pair: [BodyId; 2], is_excluded: bool) -> Result<bool, WorldError>;
+
+    #[doc(hidden)]
+    fn has_excluded(&self, pair: [BodyId; 2]) -> bool;
+}
+
+pub(super) mod sealed {
+    pub trait Sealed {}
+    impl Sealed for crate::boxes::BoxWorld {}
+    #[cfg(feature = "shapes")]
+    impl Sealed for crate::world::World {}
+}

@@ -1,0 +1,131 @@
+//! Periodic meshes. An image has the pose of its body with another translation; where f64 rounds
+//! that, it is grown by a bound of the error.
+
+use super::PeriodicError;
+use super::images::{ImageWorld, PlacedBody, Placement};
+use super::periods::Periods;
+use crate::rounding::period::{shifted, wrap};
+use crate::rounding::query::largest;
+use crate::rounding::{exp2, up};
+use crate::world::{Body, BodyId, World, WorldError, WorldPairs, compose};
+
+/// 2⁻⁴⁸, as a multiple of the period: more than rounding takes from the ends of a placed body, and
+/// from differences of ends.
+const PLACE_ERROR: f64 = exp2(-48);
+
+/// 1 + 2⁻⁴⁰: the factor by which a size is taken for larger before it is compared with half of a
+/// period, so that of two images that are a period apart one is farther away than
+/// [`PLACE_ERROR`].
+const SIZE_FACTOR: f64 = 1.0 + exp2(-40);
+
+/// The image of a body that is moved by whole periods.
+fn image(body: &Body, shift: [i32; 3], periods: &Periods) -> Body {
+    let mut image = *body;
+    let mut errors = [0.0; 3];
+    for (axis, period) in periods.iter() {
+        let (rest, n) = wrap(body.translation[axis], period);
+        (image.translation[axis], errors[axis]) = shifted(rest, n + shift[axis], period);
+    }
+    let error = 2.0 * largest(errors); // above √3 times that
+    if error > 0.0 {
+        image.margin = up(f64::from(body.margin) + error);
+    }
+    image
+}
+
+impl ImageWorld for World {
+    type Body = Body;
+
+    fn place(
+        &self,
+        slot: usize,
+        body: &Body,
+        periods: &Periods,
+    ) -> Result<Placement, PeriodicError> {
+        self.check(slot, body)?;
+        let mut place = Placement::default();
+        let mut wrapped = body.translation;
+        for (axis, period) in periods.iter() {
+            periods.check_position(slot, axis, wrapped[axis])?;
+            let (rest, n) = wrap(wrapped[axis], period);
+            (wrapped[axis], place.shift[axis]) = (rest, -n);
+        }
+        let (centre, radius) = self.ball(body.shape);
+        let (middle, error) = compose(body.rotation, wrapped, centre);
+        // Twice the bound for the sum that is the centre, and again for roundings of the sum here.
+        let radius = radius + f64::from(body.margin) + 4.0 * error;
+        for (axis, period) in periods.iter() {
+            let half = (radius + PLACE_ERROR * period) * SIZE_FACTOR;
+            if !(4.0 * half < period) {
+                return Err(periods.size_error(slot, axis, 2.0 * half));
+            }
+            let n = (middle[axis] / period).round();
+            periods.check_position(slot, axis, n * period)?;
+            place.shift[axis] -= n as i32;
+            let middle = middle[axis] - n * period;
+            (place.lo[axis], place.hi[axis]) = (middle - half, middle + half);
+        }
+        Ok(place)
+    }
+
+    fn add_image(
+        &mut self,
+        body: &Body,
+        shift: [i32; 3],
+        periods: &Periods,
+    ) -> Result<BodyId, WorldError> {
+        self.insert(image(body, shift, periods))
+    }
+
+    fn set_image(
+        &mut self,
+        id: BodyId,
+        body: &Body,
+        shift: [i32; 3],
+        periods: &Periods,
+    ) -> Result<(), WorldError> {
+        self.set(id, image(body, shift, periods))
+    }
+
+    fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError> {
+        self.remove(id)
+    }
+
+    fn cull_images(&mut self) -> Result<WorldPairs<'_>, WorldError> {
+        self.cull()
+    }
+
+    fn may_touch(
+        periods: &Periods,
+        a: &PlacedBody<Body>,
+        b: &PlacedBody<Body>,
+        image: [i32; 3],
+    ) -> bool {
+        let (a, b) = (&a.place, &b.place);
+        periods.iter().all(|(axis, period)| {
+            let n = image[axis] + a.shift[axis] - b.shift[axis];
+            let way = f64::from(n) * period;
+            a.lo[axis] - b.hi[axis] <= way && way <= a.hi[axis] - b.lo[axis]
+        })
+    }
+
+    fn has_image(&self, id: BodyId) -> bool {
+        self.contains(id)
+    }
+
+    fn next_image_slot(&self) -> usize {
+        self.next_slot()
+    }
+
+    fn set_excluded(&mut self, [a, b]: [BodyId; 2], is_excluded: bool) -> Result<bool, WorldError> {
+        if is_excluded {
+            self.exclude(a, b)
+        } else {
+            self.include(a, b)
+        }
+    }
+
+    fn has_excluded(&self, [a, b]: [BodyId; 2]) -> bool {
+        self.is_excluded(a, b)
+    }
+}

@@ -1,0 +1,105 @@
+//! Worlds in which space repeats along some axes: molecular dynamics, grains in a periodic cell,
+//! tilings.
+//!
+//! [`PeriodicWorld`] has posed meshes, [`PeriodicBoxes`] boxes with ends in f64. Each of the axes
+//! x, y and z may have a period. A body may be anywhere, also many periods away, and has images
+//! everywhere: copies moved by whole periods. A pair is reported if any image of the one may touch
+//! the other, once, with the number of periods by which the second body is moved to do so
+//! ([`PeriodicPair::image`]).
+//!
+//! Along a periodic axis, a body has to be smaller than half of the period: then two bodies can
+//! touch in one image at most. Larger ones are refused with an error that has their size. For boxes
+//! that is the length of the box, for meshes the diameter of the ball about them, with the margin.
+//! With a cutoff radius, that is the rule of the nearest image: the cutoff is less than half of the
+//! period.
+//!
+//! The promise is that of [`World`] and [`BoxWorld`], for the exact periods. Meshes, each grown by
+//! its margin, that meet in exact arithmetic when one is moved by whole periods are reported. Boxes
+//! are reported exactly if they meet. Wrapping a position rounds nothing, and where f64 rounds an
+//! image's translation, the image is grown by a bound of the error.
+//!
+//! Bodies are culled in a world that has them within one period, and with images of those near a
+//! lower border beyond the upper one: one more for a body near one border, three at an edge, seven
+//! at a corner. Near is within the width of the widest body so far, so one giant makes all others
+//! cost more. All other bodies cost nothing more than in a world without periods, except that each
+//! reported pair is compared once more.
+//!
+//! ```
+//! use sdop::periodic::{PeriodicBox, PeriodicBoxes};
+//!
+//! let mut cell = PeriodicBoxes::new([Some(10.0), Some(10.0), None])?; // z has no period
+//! let left = cell.insert(PeriodicBox::new([0.0, 4.0, 0.0], [1.0, 5.0, 1.0]))?;
+//! let right = cell.insert(PeriodicBox::new([9.0, 4.5, 0.5], [10.0, 5.5, 1.5]))?;
+//! let pairs = cell.cull()?;
+//! assert_eq!((pairs.len(), pairs[0].bodies), (1, [left, right])); // touching is meeting
+//! assert_eq!(pairs[0].image, [-1, 0, 0]); // the right box, one period to the left
+//! # Ok::<(), sdop::periodic::PeriodicError>(())
+//! ```
+
+mod boxes;
+mod error;
+mod images;
+#[cfg(feature = "shapes")]
+mod meshes;
+mod periods;
+mod world;
+
+pub use boxes::PeriodicBox;
+pub use error::PeriodicError;
+pub use images::ImageWorld;
+pub use world::{Periodic, PeriodicPair};
+
+use crate::boxes::{BoxCullerBuilder, BoxWorld};
+#[cfg(feature = "shapes")]
+use crate::{culler::CullerBuilder, volume::Shape, world::World};
+
+/// A long-lived set of boxes in space that repeats along some axes.
+pub type PeriodicBoxes = Periodic<BoxWorld>;
+
+/// A long-lived set of posed meshes in space that repeats along some axes.
+#[cfg(feature = "shapes")]
+pub type PeriodicWorld = Periodic<World>;
+
+impl PeriodicBoxes {
+    /// No boxes yet, culled with all defaults. `None` is an axis without a period.
+    ///
+    /// # Errors
+    /// A period is not a length between 2⁻⁵⁶ and 2⁵⁶.
+    pub fn new(periods: [Option<f64>; 3]) -> Result<Self, PeriodicError> {
+        Self::of(BoxWorld::new(), periods)
+    }
+
+    /// No boxes yet, culled with the choices of a builder.
+    ///
+    /// # Errors
+    /// As [`Self::new`], or the system cannot start the threads.
+    pub fn with(
+        culler: &BoxCullerBuilder,
+        periods: [Option<f64>; 3],
+    ) -> Result<Self, PeriodicError> {
+        Self::of(BoxWorld::with(culler)?, periods)
+    }
+}
+
+#[cfg(feature = "shapes")]
+impl PeriodicWorld {
+    /// No bodies yet, culled with all defaults. `None` is an axis without a period.
+    ///
+    /// # Errors
+    /// A period is not a length between 2⁻⁵⁶ and 2⁵⁶, or a shape is outside of the contract.
+    pub fn new(shapes: Vec<Shape>, periods: [Option<f64>; 3]) -> Result<Self, PeriodicError> {
+        Self::of(World::new(shapes)?, periods)
+    }
+
+    /// No bodies yet, culled with the choices of a builder.
+    ///
+    /// # Errors
+    /// As [`Self::new`], or as [`World::with`].
+    pub fn with(
+        shapes: Vec<Shape>,
+        culler: &CullerBuilder,
+        periods: [Option<f64>; 3],
+    ) -> Result<Self, PeriodicError> {
+        Self::of(World::with(shapes, culler)?, periods)
+    }
+}
