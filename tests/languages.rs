@@ -10,6 +10,10 @@ use sdop::{
 };
 use sha2::{Digest, Sha256};
 
+#[path = "support/forms.rs"]
+mod forms;
+use forms::BOX_FACES;
+
 const BODIES: u32 = 1600;
 const PAIRS: &str = "dd975ffe385c67426ced847af96edb364ab60e6bc5da94ab79f2bc33dbce7a22";
 const TOUCHING: &str = "11e4060fa18adb68bc45bf942c8b3549ee37c7d734098993f9b60d578626d9d6";
@@ -21,23 +25,9 @@ fn bracket() -> Shape {
         let corners = (0..8).map(move |i| [0, 1, 2].map(|axis| f64::from(i >> axis & 1)));
         corners.map(move |[a, b, c]| [a * x, b * y, c])
     };
-    let faces = [
-        [0, 2, 1],
-        [1, 2, 3],
-        [4, 5, 6],
-        [5, 7, 6],
-        [0, 1, 4],
-        [1, 5, 4],
-        [2, 6, 3],
-        [3, 6, 7],
-        [0, 4, 2],
-        [2, 4, 6],
-        [1, 3, 5],
-        [3, 7, 5],
-    ];
     let vertices: Vec<_> = cuboid(4.0, 1.0).chain(cuboid(1.0, 3.0)).collect();
-    let second = faces.map(|face: [u32; 3]| face.map(|i| i + 8));
-    let mesh = TriangleMesh::from_f64(&vertices, &[faces, second].concat()).unwrap();
+    let second = BOX_FACES.map(|face| face.map(|i| i + 8));
+    let mesh = TriangleMesh::from_f64(&vertices, &[BOX_FACES, second].concat()).unwrap();
     Shape::build(&mesh, &ShapeSpec::default()).unwrap()
 }
 

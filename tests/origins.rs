@@ -58,18 +58,7 @@ fn poses() -> Vec<Pose> {
 
 /// Which poses let the brackets meet, exactly, the vertices being the file's.
 fn meeting(mesh: &TriangleMesh, poses: &[Pose]) -> Vec<bool> {
-    let ball = reference::Ball {
-        centre: [0.0; 3],
-        radius: 4.0,
-    };
-    let slabs = reference::Slabs {
-        directions: reference::DirectionSet::K6,
-        basis: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        lo: vec![-4.0; 3],
-        hi: vec![4.0; 3],
-    };
-    let vertices = mesh.vertices.clone();
-    let shape = reference::Shape::new(ball, slabs, vertices, mesh.triangles.clone()).unwrap();
+    let shape = reference::Shape::of_mesh(mesh.vertices.clone(), mesh.triangles.clone()).unwrap();
     let body = |(q, t): Pose| reference::Body {
         shape: &shape,
         pose: reference::Pose::new(q, t).unwrap(),

@@ -110,7 +110,7 @@ impl PartCuller {
     /// array of uint64, shape (m, 2)
     ///     Ids of the bodies, sorted.
     /// array of uint32, shape (m, 2)
-    ///     The number of each body's part; 0 for a body whose shape is no compound.
+    ///     The number of each body's part; 0 for a body whose shape is not a compound.
     fn cull<'py>(&self, py: Python<'py>, world: &World) -> PyResult<PartPairs<'py>> {
         let world = &world.0;
         let found: Result<_, CompoundError> = locked(py, &self.0, |culler| {

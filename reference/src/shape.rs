@@ -7,7 +7,7 @@ use crate::exact::mesh::Mesh;
 use crate::exact::polytope::Polytope;
 use crate::linear::Vector;
 use crate::pose::Pose;
-use crate::volume::{Ball, Slabs, check_mesh};
+use crate::volume::{Ball, DirectionSet, Slabs, check_mesh};
 
 /// A mesh with its volumes.
 #[derive(Clone, Debug)]
@@ -58,6 +58,28 @@ impl Shape {
             triangles,
             mesh: OnceLock::new(),
         })
+    }
+
+    /// A mesh of which only its triangles are asked about: its ball and slabs are of a cube about
+    /// the origin, whatever the mesh.
+    ///
+    /// # Errors
+    /// When a coordinate is not finite or an index is out of range.
+    pub fn of_mesh(
+        vertices: Vec<[f32; 3]>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, InvalidInput> {
+        let ball = Ball {
+            centre: [0.0; 3],
+            radius: 2.0,
+        };
+        let slabs = Slabs {
+            directions: DirectionSet::K6,
+            basis: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            lo: vec![-1.0; 3],
+            hi: vec![1.0; 3],
+        };
+        Self::new(ball, slabs, vertices, triangles)
     }
 
     /// The shape with another oriented box (`directions` K6) for the `obb` strategy.

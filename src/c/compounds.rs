@@ -23,9 +23,9 @@ pub struct SdopPartCuller(PartCuller);
 pub struct SdopPartPair {
     /// The bodies.
     pub bodies: SdopIdPair,
-    /// The number of the first body's part; 0 if its shape is no compound.
+    /// The number of the first body's part; 0 if its shape is not a compound.
     pub first_part: u32,
-    /// The number of the second body's part; 0 if its shape is no compound.
+    /// The number of the second body's part; 0 if its shape is not a compound.
     pub second_part: u32,
 }
 

@@ -178,9 +178,9 @@ typedef struct {
 typedef struct {
   // The bodies.
   SdopIdPair bodies;
-  // The number of the first body's part; 0 if its shape is no compound.
+  // The number of the first body's part; 0 if its shape is not a compound.
   uint32_t first_part;
-  // The number of the second body's part; 0 if its shape is no compound.
+  // The number of the second body's part; 0 if its shape is not a compound.
   uint32_t second_part;
 } SdopPartPair;
 

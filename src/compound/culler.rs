@@ -11,7 +11,7 @@ use crate::world::{Body, BodyId, World};
 pub struct PartPair {
     /// The bodies, the lower slot first.
     pub bodies: [BodyId; 2],
-    /// The number of each body's part. A body whose shape is no compound has the part 0.
+    /// The number of each body's part. A body whose shape is not a compound has the part 0.
     pub parts: [u32; 2],
 }
 

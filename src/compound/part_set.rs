@@ -27,7 +27,7 @@ impl PartSet {
         Self::of(shapes.iter().map(QueryShape::new).collect(), parts.to_vec())
     }
 
-    /// A shape that is no compound: one part, where the body is.
+    /// A shape that is not a compound: one part, where the body is.
     pub fn alone(shape: QueryShape) -> Self {
         Self::of(vec![shape], vec![Part::default()])
     }

@@ -186,9 +186,9 @@ mod tests {
 
     use super::*;
 
-    /// One body that meets nearly all others costs no insertion of each.
+    /// One body that meets nearly all others: none of its pairs moves by insertion.
     #[test]
-    fn short_lists_of_long_runs_sort() {
+    fn pairs_of_a_hub_are_sorted() {
         let mut random = ChaCha8Rng::seed_from_u64(2);
         let mut partners: Vec<u32> = (8..3000).collect();
         for at in 1..partners.len() {

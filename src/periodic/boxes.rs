@@ -2,7 +2,7 @@
 //! images are then decided by the ends as given, without an error.
 
 use super::PeriodicError;
-use super::images::{ImageWorld, PlacedBody, Placement};
+use super::images::{ImageWorld, PlacedBody, Placement, forward_images};
 use super::periods::Periods;
 use crate::bodies::contract::refuse;
 use crate::bodies::{Aabb, Groups, Motion};
@@ -73,6 +73,8 @@ impl PeriodicBox {
 impl ImageWorld for BoxWorld {
     type Body = PeriodicBox;
 
+    forward_images!(PeriodicBox, PeriodicBox::image);
+
     fn place(
         &self,
         slot: usize,
@@ -97,33 +99,6 @@ impl ImageWorld for BoxWorld {
         Ok(place)
     }
 
-    fn add_image(
-        &mut self,
-        body: &PeriodicBox,
-        shift: [i32; 3],
-        periods: &Periods,
-    ) -> Result<BodyId, WorldError> {
-        self.insert(body.image(shift, periods))
-    }
-
-    fn set_image(
-        &mut self,
-        id: BodyId,
-        body: &PeriodicBox,
-        shift: [i32; 3],
-        periods: &Periods,
-    ) -> Result<(), WorldError> {
-        self.set(id, body.image(shift, periods))
-    }
-
-    fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.remove(id)
-    }
-
-    fn cull_images(&mut self) -> Result<WorldPairs<'_>, WorldError> {
-        self.cull()
-    }
-
     fn may_touch(
         periods: &Periods,
         a: &PlacedBody<PeriodicBox>,
@@ -141,25 +116,5 @@ impl ImageWorld for BoxWorld {
                 is_within(a.min[axis], b.max[axis], n, period)
                     && is_within(b.min[axis], a.max[axis], -n, period)
             })
-    }
-
-    fn has_image(&self, id: BodyId) -> bool {
-        self.contains(id)
-    }
-
-    fn next_image_slot(&self) -> usize {
-        self.next_slot()
-    }
-
-    fn set_excluded(&mut self, [a, b]: [BodyId; 2], is_excluded: bool) -> Result<bool, WorldError> {
-        if is_excluded {
-            self.exclude(a, b)
-        } else {
-            self.include(a, b)
-        }
-    }
-
-    fn has_excluded(&self, [a, b]: [BodyId; 2]) -> bool {
-        self.is_excluded(a, b)
     }
 }

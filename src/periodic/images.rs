@@ -86,6 +86,64 @@ pub trait ImageWorld: sealed::Sealed {
     fn has_excluded(&self, pair: [BodyId; 2]) -> bool;
 }
 
+/// The methods of [`ImageWorld`] that a world has under other names. Images are what it gets from
+/// `image`.
+macro_rules! forward_images {
+    ($body:ty, $image:expr) => {
+        fn add_image(
+            &mut self,
+            body: &$body,
+            shift: [i32; 3],
+            periods: &Periods,
+        ) -> Result<BodyId, WorldError> {
+            self.insert($image(body, shift, periods))
+        }
+
+        fn set_image(
+            &mut self,
+            id: BodyId,
+            body: &$body,
+            shift: [i32; 3],
+            periods: &Periods,
+        ) -> Result<(), WorldError> {
+            self.set(id, $image(body, shift, periods))
+        }
+
+        fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError> {
+            self.remove(id)
+        }
+
+        fn cull_images(&mut self) -> Result<WorldPairs<'_>, WorldError> {
+            self.cull()
+        }
+
+        fn has_image(&self, id: BodyId) -> bool {
+            self.contains(id)
+        }
+
+        fn next_image_slot(&self) -> usize {
+            self.next_slot()
+        }
+
+        fn set_excluded(
+            &mut self,
+            [a, b]: [BodyId; 2],
+            is_excluded: bool,
+        ) -> Result<bool, WorldError> {
+            if is_excluded {
+                self.exclude(a, b)
+            } else {
+                self.include(a, b)
+            }
+        }
+
+        fn has_excluded(&self, [a, b]: [BodyId; 2]) -> bool {
+            self.is_excluded(a, b)
+        }
+    };
+}
+pub(super) use forward_images;
+
 pub(super) mod sealed {
     pub trait Sealed {}
     impl Sealed for crate::boxes::BoxWorld {}

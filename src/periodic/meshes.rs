@@ -2,7 +2,7 @@
 //! that, it is grown by a bound of the error.
 
 use super::PeriodicError;
-use super::images::{ImageWorld, PlacedBody, Placement};
+use super::images::{ImageWorld, PlacedBody, Placement, forward_images};
 use super::periods::Periods;
 use crate::rounding::period::{shifted, wrap};
 use crate::rounding::query::largest;
@@ -36,6 +36,8 @@ fn image(body: &Body, shift: [i32; 3], periods: &Periods) -> Body {
 impl ImageWorld for World {
     type Body = Body;
 
+    forward_images!(Body, image);
+
     fn place(
         &self,
         slot: usize,
@@ -68,33 +70,6 @@ impl ImageWorld for World {
         Ok(place)
     }
 
-    fn add_image(
-        &mut self,
-        body: &Body,
-        shift: [i32; 3],
-        periods: &Periods,
-    ) -> Result<BodyId, WorldError> {
-        self.insert(image(body, shift, periods))
-    }
-
-    fn set_image(
-        &mut self,
-        id: BodyId,
-        body: &Body,
-        shift: [i32; 3],
-        periods: &Periods,
-    ) -> Result<(), WorldError> {
-        self.set(id, image(body, shift, periods))
-    }
-
-    fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.remove(id)
-    }
-
-    fn cull_images(&mut self) -> Result<WorldPairs<'_>, WorldError> {
-        self.cull()
-    }
-
     fn may_touch(
         periods: &Periods,
         a: &PlacedBody<Body>,
@@ -107,25 +82,5 @@ impl ImageWorld for World {
             let way = f64::from(n) * period;
             a.lo[axis] - b.hi[axis] <= way && way <= a.hi[axis] - b.lo[axis]
         })
-    }
-
-    fn has_image(&self, id: BodyId) -> bool {
-        self.contains(id)
-    }
-
-    fn next_image_slot(&self) -> usize {
-        self.next_slot()
-    }
-
-    fn set_excluded(&mut self, [a, b]: [BodyId; 2], is_excluded: bool) -> Result<bool, WorldError> {
-        if is_excluded {
-            self.exclude(a, b)
-        } else {
-            self.include(a, b)
-        }
-    }
-
-    fn has_excluded(&self, [a, b]: [BodyId; 2]) -> bool {
-        self.is_excluded(a, b)
     }
 }

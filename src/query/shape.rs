@@ -38,10 +38,16 @@ impl QueryShape {
     #[must_use]
     pub fn new(shape: &Shape) -> Self {
         let frame = ShapeFrame::new(shape, &shape.ordop.basis);
-        Self::of((&shape.ordop, &frame, shape.pose_offset))
+        Self::of(ShapeVolumes {
+            ordop: &shape.ordop,
+            frame: &frame,
+            radius: shape.ball.radius.into(),
+            pose_offset: shape.pose_offset,
+        })
     }
 
-    pub(super) fn of((ordop, frame, pose_offset): ShapeVolumes<'_>) -> Self {
+    pub(super) fn of(volumes: ShapeVolumes<'_>) -> Self {
+        let ShapeVolumes { ordop, frame, .. } = volumes;
         let norm = ordop.basis.norm();
         let direction = |&coefficients: &[i8; 3]| {
             let nonzero = coefficients.iter().filter(|&&c| c != 0).count();
@@ -59,20 +65,21 @@ impl QueryShape {
             ends,
             over_square: 1.0 / (norm * norm),
             centre: frame.centre().map(f64::from),
-            radius: frame.radius().into(),
+            radius: volumes.radius,
             reach: frame.reach().into(),
-            pose_offset,
+            pose_offset: volumes.pose_offset,
             ordop: ordop.clone(),
         }
     }
 
     /// Whether it was made from these volumes.
-    pub(super) fn is_of(&self, (ordop, frame, pose_offset): ShapeVolumes<'_>) -> bool {
+    pub(super) fn is_of(&self, volumes: ShapeVolumes<'_>) -> bool {
+        let ShapeVolumes { ordop, frame, .. } = volumes;
         self.ordop == *ordop
             && self.centre == frame.centre().map(f64::from)
-            && self.radius == f64::from(frame.radius())
+            && self.radius == volumes.radius
             && self.reach == f64::from(frame.reach())
-            && self.pose_offset == pose_offset
+            && self.pose_offset == volumes.pose_offset
     }
 
     /// Whether it has the ball, reach and place of a shape, whose slabs may have other axes.

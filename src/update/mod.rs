@@ -75,21 +75,20 @@ pub fn update_spheres(
                 // The rotation is elsewhere in memory. Reading it without need doubles the time for
                 // a million bodies.
                 let [x, y, z] = bodies.translation[body as usize];
+                // All balls are centred, so each radius is there.
                 let radius = frames[shape as usize].inflated.unwrap_or(f32::NAN);
                 *sphere = [x, y, z, radius];
             }
         } else {
-            let places = (places, ahead);
-            sound = dispatch(
-                tier,
-                EccentricSpheres {
-                    frames,
-                    bodies,
-                    places,
-                    first,
-                    spheres,
-                },
-            );
+            let kernel = EccentricSpheres {
+                frames,
+                bodies,
+                places,
+                ahead,
+                first,
+                spheres,
+            };
+            sound = dispatch(tier, kernel);
         }
         // A centre other than the body's origin may be a little farther out than the translation.
         if !balls_are_within_limit(tier, spheres) {

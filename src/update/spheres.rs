@@ -19,8 +19,9 @@ use crate::simd::{Kernel, Lanes, prefetch, prefetch_ends};
 pub struct EccentricSpheres<'a> {
     pub frames: &'a [ShapeFrame],
     pub bodies: &'a Bodies,
-    /// The places, and the bodies whose poses are prefetched.
-    pub places: (&'a Places, &'a [u32]),
+    pub places: &'a Places,
+    /// The bodies by place whose poses are read ahead; empty if none are.
+    pub ahead: &'a [u32],
     /// The place of the first sphere.
     pub first: usize,
     pub spheres: &'a mut [[f32; 4]],
@@ -30,17 +31,16 @@ impl Kernel for EccentricSpheres<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) -> bool {
-        let (places, ahead) = self.places;
         let mut sound = true;
         let mut first = self.first;
         for spheres in self.spheres.chunks_mut(LANES) {
             for place in first..first + spheres.len() {
-                if let Some(&later) = ahead.get(place + PREFETCH_DISTANCE) {
+                if let Some(&later) = self.ahead.get(place + PREFETCH_DISTANCE) {
                     prefetch_ends(&self.bodies.translation[later as usize]);
                     prefetch(&self.bodies.rotation[later as usize]);
                 }
             }
-            let (bodies, shapes) = (&places.body[first..], &places.shape[first..]);
+            let (bodies, shapes) = (&self.places.body[first..], &self.places.shape[first..]);
             sound &= update_eight(self.frames, self.bodies, (bodies, shapes), spheres);
             first += spheres.len();
         }
@@ -144,7 +144,8 @@ mod tests {
                 let kernel = EccentricSpheres {
                     frames: &frames,
                     bodies: &bodies,
-                    places: (&all, &all.body),
+                    places: &all,
+                    ahead: &all.body,
                     first,
                     spheres: &mut spheres,
                 };

@@ -6,9 +6,17 @@ use crate::volume::OrDop;
 
 pub(crate) use super::offset::compose;
 
-/// The volumes of a shape, and the position of its vertices' origin relative to the point that
-/// poses place.
-pub(crate) type ShapeVolumes<'a> = (&'a OrDop, &'a ShapeFrame, [f64; 3]);
+/// The volumes of a shape.
+#[derive(Clone, Copy)]
+pub(crate) struct ShapeVolumes<'a> {
+    pub ordop: &'a OrDop,
+    /// Where or-DOPs are tested alone, its radius is that by which a finder bins them.
+    pub frame: &'a ShapeFrame,
+    /// The radius of the ball about the shape.
+    pub radius: f64,
+    /// The position of the vertices' origin relative to the point that poses place.
+    pub pose_offset: [f64; 3],
+}
 
 impl World {
     /// The ball about a present shape: its centre relative to the point that poses place, and its
@@ -23,7 +31,12 @@ impl World {
         slots.map(|(slot, &model)| {
             slot.is_present.then(|| {
                 let (ordop, frame) = self.culler.volumes(model);
-                (ordop, frame, slot.pose_offset)
+                ShapeVolumes {
+                    ordop,
+                    frame,
+                    radius: slot.ball.1,
+                    pose_offset: slot.pose_offset,
+                }
             })
         })
     }

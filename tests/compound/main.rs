@@ -122,20 +122,9 @@ fn shapes(directions: DirectionSet) -> Vec<Shape> {
     forms.map(build).into()
 }
 
-/// The mesh of a shape as the reference has it; of its volumes nothing is asked.
+/// The mesh of a shape as the reference has it.
 fn reference(shape: &Shape) -> sdop_reference::Shape {
-    let ball = sdop_reference::Ball {
-        centre: [0.0; 3],
-        radius: 1.0,
-    };
-    let slabs = sdop_reference::Slabs {
-        directions: sdop_reference::DirectionSet::K6,
-        basis: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        lo: vec![-1.0; 3],
-        hi: vec![1.0; 3],
-    };
-    let (vertices, triangles) = (shape.vertices.clone(), shape.triangles.clone());
-    sdop_reference::Shape::new(ball, slabs, vertices, triangles).unwrap()
+    sdop_reference::Shape::of_mesh(shape.vertices.clone(), shape.triangles.clone()).unwrap()
 }
 
 /// Parts as the links of a tree: each at an end of an earlier one, turned by any angle.

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use sdop::Motion;
+use sdop::settings::{CullSettings, Strategy};
+use sdop::{Culler, Motion};
 use sdop_reference::wide::meet;
 
 use super::*;
@@ -19,7 +20,12 @@ struct Scene {
 
 impl Scene {
     /// Two compounds and a shape alone.
-    fn new(directions: DirectionSet, at: [f64; 3], random: &mut Random) -> Self {
+    fn new(
+        strategy: Strategy,
+        directions: DirectionSet,
+        at: [f64; 3],
+        random: &mut Random,
+    ) -> Self {
         let shapes = shapes(directions);
         let trees = [7, 30].map(|count| tree(count, shapes.len(), random));
         let compounds: Vec<(u32, Compound)> = (0..)
@@ -28,7 +34,11 @@ impl Scene {
             .collect();
         let mut all: Vec<Shape> = compounds.iter().map(|(_, c)| c.shape().clone()).collect();
         all.push(shapes[0].clone());
-        let mut world = World::new(all).unwrap();
+        let settings = CullSettings {
+            strategy,
+            ..CullSettings::default()
+        };
+        let mut world = World::with(all, &Culler::builder().settings(&settings)).unwrap();
         for number in 0..40 {
             world.insert(body(number, at, random)).unwrap();
         }
@@ -96,27 +106,51 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (square(0) + square(1) + square(2)).sqrt()
 }
 
+/// Checks the pairs of parts of a scene against exact truth.
+fn check(scene: &Scene) {
+    let found = afresh(&scene.world, &scene.compounds);
+    assert!(found.is_sorted_by(|a, b| a < b), "sorted, and each once");
+    let wanted = scene.truth();
+    let missed = wanted
+        .iter()
+        .find(|pair| found.binary_search(pair).is_err());
+    assert_eq!(missed, None, "missed");
+    assert!(wanted.len() > 100, "{} pairs", wanted.len());
+    assert!(
+        found.len() <= 2 * wanted.len(),
+        "{} of {}",
+        wanted.len(),
+        found.len()
+    );
+}
+
 /// Parts that meet are reported, and few others.
 #[test]
 fn meeting_parts_are_reported() {
     let mut random = Random(1);
     for directions in DIRECTIONS {
         for at in [[0.0; 3], [1.0e9, -7.0e8, 0.25]] {
-            let scene = Scene::new(directions, at, &mut random);
-            let found = afresh(&scene.world, &scene.compounds);
-            assert!(found.is_sorted_by(|a, b| a < b), "sorted, and each once");
-            let wanted = scene.truth();
-            let missed = wanted
-                .iter()
-                .find(|pair| found.binary_search(pair).is_err());
-            assert_eq!(missed, None, "missed");
-            assert!(wanted.len() > 100, "{} pairs", wanted.len());
-            assert!(
-                found.len() <= 2 * wanted.len(),
-                "{} of {}",
-                wanted.len(),
-                found.len()
-            );
+            let strategy = CullSettings::default().strategy;
+            check(&Scene::new(strategy, directions, at, &mut random));
         }
+    }
+}
+
+/// The same in worlds of every strategy that reports all pairs.
+#[test]
+fn every_strategy_has_parts() {
+    let mut random = Random(2);
+    let reports_all = |&&strategy: &&Strategy| {
+        let settings = CullSettings {
+            strategy,
+            ..CullSettings::default()
+        };
+        strategy.scheme().culls() && settings.check(2).is_ok()
+    };
+    let strategies: Vec<_> = Strategy::ALL.iter().filter(reports_all).collect();
+    assert!(strategies.len() > 5, "{strategies:?}");
+    for &strategy in strategies {
+        let scene = Scene::new(strategy, DirectionSet::K18, [0.0; 3], &mut random);
+        check(&scene);
     }
 }

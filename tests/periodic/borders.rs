@@ -148,3 +148,27 @@ fn points_on_borders_meet() {
         assert_eq!(pair.image, image);
     }
 }
+
+/// Boxes about turned balls meet in two images, although the balls can meet in one at most.
+#[test]
+fn loose_volumes_meet_once() {
+    let ball = ProceduralShape::default_of("icosphere").unwrap().build();
+    let spec = ShapeSpec {
+        radius: Some(0.24),
+        axes: sdop::Axes::Model,
+        ..ShapeSpec::default()
+    };
+    let shape = Shape::build(&ball.unwrap(), &spec).unwrap();
+    let turned = [0.0, 0.0, 0.375, 1.0]; // by some 41 degrees, so that edges face each other
+    let builder = sdop::Culler::builder().strategy(sdop::Strategy::Obb);
+    for (distance, most) in [(0.47, 1), (0.5, 0)] {
+        let periods = [Some(1.0), None, None];
+        let mut world = PeriodicWorld::with(vec![shape.clone()], &builder, periods).unwrap();
+        for x in [-0.5 * distance, 0.5 * distance] {
+            world.insert(Body::at(0, turned, [x, 0.0, 0.0])).unwrap();
+        }
+        assert_eq!(world.cull().unwrap().len(), most, "{distance}");
+        // The world below has both images.
+        assert_eq!(world.images().pairs().len(), 2, "{distance}");
+    }
+}

@@ -216,23 +216,27 @@ fn images_are_few() {
     assert_eq!(images([-5.0, 10.0, 45.0]), 8);
 }
 
-/// A giant meets small boxes across the border that had no image there before it came.
+/// A giant meets small boxes across the border, of which neither had an image there before it came:
+/// by its own image, and by theirs.
 #[test]
 fn giants_come_late() {
-    let mut boxes = PeriodicBoxes::new([Some(64.0), None, None]).unwrap();
-    for x in -30..30 {
-        let corner = [f64::from(x), 0.0, 0.0];
+    for (ends, most) in [([28.25, 60.0], 2 + 27), ([15.0, 46.5], 15 + 13)] {
+        let mut boxes = PeriodicBoxes::new([Some(64.0), None, None]).unwrap();
+        for x in -30..30 {
+            let corner = [f64::from(x), 0.0, 0.0];
+            boxes
+                .insert(PeriodicBox::new(corner, corner.map(|x| x + 0.5)))
+                .unwrap();
+        }
+        assert_eq!(boxes.cull().unwrap(), []);
+        let [lo, hi] = ends;
         boxes
-            .insert(PeriodicBox::new(corner, corner.map(|x| x + 0.5)))
+            .insert(PeriodicBox::new([lo, 0.0, 0.0], [hi, 1.0, 1.0]))
             .unwrap();
+        let wanted = expected(&boxes);
+        assert_eq!(wanted.len(), most);
+        assert_eq!(boxes.cull().unwrap(), wanted);
     }
-    assert_eq!(boxes.cull().unwrap(), []);
-    boxes
-        .insert(PeriodicBox::new([28.25, 0.0, 0.0], [60.0, 1.0, 1.0]))
-        .unwrap();
-    let wanted = expected(&boxes);
-    assert_eq!(wanted.len(), 2 + 27);
-    assert_eq!(boxes.cull().unwrap(), wanted);
 }
 
 /// A clone goes on as the original does.

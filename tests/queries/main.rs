@@ -38,23 +38,13 @@ fn cube() -> Shape {
     Shape::build(&mesh, &ShapeSpec::default()).unwrap()
 }
 
-/// The mesh of a shape as the reference has it; of its volumes nothing is asked.
+/// The mesh of a shape as the reference has it.
 fn reference(shape: &Shape) -> sdop_reference::Shape {
     mesh(shape.vertices.clone(), shape.triangles.clone())
 }
 
 fn mesh(vertices: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> sdop_reference::Shape {
-    let ball = sdop_reference::Ball {
-        centre: [0.0; 3],
-        radius: 1.0,
-    };
-    let slabs = sdop_reference::Slabs {
-        directions: sdop_reference::DirectionSet::K6,
-        basis: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        lo: vec![-1.0; 3],
-        hi: vec![1.0; 3],
-    };
-    sdop_reference::Shape::new(ball, slabs, vertices, triangles).unwrap()
+    sdop_reference::Shape::of_mesh(vertices, triangles).unwrap()
 }
 
 /// The index on each tier.

@@ -43,7 +43,8 @@ impl Model {
             }
             _ => {
                 let mut body = random.body(3);
-                body.translation = body.translation.map(|x| 0.3 * x); // so that more of them meet
+                // Closer together, so that more of them meet; f32 still holds the numbers.
+                body.translation = body.translation.map(|x| 0.25 * x);
                 self.bodies.insert(world.insert(body).unwrap(), body);
             }
         }

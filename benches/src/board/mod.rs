@@ -1,6 +1,7 @@
 //! The public board: which libraries miss which pairs.
 //!
-//! > `claims.toml` ([`claims`]) → each adapter judged, a [`Row`] of [`Cell`]s ([`row`]) → one page ([`page`])
+//! > `claims.toml` ([`claims`]) → each adapter judged, a [`Row`] of [`Cell`]s ([`row`]) → one
+//! > page ([`page`])
 //!
 //! An adapter is a program that answers the judge's cases with another library
 //! (`benches/adapters/`). Its cells are the families of its claim's cases: the first word of a

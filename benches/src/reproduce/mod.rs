@@ -1,7 +1,8 @@
 //! The paper's experiments: the same seeded trajectories culled by each of its strategies, for each
 //! of its numbers of objects, and what that says of its results and of our own reading of them.
 //!
-//! > [`ExperimentPlan`] → [`StrategyRun`]s → Table 1 ([`readings`]), frame rates ([`rates`]), T ([`Results::costs`]), [`claims`], [`study`]
+//! > [`ExperimentPlan`] → [`StrategyRun`]s → Table 1 ([`readings`]), frame rates ([`rates`]),
+//! > T ([`Results::costs`]), [`claims`], [`study`]
 //!
 //! Everything after the runs is a pure function of them, so that runs made elsewhere can be joined.
 //! Counts and hashes are equal on every CPU; seconds are this machine's.

@@ -2,7 +2,8 @@
 //! have a fixed order, and results are merged in that order, so that the whole does not depend on
 //! which process did which unit, or when.
 //!
-//! > [`Sweep`] → [`run_in_process()`] → [`OrderedResults`] → the result; or in shards, by files and [`merge()`], or by ranks and [`on_ranks`]
+//! > [`Sweep`] → [`run_in_process()`] → [`OrderedResults`] → the result; or in shards, by
+//! > files and [`merge()`], or by ranks and [`on_ranks`]
 //!
 //! A shard's file has some of the units. It begins with a [`Header`] that identifies the work, and
 //! is rejected for any other work.

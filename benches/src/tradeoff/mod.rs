@@ -1,7 +1,8 @@
 //! What accuracy costs in time: compares every volume and strategy on one scene, judged by the
 //! exact truth.
 //!
-//! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`], [`decide`] (when does it pay?)
+//! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`],
+//! > [`decide`] (when does it pay?)
 //!
 //! The work is divided into [`units`]. Counts come first and are reproducible to the bit; time is
 //! measured afterwards and never decides a count. Every variant must report every true pair: a

@@ -192,7 +192,6 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
-    use crate::{Ball, DirectionSet, Slabs};
 
     /// A cube of side 2 about its origin, or its lower face alone.
     fn cube(is_whole: bool) -> Shape {
@@ -210,17 +209,7 @@ mod tests {
             ]);
             faces.extend([[0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]]);
         }
-        let ball = Ball {
-            centre: [0.0; 3],
-            radius: 2.0,
-        };
-        let slabs = Slabs {
-            directions: DirectionSet::K6,
-            basis: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            lo: vec![-1.0; 3],
-            hi: vec![1.0; 3],
-        };
-        Shape::new(ball, slabs, vertices, faces).unwrap()
+        Shape::of_mesh(vertices, faces).unwrap()
     }
 
     const CORNERS: [Vector<f64>; 2] = [[-1.0; 3], [1.0; 3]];

@@ -369,7 +369,7 @@ impl CaseId {
     /// Draws it.
     ///
     /// # Errors
-    /// As [`Group::case`].
+    /// As [`CaseGroup::case`].
     pub fn case(&self) -> Result<Case, CatalogueError> {
         let claim = self.claim;
         let drawn = self.group.case(self.number, self.seed)?;

@@ -122,7 +122,7 @@ impl World {
             .collect())
     }
 
-    /// Moves a body, with another shape if its size or the excluded pairs have changed.
+    /// Moves a body. It gets a new shape if its size or the excluded pairs have changed.
     fn place(
         &mut self,
         id: usize,

@@ -104,7 +104,7 @@ impl HardCaseGroup {
     /// Recomputes the answers.
     ///
     /// # Errors
-    /// As [`Group::cases`] and [`Group::judge`].
+    /// As [`HardCaseGroup::cases`] and [`HardCaseGroup::judge`].
     pub fn record(&mut self) -> Result<(), HardCaseError> {
         self.answers.clear();
         for (k, axes) in variants() {
@@ -131,7 +131,7 @@ impl HardCaseGroup {
 /// What naive f32 tests miss in a group, with k = 18 along principal axes, and of how many pairs.
 ///
 /// # Errors
-/// As [`Group::cases`] and [`Group::judge`].
+/// As [`HardCaseGroup::cases`] and [`HardCaseGroup::judge`].
 pub fn naive_misses(group: &HardCaseGroup) -> Result<(NaiveMisses, u64), HardCaseError> {
     let (mut misses, mut pairs) = (NaiveMisses::default(), 0);
     let cases = group.cases(DirectionSet::K18, Axes::Principal)?;
