@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{json, refusal, sdop, stdout, text};
+use super::{json, refusal, scene_file, sdop, stdout, text};
 
 const TINY: [&str; 7] = [
     "reproduce",
@@ -176,6 +176,26 @@ fn scenes_of_one_kind_share_prices() {
     );
     let refused = refusal(&["cost", &few, "--also", crowd]);
     assert!(refused.contains("can't have the same prices"), "{refused}");
+}
+
+/// A run of one frame has no warm one: scenes are simulated further, and fewer frames can't be
+/// asked for where there are no others.
+#[test]
+fn one_frame_is_not_timed_alone() {
+    let (directory, scene) = scene_file(
+        "name = \"still\"\nframes = 1\n[box]\nside = 9.0\n\
+         [[bodies]]\nshape = \"box\"\ncount = 9\nradius = 1.0\n",
+    );
+    let short = ["--frames", "1", "--seeds", "1", "--format", "csv"];
+    let timed = ["cost", text(&scene), "--strategy", "s-dop-batch"];
+    let csv = stdout(&[&timed[..], &short].concat());
+    let warm = csv.lines().filter(|line| line.contains(",warm,"));
+    assert!(warm.count() > 5, "{csv}");
+    let compared = ["tradeoff", text(&scene), "--quick", "--out"];
+    let csv = stdout(&[&compared[..], &[text(directory.path())], &short].concat());
+    assert!(csv.lines().count() > 5, "{csv}");
+    let refused = refusal(&["reproduce", "--quick", "--frames", "1"]);
+    assert!(refused.contains("1 is not in 2..=1000000"), "{refused}");
 }
 
 /// Cost covers every strategy that the scene has settings for.

@@ -35,15 +35,15 @@ const EFFORT: Effort = Effort {
 /// no F. Counts come from the scene's runs. Prices belong to the machine, the volume and the
 /// regime: warm frames, which follow one another, or cold ones, before which other cullers ran, and
 /// the cache that holds the working set. They come from calibration scenes that are made from the
-/// scene's shapes alone, so that T is a true prediction; scenes that are named by --also have the
-/// same prices. The residual is measured / predicted - 1; above 5 %, the assumption that fails is named.
+/// scene's shapes alone, so that T is a true prediction; scenes named by --also have the same
+/// prices. The residual is measured / predicted - 1; above 5 %, the assumption that fails is named.
 /// Without --strategy, all strategies are measured for which the scene has settings.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Another scene with the same meshes and [cull] table, predicted by the same prices; repeatable
+    /// Another scene with the same meshes and [cull], predicted by the same prices; repeatable
     #[arg(long, value_name = "SCENE")]
     also: Vec<PathBuf>,
     /// Write each scene's result to SCENE.json in this directory

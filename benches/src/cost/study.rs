@@ -14,7 +14,7 @@ use super::pass::{Pass, SceneFrames, pass};
 use super::table::{self, Cost, PriceRow};
 use crate::measure::conditions::Conditions;
 use crate::measure::machine::Machine;
-use crate::measure::turns::Regime;
+use crate::measure::turns::{FEWEST_TIMED_FRAMES, Regime};
 use crate::measure::variant::Variant;
 use crate::scene::{Scene, SceneError, SceneFile};
 use crate::simulate::SimulationError;
@@ -95,9 +95,10 @@ struct Subject {
 impl Subject {
     fn new(file: &SceneFile, plan: &CostPlan) -> Result<Self, CostError> {
         let scene = file.build()?;
+        let frames = plan.frames.min(scene.frames);
         Ok(Self {
             file: file.clone(),
-            frames: plan.frames.min(scene.frames),
+            frames: frames.max(FEWEST_TIMED_FRAMES.get()),
             scene,
             passes: Vec::new(),
         })
