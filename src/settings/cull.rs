@@ -37,7 +37,8 @@ choices! {
 choices! {
     /// Which separating axes the or-DOP test tries.
     Overlap, "overlap test", {
-        /// The first body's slab normals: the paper's "interval pairs in local space".
+        /// The first body's slab normals: the paper's "interval pairs in local space". First is the
+        /// body with the lower number, or in the lower slot of a world.
         OneSided = "one-sided",
         /// Both bodies' slab normals.
         TwoSided = "two-sided",

@@ -355,7 +355,8 @@ impl World {
     }
 
     /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by
-    /// slots. Under every strategy, list and order are a function of the present bodies (with
+    /// slots. Under every strategy, list and order are a function of the present bodies and their
+    /// slots, whose order is that of a pair's first and second body (with
     /// [`Order::OldestAnswer`](crate::Order), also of when pairs were refined, and with a budget of
     /// time, of the clock), independent of the finder, of threads and of earlier calls. That holds
     /// for translations that f32 has to round, too: the origins about which they are rounded follow

@@ -199,8 +199,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
-    use crate::ours::histories::HistoryCell;
     use crate::ours::configurations::variants;
+    use crate::ours::histories::HistoryCell;
     use sdop::simd::Tier;
 
     /// Our worlds pass, and a seed's histories fill every cell.

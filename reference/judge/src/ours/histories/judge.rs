@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::draw::MARGINS;
-use super::state::{Pairs, State, by_number};
+use super::state::{Pairs, State, by_number, in_order};
 use super::subject::JudgedWorld;
 use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, Subject};
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::meeting;
 use crate::ours::compare::difference;
-use crate::ours::reference_shapes::{Shapes, grown};
 use crate::ours::configurations::{Mode, rows};
+use crate::ours::reference_shapes::{Shapes, grown};
 use sdop::Motion;
 use sdop::bodies::{Aabb, Bodies};
 use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};
@@ -192,7 +192,7 @@ pub fn judge_boxes(
     history: &History<BoxBody>,
     modes: &[Mode],
 ) -> Result<HistoryLedger, HistoryError> {
-    let states = State::all(history);
+    let states = State::all(history)?;
     let required = required_boxes(&states);
     // Boxes are compared as they are: what is required is all that may be reported.
     let truth = Truth {
@@ -219,7 +219,7 @@ pub(super) fn required_boxes(states: &[State<BoxBody>]) -> Vec<Pairs> {
         let counts = |pair: &[u32; 2]| !parts(*pair) && !pair.iter().all(is_fixed);
         let meeting = meeting(&bounds).into_iter().filter(counts);
         let number = |at: u32| numbers[at as usize] as u32;
-        meeting.map(|pair| pair.map(number)).collect()
+        in_order(meeting.map(|pair| pair.map(number)))
     };
     states.iter().map(required).collect()
 }
@@ -235,7 +235,7 @@ pub fn judge_meshes(
     variant: (DirectionSet, Axes),
     modes: impl Fn(usize) -> Vec<Mode>,
 ) -> Result<HistoryLedger, HistoryError> {
-    let states = State::all(history);
+    let states = State::all(history)?;
     let rows = rows(variant).into_iter().enumerate();
     let rows = rows.map(|(number, row)| (row, modes(number)));
     let rows: Vec<_> = rows.filter(|(_, modes)| !modes.is_empty()).collect();
@@ -359,6 +359,5 @@ fn required_of(state: &State<Body>, answers: &Answers, way: &CullSettings) -> Pa
         answers.pairs.iter().enumerate().filter(|(n, pair)| {
             !parts(**pair) && answers.required(strategy, overlap, &interest, *n)
         });
-    let pairs = counted.map(|(_, pair)| pair.map(|at| numbers[at as usize] as u32));
-    pairs.collect()
+    in_order(counted.map(|(_, pair)| pair.map(|at| numbers[at as usize] as u32)))
 }

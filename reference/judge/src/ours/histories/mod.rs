@@ -15,8 +15,8 @@ use std::collections::BTreeMap;
 pub use draw::{draw_boxes, draw_meshes, history_shapes};
 pub use judge::{judge_boxes, judge_meshes};
 
-use super::reference_shapes::InvalidInput;
 use super::configurations::{Rotation, rows, variants};
+use super::reference_shapes::InvalidInput;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::world::WorldError;
 

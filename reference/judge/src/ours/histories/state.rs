@@ -1,10 +1,13 @@
 //! The bodies of a history after some frames.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::subject::JudgedWorld;
 use super::{Change, History};
 use sdop::Groups;
+use sdop::bodies::Aabb;
+use sdop::boxes::BoxWorld;
 use sdop::world::{BodyId, WorldError};
 
 /// Pairs of bodies' numbers, the lower one first, sorted.
@@ -19,22 +22,26 @@ pub struct State<B> {
     pub excluded: Vec<[usize; 2]>,
     /// Bodies of interest.
     pub interest: Vec<usize>,
+    /// The slot of each body, by number: worlds order the two bodies of a pair by their slots, and
+    /// one-sided tests use the planes of the first.
+    slots: Arc<Vec<usize>>,
 }
 
 impl<B: Copy> State<B> {
     /// After each frame, the first bodies' frame before the others.
-    pub fn all(history: &History<B>) -> Vec<Self> {
+    pub fn all(history: &History<B>) -> Result<Vec<Self>, WorldError> {
         let mut state = Self {
             bodies: history.first.iter().copied().map(Some).collect(),
             excluded: Vec::new(),
             interest: Vec::new(),
+            slots: Arc::new(slots(history)?),
         };
         let mut all = vec![state.clone()];
         for frame in &history.frames {
             frame.iter().for_each(|(_, change)| state.take(change));
             all.push(state.clone());
         }
-        all
+        Ok(all)
     }
 
     /// Makes a change.
@@ -53,10 +60,13 @@ impl<B: Copy> State<B> {
         }
     }
 
-    /// The bodies that are there, with their numbers.
+    /// The bodies that are there, with their numbers, in the order of slots.
     pub fn present(&self) -> impl Iterator<Item = (usize, B)> {
         let numbered = self.bodies.iter().enumerate();
-        numbered.filter_map(|(number, body)| Some((number, (*body)?)))
+        let present = numbered.filter_map(|(number, body)| Some((number, (*body)?)));
+        let mut present: Vec<_> = present.collect();
+        present.sort_by_key(|(number, _)| self.slots[*number]);
+        present.into_iter()
     }
 
     /// The pairs i < j of present bodies, in their order, that neither groups nor exclusion part.
@@ -66,7 +76,9 @@ impl<B: Copy> State<B> {
         let (named, excluded) = (numbers.clone(), self.excluded.clone());
         let parts = move |pair: [u32; 2]| {
             let [i, j] = pair.map(|at| at as usize);
-            !groups[i].collide(groups[j]) || excluded.contains(&[named[i], named[j]])
+            let mut name = [named[i], named[j]];
+            name.sort_unstable();
+            !groups[i].collide(groups[j]) || excluded.contains(&name)
         };
         (numbers, parts)
     }
@@ -95,12 +107,38 @@ impl<B: Copy> State<B> {
 
 /// Pairs of ids as pairs of numbers.
 pub fn by_number(pairs: &[[BodyId; 2]], numbers: &HashMap<BodyId, u32>) -> Pairs {
-    let number = |pair: &[BodyId; 2]| {
-        let mut pair = pair.map(|id| numbers.get(&id).copied().unwrap_or(u32::MAX));
+    let number = |id| numbers.get(&id).copied().unwrap_or(u32::MAX);
+    in_order(pairs.iter().map(|pair| pair.map(number)))
+}
+
+/// The lower number of each pair first, sorted.
+pub fn in_order(pairs: impl Iterator<Item = [u32; 2]>) -> Pairs {
+    let ordered = |mut pair: [u32; 2]| {
         pair.sort_unstable();
         pair
     };
-    let mut pairs: Pairs = pairs.iter().map(number).collect();
+    let mut pairs: Pairs = pairs.map(ordered).collect();
     pairs.sort_unstable();
     pairs
+}
+
+/// The slot that each body gets in a world, by number. Slots are given again after a cull.
+fn slots<B>(history: &History<B>) -> Result<Vec<usize>, WorldError> {
+    let (mut world, mut ids) = (BoxWorld::new(), Vec::new());
+    let apart = |number: usize| Aabb::new([number as f32; 3], [number as f32; 3]);
+    for number in 0..history.first.len() {
+        ids.push(world.insert(apart(number))?);
+    }
+    world.cull()?;
+    for frame in &history.frames {
+        for (_, change) in frame {
+            match change {
+                Change::Insert(_) => ids.push(world.insert(apart(ids.len()))?),
+                Change::Remove(number) => world.remove(ids[*number])?,
+                _ => {}
+            }
+        }
+        world.cull()?;
+    }
+    Ok(ids.iter().map(|id| id.slot()).collect())
 }

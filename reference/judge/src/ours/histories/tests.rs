@@ -94,7 +94,7 @@ fn wrong(to: Option<ChangeKind>) -> u64 {
     let mut ledger = HistoryLedger::default();
     for seed in 0..20 {
         let history = drawn(seed);
-        let states = State::all(&history);
+        let states = State::all(&history).unwrap();
         let required = required_boxes(&states);
         let truth = Truth {
             fresh: Some(required.clone()),
@@ -138,7 +138,7 @@ fn blind_worlds_are_seen() {
 fn histories_are_incremental() {
     for seed in 0..20 {
         let history = drawn(seed);
-        let states = State::all(&history);
+        let states = State::all(&history).unwrap();
         let bodies = states.iter().map(|state| state.present().count() as u64);
         let bodies: u64 = bodies.sum();
         let mut life = Life::new(BoxWorld::new(), &history, &states).unwrap();
