@@ -13,7 +13,7 @@ use crate::broad_phase::{BoxIndex, IndexedBox, Search};
 
 /// Changed bodies are searched one by one if they are at most one in this number of bodies.
 /// Otherwise finding all pairs anew is faster.
-const BODIES_PER_CHANGE: usize = 8;
+const BODIES_PER_CHANGE: usize = 16;
 
 /// The largest work of such a search, in boxes read per body of the world.
 const WORK_PER_BODY: usize = 8;
