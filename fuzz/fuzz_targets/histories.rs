@@ -1,6 +1,6 @@
 //! Long-lived worlds of boxes and of meshes whose bodies come, go, move, rest, wake and change: the
-//! bytes choose all of it. After each frame their pairs and events are those of a world made for the
-//! moment, and none that the exact reference asks for is missing.
+//! bytes choose all of it. After each frame their pairs and events are those of a world made for
+//! the moment, and none that the exact reference asks for is missing.
 #![no_main]
 
 use std::sync::OnceLock;
@@ -8,10 +8,10 @@ use std::sync::OnceLock;
 use libfuzzer_sys::fuzz_target;
 use sdop::Tier;
 use sdop_judge::ours::Shapes;
+use sdop_judge::ours::configurations::{Mode, rows, variants};
 use sdop_judge::ours::histories::{
     draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes,
 };
-use sdop_judge::ours::configurations::{Mode, rows, variants};
 
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {

@@ -1,6 +1,6 @@
 //! Box3D's dynamic tree, driven as its own broad phase drives it: a moved box that leaves its leaf
 //! enlarges it, all moved boxes are searched, and the parts of the tree above enlarged leaves are
-//! built anew. Box3D's broad phase is part of its worlds and reports no pairs, so that a user of the
+//! built anew. Box3D's broad phase is part of its worlds and reports no pairs, so a user of the
 //! tree keeps them ([`Partners`]).
 //!
 //! The binding has Box3D's commit 781673be of 24 July 2026, before its tree was rewritten in
