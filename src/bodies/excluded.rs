@@ -1,4 +1,5 @@
-//! Pairs of bodies that are left out whatever their volumes say: bodies that a joint connects.
+//! Excluded pairs: bodies that are never reported as a pair, for example because a joint connects
+//! them.
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};

@@ -1,4 +1,4 @@
-//! The pairs of parts of a world's pairs.
+//! Finds the pairs of parts within a world's pairs.
 
 use super::part_set::{PartSet, PosedParts};
 use super::{Compound, CompoundError};

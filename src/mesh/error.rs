@@ -1,4 +1,4 @@
-//! The errors of meshes: where (file and line), what, and how to mend it.
+//! The errors of meshes: where the mistake is (file and line), what it is, and how to fix it.
 
 use super::MAX_COORDINATE;
 

@@ -1,4 +1,4 @@
-//! Pairs that a world doesn't report: bodies that a joint connects, links of one machine.
+//! Pairs that a world doesn't report, such as bodies that a joint connects or links of one machine.
 
 use super::{BodyId, World, WorldError};
 

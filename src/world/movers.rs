@@ -1,11 +1,11 @@
-//! Frames in which few bodies change: only the partners of these are searched, and the pairs of all
-//! others are kept.
+//! Frames in which few bodies change: a world searches only for the partners of these bodies, and
+//! keeps the pairs of all others.
 //!
 //! A pair's verdict is a function of its two bodies: their places, their models, and whether their
-//! pair counts. A body of which any of these has changed since the last cull is in the list of
-//! changed ones, so a pair of two others keeps its verdict. The partners of each changed body are
-//! found anew by an index of all, compared with its former ones, and the differences are also made
-//! in the lists of its partners.
+//! pair counts. If any of these has changed since the last cull, the body is in the list of changed
+//! bodies, so a pair of two other bodies keeps its verdict. For each changed body, an index of all
+//! bodies finds the new partners. They are compared with the former ones, and the lists of the
+//! partners concerned are changed as well.
 
 use super::{Ids, LivePairs};
 use crate::bodies::PairRules;

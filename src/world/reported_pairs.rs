@@ -1,5 +1,5 @@
-//! The pairs of one cull: in the order in which they were found until they or their events are
-//! first read, sorted from then on.
+//! The pairs of one cull. They are in the order in which they were found until they or their events
+//! are first read, and sorted from then on.
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
