@@ -1,7 +1,7 @@
 //! [`WidePose`]: exact mesh intersection for poses of f64.
 //!
 //! [`Pose`] takes f32, and the error bounds of volumes assume that. Whether two meshes meet depends
-//! on the poses through [`Relative`](crate::exact::relative::Relative) alone. Its intervals and
+//! on the poses through [`Relative`](crate::exact::relative::Relative) alone. Intervals and
 //! integers take any f64. Its first stage, [`Approximate`](crate::exact::relative::Approximate),
 //! allows for a mapped coordinate M y + w the error 256u(|y|∞ + |Δ|∞), with u = 2⁻⁵³ and Δ = tB −
 //! tA; that is enough for f64 too, where products are rounded as well:

@@ -1,4 +1,4 @@
-//! Claims: the pairs that a culler never misses.
+//! Claims: which pairs a culler says that it never misses.
 
 use sdop::choice::choices;
 

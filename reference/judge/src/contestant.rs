@@ -1,4 +1,4 @@
-//! A culler under measurement or judgement, ours or anyone's: bodies in, pairs out.
+//! A culler that is measured or judged, ours or anyone's: bodies in, pairs out.
 
 use sdop::bodies::Bodies;
 

@@ -8,8 +8,8 @@
 //! 2. **interval**: the generic formula in outward-rounded intervals,
 //! 3. **exact**: the same generic formula in big integers.
 //!
-//! [`Path`] says which stage it was. A stage that cannot tell stays silent, so overflow, underflow
-//! and NaN fall through.
+//! [`Path`] says which stage decided. A stage that is not certain returns nothing, so after an
+//! overflow, an underflow or a NaN the next stage decides.
 
 pub mod axes;
 pub mod common;

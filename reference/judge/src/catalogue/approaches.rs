@@ -1,5 +1,5 @@
-//! Slow approaches: a culler that keeps its list of candidates until a body has moved far keeps it
-//! too long if it measures that distance wrongly.
+//! Bodies that approach slowly. A culler may keep its list of candidates until a body has moved
+//! far; if it measures that distance wrongly, it keeps the list too long and misses a pair.
 
 use rand::{Rng, RngExt};
 

@@ -1,4 +1,4 @@
-//! Changes along one axis: a culler that keeps a body's old place or extent along that axis alone
+//! Changes along a single axis: a culler that keeps a body's old place or extent along that axis
 //! misses a pair.
 //!
 //! Small bodies are in rows, far from one another. In each row a change brings one of them to its

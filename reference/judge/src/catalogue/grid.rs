@@ -1,9 +1,9 @@
-//! Tips that touch across cells: when the cell's side is the bodies' diameter and cells are counted
-//! in f32, the partner's cell is two away.
+//! Tips that touch across cells. If a cell is as wide as the bodies and cells are counted in f32,
+//! the partner is two cells away, where a search of the next cells does not find it.
 //!
-//! A quotient x / c alone never does that: as far as floor(x / c) is rounded up at the further
-//! border, it is at the nearer one. A difference x − least before it does, and so does the product
-//! with a reciprocal.
+//! A quotient x / c alone does not cause that: if rounding moves floor(x / c) up at the farther
+//! border, it does so at the nearer one as well. A subtraction x − least before the division causes
+//! it, and so does a product with a reciprocal.
 
 use rand::{Rng, RngExt};
 

@@ -1,9 +1,9 @@
-//! The cases that everyone is judged by: groups with a name, the bug that each looks for, and its
-//! source.
+//! The cases by which every culler is judged, in groups. Each group has a name, the bug that it
+//! looks for, and the source of that bug.
 //!
-//! A case is drawn from its group's name and its number alone, so `touch/edge-edge/0017` is the
-//! same bodies on every machine. With a seed the same group draws other bodies,
-//! `touch/edge-edge/0017@42`: nobody can prepare for those.
+//! A case depends only on its group's name and its number, so `touch/edge-edge/0017` has the same
+//! bodies on every machine. With a seed, as in `touch/edge-edge/0017@42`, the group draws other
+//! bodies, for which nobody can prepare.
 
 mod approaches;
 mod boxes;

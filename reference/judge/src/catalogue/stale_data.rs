@@ -1,5 +1,5 @@
-//! What can change about a body between two frames, one by one and all at once: its position, its
-//! shape, its number, and the origin of all positions.
+//! Changes of a body between two frames: its position, its shape, its number, or the origin of all
+//! positions, each alone and all at once.
 //!
 //! Each row has a static body and a moving one, far from each other. In each frame a change brings
 //! some of the moving bodies to their partners, from either side along one axis. A culler that

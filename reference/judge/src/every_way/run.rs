@@ -1,5 +1,5 @@
-//! Frames that one culler sees, culled in every way. Each list is compared with the exact answers
-//! and with that of all-pairs.
+//! Culls the same frames in every way, and compares each list with the exact answers and with that
+//! of all-pairs.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;

@@ -1,4 +1,4 @@
-//! Our cullers as one more subject: in every way that they have, each in the mode whose turn it is.
+//! Our cullers as a subject: in every way that they have, each in the mode whose turn it is.
 
 use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};

@@ -1,7 +1,8 @@
 //! Strategies of proptest that draw near-touching configurations on purpose (feature `proptest`).
 //!
-//! Uniform draws are far apart or deep inside one another. Here two bodies are put into a contact
-//! ([`Contact`]) that shrinks towards equal, unturned bodies whose gap is zero.
+//! Uniformly drawn bodies are far apart or deep inside one another. Here two bodies are put into
+//! contact ([`Contact`]). Proptest shrinks a failure towards equal bodies without rotation and with
+//! a gap of zero.
 
 use proptest::prelude::*;
 

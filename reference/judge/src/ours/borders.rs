@@ -1,12 +1,12 @@
 //! Scenes built from the grid's own arithmetic: extents, centres and reaches on the borders between
 //! its cells, a few units in the last place of f64 to either side.
 //!
-//! A random coordinate comes that near to a border once in 2⁵⁰ draws, so random scenes can't tell a
-//! cell found by rounding half to even from one counted by a division that rounds half away from
-//! zero. Here the lowest centre, which is the grid's origin, or the coordinate on the border is a
-//! number so small that its last place moves a quotient by one of the quotient's. All that is
-//! chosen comes from one function, "a number below n": a random generator searches, a fuzzer is
-//! guided.
+//! A random coordinate comes that close to a border once in 2⁵⁰ draws, so random scenes can't
+//! distinguish a cell found by rounding half to even from one counted by a division that rounds
+//! half away from zero. Here the lowest centre, which is the grid's origin, or the coordinate on
+//! the border is so small that its last place moves a quotient by the quotient's last place. One
+//! function makes all choices, "a number below n". It can be a random generator, or a fuzzer that
+//! is guided by coverage.
 
 use sdop::bodies::Bodies;
 use sdop::broad_phase::{BallBounds, Cells, TableLayout};

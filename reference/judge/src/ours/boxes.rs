@@ -1,6 +1,6 @@
-//! Given boxes against their definition: by every finder, in every tier, on any number of threads
-//! exactly those are listed that have a point in common. Ends are compared one by one, which rounds
-//! nothing.
+//! Compares cullers of boxes with the definition: every finder, in every tier and on any number of
+//! threads, must list exactly the boxes that have a point in common. The definition compares ends,
+//! which needs no rounding.
 
 use std::collections::BTreeMap;
 

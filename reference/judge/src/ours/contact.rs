@@ -1,5 +1,5 @@
-//! Near-touching configurations, drawn on purpose: uniform random pairs are far apart or deep
-//! inside one another and never ask for the last bit.
+//! Bodies that nearly touch, drawn on purpose: uniform random pairs are far apart or deep inside
+//! one another, so the last bit never decides them.
 //!
 //! A supporting feature of A and one of B along an axis n are put together, Δ = a* − b* + gap·n. At
 //! gap 0 the sets share the point a* and n separates their interiors, so the pair touches whatever

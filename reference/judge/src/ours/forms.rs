@@ -1,4 +1,4 @@
-//! Forms by name and size, the extreme ones included, and the shapes that are built from them.
+//! Forms by name and size, including extreme ones, and the shapes that are built from them.
 
 use std::collections::BTreeMap;
 

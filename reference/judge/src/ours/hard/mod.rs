@@ -2,8 +2,8 @@
 //!
 //! A group's file says what is drawn and, for every or-DOP (k, axes), which pairs overlap by each
 //! predicate: one bit per pair, hexadecimal, in the order of runs, frames and sorted pairs. The
-//! answers were computed by the exact reference when they were recorded and are checked against it
-//! ever after.
+//! exact reference computed the answers when they were recorded, and tests compare them with it
+//! since then.
 
 use std::collections::BTreeMap;
 
