@@ -1,8 +1,8 @@
 //! Ranks: copies of this program that `mpirun` or a scheduler starts and that communicate by MPI.
 //!
 //! Without the feature `mpi` nothing is linked, and [`launched`] only serves to reject a start as
-//! many ranks. With it, a program that runs alone does not start MPI; `Ranks::start` does.
-//! [`RankEnding`] ensures that no rank waits for one that failed.
+//! many ranks. With the feature, only `Ranks::start` starts MPI, so a program that runs alone does
+//! not. [`RankEnding`] ensures that no rank waits for one that failed.
 
 use std::env;
 

@@ -1,4 +1,4 @@
-//! `sdop cost`: the formula's predicted time and the measured time, per strategy.
+//! `sdop cost`: prints the formula's predicted time and the measured time per strategy.
 
 pub mod lines;
 

@@ -1,4 +1,5 @@
-//! Work in units: done here, by the ranks of `mpirun`, or in part for `sdop merge`.
+//! Does work in units: all of it here, together with other ranks of `mpirun`, or a part for `sdop
+//! merge`.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! `sdop tradeoff`: what accuracy costs in time on one scene, and when it pays.
+//! `sdop tradeoff`: measures what accuracy costs in time on one scene, and when it pays.
 
 mod csv;
 mod plot;

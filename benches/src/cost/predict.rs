@@ -2,10 +2,10 @@
 //!
 //! > T = Co + Nu·Cu + F + Nv·Cv, summed over a variant's volumes
 //!
-//! is the paper's equation 1 with F, pair finding, as a separate stage: a price per frame, one per
-//! body, one per body that has hits, and one per pair that is passed to a second test: it is
-//! listed, and with an object of interest selected and merged. Cv has two prices, for hits and for
-//! misses, and for world-aligned volumes a third, for slabs after the first.
+//! is the paper's equation 1 with F, pair finding, as a separate stage. F has a price per frame,
+//! per body, per body that has hits, and per pair that is passed to a second test. (Such a pair is
+//! listed; with an object of interest it is also selected and merged.) Cv has separate prices for
+//! hits and for misses, and for world-aligned volumes a third, for slabs after the first.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Errors on one of many ranks, and how the others learn of them.
+//! Errors on one of many ranks, and how they are sent to the others.
 
 use miette::Diagnostic;
 use thiserror::Error;

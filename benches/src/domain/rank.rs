@@ -1,4 +1,4 @@
-//! [`Rank`]: one of many ranks, which culls its frames in step with the others.
+//! [`Rank`]: one of many ranks, which culls frames in step with the others.
 
 use std::time::Instant;
 

@@ -1,5 +1,5 @@
-//! Timing a program and ours on the same frames: first both are judged, then they take turns and
-//! each frame is timed.
+//! Times a program and our culler on the same frames: first both are judged, then they take turns
+//! and each frame is timed.
 //!
 //! Our culler is timed from outside, around its call. A program's time is what it reports as `ns`
 //! (*self-reported*), because a time measured from outside would include its pipes and its parser.

@@ -1,6 +1,6 @@
 //! All records of the repository, each read and checked once.
 //!
-//! A path is `machine/experiment/file`, or `experiment/file`: then it is the machine's that
+//! A path is `machine/experiment/file` or `experiment/file`. The latter means the machine that
 //! `quoted.toml` names, so that every page quotes the same record of an experiment.
 
 use std::collections::BTreeMap;

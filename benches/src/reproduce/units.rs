@@ -1,6 +1,6 @@
-//! The experiments cut into units: a scene with one seed, a seed's survivors, a way to read what
-//! the paper leaves open. Joined in their order they are the results of one process: counts to the
-//! bit, times as they were measured.
+//! The experiments divided into units: a scene with one seed, the survivors of one seed, or one
+//! interpretation of what the paper leaves open. Joined in their order, they give the results of
+//! one process: the same counts to the bit, and the times as they were measured.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};

@@ -1,4 +1,5 @@
-//! Building a scene from its file: groups are checked, shapes built, and bodies placed by the seed.
+//! Builds a scene from its file: checks the groups, builds the shapes, and places the bodies by the
+//! seed.
 
 use std::ops::Range;
 

@@ -6,8 +6,8 @@
 //! end 12.5 5f70bf18…                                seconds, and SHA-256 of all before
 //! ```
 //!
-//! The file appears when it is whole. One that lacks its end was damaged, and
-//! [`merge`](super::merge()) refuses it.
+//! The file appears when it is complete. A file without its last line was damaged, and
+//! [`merge`](super::merge()) rejects it.
 
 use std::collections::BTreeMap;
 use std::fs::File;

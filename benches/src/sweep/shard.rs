@@ -1,4 +1,4 @@
-//! Parts of the units, for schedulers that start processes which know nothing of each other.
+//! Shards: parts of the units, for schedulers that start independent processes.
 
 use std::fmt;
 use std::str::FromStr;

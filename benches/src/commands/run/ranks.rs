@@ -1,4 +1,4 @@
-//! `mpirun -n R sdop run`: each rank builds its share of the scene, rank 0 prints.
+//! `mpirun -n R sdop run`: each rank builds its share of the scene, and rank 0 prints the results.
 //!
 //! An error on one rank reaches all ranks before any of them ends, so that none waits for a rank
 //! that has ended.
