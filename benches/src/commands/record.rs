@@ -29,7 +29,7 @@ use super::sweep::SweepArgs;
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
-    mpirun -n 64 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, and for all: --merge"
+    mpirun -n 64 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, then once --merge"
 )]
 pub struct Args {
     /// The experiments; kernels and peers mean all experiments in their group

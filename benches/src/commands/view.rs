@@ -18,9 +18,9 @@ use input::ViewInput;
 
 /// Write a page that shows a run: bodies, pairs, volumes and counts, frame by frame
 ///
-/// The page contains all of its data and opens from disk. Bodies change colour if a pair of theirs
-/// is reported, and have another colour if their meshes meet; a missed pair flashes and is listed.
-/// A record shows what any program reported.
+/// The page contains all of its data and opens from disk. Bodies of reported pairs change colour;
+/// the colour also shows whether their meshes meet. A missed pair flashes and is listed. A record
+/// shows what a program reported, ours or any other.
 #[derive(clap::Args)]
 #[command(
     mut_arg("scene", |arg| arg.value_name("SCENE|RECORD|CASE").help(
