@@ -6,7 +6,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::crowds::Kind;
+use super::crowds::CrowdKind;
 use super::{CatalogueError, DrawnCase};
 use crate::case::{Frame, picked};
 use crate::ours::forms::Form;
@@ -30,7 +30,7 @@ pub(super) const ALONG: [[f32; 4]; 3] = [[0.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 
 
 /// A case whose changes are along the axis of this number, modulo 3.
 pub fn along_an_axis(
-    kind: Kind,
+    kind: CrowdKind,
     number: u32,
     rng: &mut impl Rng,
 ) -> Result<DrawnCase, CatalogueError> {
@@ -44,7 +44,7 @@ pub fn along_an_axis(
         early,
     };
     let frames = (0..FRAMES).map(|n| match kind {
-        Kind::InsertRemove => rows.with_another_set(n, &shapes),
+        CrowdKind::InsertRemove => rows.with_another_set(n, &shapes),
         _ => Frame::fitted(rows.changed(kind, n), &shapes),
     });
     let frames = frames.collect();
@@ -114,7 +114,7 @@ impl Rows {
 
     /// The bodies of the frame of this number. Each row's pair meets in every other frame, after a
     /// change.
-    fn changed(&self, kind: Kind, frame: usize) -> Bodies {
+    fn changed(&self, kind: CrowdKind, frame: usize) -> Bodies {
         let mut bodies = Bodies::default();
         for (row, &place) in self.places.iter().enumerate() {
             bodies.push(0, false, UNTURNED, place);
@@ -123,16 +123,16 @@ impl Rows {
                 bodies.push(shape, true, turn, self.beside(row, distance));
             };
             match kind {
-                Kind::Turn => {
+                CrowdKind::Turn => {
                     let axis = self.axis + if after { 0 } else { 2 };
                     push(1, ALONG[axis % 3], REACH);
                 }
-                Kind::Swap => {
+                CrowdKind::Swap => {
                     let [first, second] = if after { [AWAY, NEAR] } else { [NEAR, AWAY] };
                     push(0, UNTURNED, first);
                     push(0, UNTURNED, second);
                 }
-                Kind::Teleport => push(0, UNTURNED, if after { NEAR } else { 1e6 }),
+                CrowdKind::Teleport => push(0, UNTURNED, if after { NEAR } else { 1e6 }),
                 _ => push(0, UNTURNED, if after { NEAR } else { AWAY }),
             }
         }

@@ -14,7 +14,7 @@ use sdop::bodies::Bodies;
 
 /// What changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ChangeKind {
     /// Bodies stay where they are and get another shape.
     Reshape,
     /// Bodies move, and all have other numbers.
@@ -42,7 +42,11 @@ struct RowBody {
 }
 
 /// A case whose changes are along the axis of this number, modulo 3.
-pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
+pub fn changing(
+    kind: ChangeKind,
+    number: u32,
+    rng: &mut impl Rng,
+) -> Result<DrawnCase, CatalogueError> {
     let shapes = vec![cube(rng)?, needle()?];
     let axis = number as usize % 3;
     let places = places(axis, ROWS, rng);
@@ -52,7 +56,7 @@ pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase
         let mut all: Vec<RowBody> = (0..ROWS)
             .flat_map(|row| placed(kind, axis, &places, row, n))
             .collect();
-        if matches!(kind, Kind::Reorder | Kind::AllAtOnce) {
+        if matches!(kind, ChangeKind::Reorder | ChangeKind::AllAtOnce) {
             let by = 7 * n % all.len();
             all.rotate_left(by);
         }
@@ -74,11 +78,17 @@ pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase
 
 /// A row's bodies in a frame: the static one, and the other, which meets it in every other frame.
 /// On either side there are rows that meet in the first frame and rows that don't.
-fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) -> Vec<RowBody> {
+fn placed(
+    kind: ChangeKind,
+    axis: usize,
+    places: &[[f32; 3]],
+    row: usize,
+    n: usize,
+) -> Vec<RowBody> {
     let after = (n % 2 == 1) != (row / 2 % 2 == 1);
     let side = if row.is_multiple_of(2) { 1.0 } else { -1.0 };
     let origin = match kind {
-        Kind::Rebase => ORIGINS[n],
+        ChangeKind::Rebase => ORIGINS[n],
         _ => 0.0,
     };
     let at = |distance: f32| {
@@ -102,9 +112,9 @@ fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) ->
     }];
     let id = 2 * row + 1;
     let change = match kind {
-        Kind::Reshape => 1,
-        Kind::AllAtOnce => row % 4,
-        Kind::Reorder | Kind::Rebase => 3,
+        ChangeKind::Reshape => 1,
+        ChangeKind::AllAtOnce => row % 4,
+        ChangeKind::Reorder | ChangeKind::Rebase => 3,
     };
     match change {
         0 => all.push(moving(id, 0, if after { NEAR } else { 1e6 })),

@@ -6,7 +6,7 @@
 
 use proptest::prelude::*;
 
-use crate::ours::contact::{Contact, Kind, PlacedShape};
+use crate::ours::contact::{Contact, ContactKind, PlacedShape};
 
 /// A quaternion: any direction with a norm of 0.1 to 2, small integers, or a tiny or huge norm.
 pub fn rotation() -> impl Strategy<Value = [f32; 4]> {
@@ -32,7 +32,7 @@ pub fn contact() -> impl Strategy<Value = Contact> {
         .prop_filter("a direction", |d| d.iter().any(|x| x.abs() > 1e-3));
     let gap = prop_oneof![Just(0.0), -8.0..8.0];
     (
-        prop::sample::select(&Kind::ALL[..]),
+        prop::sample::select(&ContactKind::ALL[..]),
         [0_u32..64, 0..64],
         direction,
         gap,
