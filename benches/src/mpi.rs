@@ -9,8 +9,8 @@ use std::env;
 /// What launchers call the number of ranks: OpenMPI, and the PMI of MPICH and of Slurm.
 const SIZE_VARIABLES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
 
-/// Set by any launcher that speaks `PMIx`, which leaves the number to be asked for; Slurm says it
-/// besides.
+/// Set by any launcher that speaks `PMIx`, whose number of ranks has to be requested from it; Slurm
+/// also sets the number.
 const PMIX_VARIABLES: [&str; 2] = ["PMIX_RANK", "SLURM_STEP_NUM_TASKS"];
 
 /// What launchers call a rank's number.

@@ -77,7 +77,7 @@ fn largest_of([x, y, z, w]: [f64; 4]) -> f64 {
     largest(&[x, y, z]).max(w.abs())
 }
 
-/// Whether two posed meshes intersect, and what it took.
+/// Whether two posed meshes intersect, and which stages decided it.
 pub fn meet(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Meeting {
     meeting::meet((a.0.mesh(), &a.1.0), (b.0.mesh(), &b.1.0))
 }

@@ -119,7 +119,7 @@ pub(crate) struct PairRules<'a> {
     pub excluded: &'a ExcludedPairs,
 }
 
-/// What is asked of a pair whose volumes meet, where something is.
+/// The filters for pairs whose volumes meet, if there are any.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairFilter<'a> {
     /// By body, where not all collide with all.

@@ -204,10 +204,10 @@ pub unsafe fn put<T>(out: *mut T, value: T, what: &str) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A column of so many entries.
+/// A column of `count` entries.
 ///
 /// # Safety
-/// The pointer is null, or so many entries after it may be read for as long as the call lasts.
+/// The pointer is null, or `count` entries from it on may be read for as long as the call lasts.
 pub unsafe fn column<'a, T>(first: *const T, count: usize, what: &str) -> Result<&'a [T], Refusal> {
     if count == 0 {
         return Ok(&[]);

@@ -147,7 +147,8 @@ impl BodyExtent {
     /// now: the world's origin unless bodies are far from it. Then their middle in steps of about
     /// twice the width, so that it seldom changes while they move.
     fn origin(&self) -> [f64; 3] {
-        /// Bodies may be so many times farther from the world's origin than they are apart.
+        /// The largest ratio of the bodies' distance from the world's origin to their distance from
+        /// each other.
         const MOST_OFFSET_RATIO: f64 = 16.0;
         const MANTISSA: u64 = (1 << 52) - 1;
         let far = largest(self.middle);

@@ -24,9 +24,9 @@ const SEEKERS_PER_BATCH: usize = 16;
 /// The number of bodies by which prefetching is ahead.
 const PREFETCH_DISTANCE: usize = 8;
 
-/// An index pays if it serves for so many frames. After one that didn't, or a frame in which
-/// looking one by one took too long, the next frames find all pairs: twice as many as the last
-/// time, up to so many.
+/// An index pays if it serves for at least `LEAST_SERVICE` frames. After one that didn't, or after
+/// a frame in which searching one by one took too long, the next frames find all pairs: twice as
+/// many frames as the last time, up to `LONGEST_PAUSE`.
 const LEAST_SERVICE: u32 = 8;
 const LONGEST_PAUSE: u32 = 64;
 

@@ -7,7 +7,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 pub struct Threads(Option<ThreadPool>);
 
 impl Threads {
-    /// So many threads.
+    /// A pool of this many threads.
     pub fn new(threads: usize) -> miette::Result<Self> {
         if threads <= 1 {
             return Ok(Self(None));

@@ -286,7 +286,7 @@ fn execute(args: &Args, experiment: &Experiment, out: &Path) -> miette::Result<(
     Ok(())
 }
 
-/// A step's command with what is asked of it here, and the file that its output becomes.
+/// A step's command with the arguments that this run adds, and the file for its output.
 fn complete(
     args: &Args,
     experiment: &Experiment,

@@ -145,7 +145,7 @@ impl RecordedTradeoff {
 }
 
 impl Args {
-    /// Writes and prints what was asked for.
+    /// Writes and prints the requested results.
     fn tell(&self, recorded: &RecordedTradeoff) -> miette::Result<Outcome> {
         if let Some(directory) = &self.out {
             let paper = self.paper.as_ref().unwrap_or(directory);

@@ -12,8 +12,8 @@ use crate::simulate::Summary;
 use sdop::counters::{Counters, Seconds};
 use sdop::settings::{TestedVolume, Updates};
 
-/// Up to so many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted;
-/// beyond, there is the digest alone.
+/// Up to this many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted.
+/// With more bodies there is only `pairs_digest`.
 const MOST_GATHERED_BODIES: usize = 1 << 20;
 
 /// What one rank says of a run. Sums over frames, except for bodies.

@@ -78,7 +78,7 @@ pub struct Turns {
     displacement: usize,
 }
 
-/// Works with so many pads on the stack beneath.
+/// Runs the work below this many pads on the stack.
 #[inline(never)]
 fn displaced(pads: usize, work: &mut dyn FnMut()) {
     let pad = std::hint::black_box([0_u8; DISPLACEMENT]);

@@ -35,7 +35,7 @@ pub struct Store {
     manifests: Mutex<BTreeMap<String, Manifest>>,
 }
 
-/// A value that can't be had.
+/// A value that can't be read from the records.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum StoreError {
     /// The record is none, or was changed.

@@ -27,8 +27,7 @@ pub const NAME: &str = "reproduce";
 /// The input that says what the compared scene's volumes are.
 const VOLUMES: &str = "volumes";
 
-/// What the experiments are asked for, and on what kind of machine: times of different ones don't
-/// go together.
+/// The requested experiments, and the kind of machine: times from different kinds can't be joined.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExperimentSettings {

@@ -24,7 +24,7 @@ pub struct Header {
     pub command: String,
     /// The version of the code, and a digest of its sources.
     pub code: String,
-    /// What the command was asked for.
+    /// The request: the command's arguments.
     pub settings: Map<String, Value>,
     /// Digests of what it reads, by name.
     pub inputs: BTreeMap<String, String>,

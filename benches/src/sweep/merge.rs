@@ -37,7 +37,7 @@ pub enum MergeError {
         "`here` is the first file; run one of them again with the other's code, settings and scenes"
     ))]
     Different {
-        /// The file that others are held against.
+        /// The file that others are compared with.
         first: PathBuf,
         /// Another.
         other: PathBuf,

@@ -26,7 +26,7 @@ pub enum ShardError {
 }
 
 impl Shard {
-    /// This part of so many units.
+    /// The units of this part, among `units` in total.
     #[must_use]
     pub fn units(self, all: usize) -> Vec<usize> {
         (self.index - 1..all).step_by(self.of).collect()

@@ -17,7 +17,7 @@ pub struct Frame {
     /// If the set of bodies differs from the frame before: each body's former number, `None` for a
     /// new body.
     pub was: Option<Vec<Option<u32>>>,
-    /// Which pairs are not asked for, for the claim `filter`.
+    /// Which pairs must not be reported, for the claim `filter`.
     pub filter: Option<Filter>,
     /// How far each body reaches beyond its box, for the claim `margin`.
     pub margins: Option<Vec<f32>>,

@@ -5,7 +5,7 @@ use sdop::bodies::Bodies;
 /// A box on the world axes: the lower corner x, y, z, then the upper one.
 pub type WorldBox = [f32; 6];
 
-/// Which pairs of a frame are not asked for, and must not be reported.
+/// Which pairs of a frame must not be reported.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
     /// Of each body: the groups that it is in, and those that it meets, a bit each.

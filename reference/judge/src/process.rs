@@ -44,7 +44,7 @@ impl Program {
         RunningProgram::start(&self.command).map_err(start)
     }
 
-    /// What it has for a case of so many bytes.
+    /// The time that a program has for a case of this many bytes.
     fn time(&self, bytes: usize) -> Duration {
         self.timeout + Duration::from_micros(bytes as u64)
     }

@@ -19,7 +19,7 @@ pub struct Count {
     pub required: u64,
     /// Of those, not reported: the claim is broken.
     pub missed: u64,
-    /// Reported although the claim doesn't hold, in all.
+    /// The number of all reported pairs for which the claim doesn't hold.
     pub extra: u64,
     /// Of those: it would hold if the bodies were nearer by 2⁻¹⁸ of their size and distance. The
     /// price of rounding.

@@ -13,7 +13,7 @@ use super::{Path, Record, Tally};
 use crate::linear::{Vector, apply, largest, sub, transpose};
 use crate::shape::Body;
 
-/// Whether two meshes intersect, and what it took.
+/// Whether two meshes intersect, and which stages decided it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Meeting {
     /// The answer, true in exact arithmetic.

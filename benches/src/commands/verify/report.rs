@@ -19,9 +19,9 @@ use coverage::Coverage;
 pub struct Report {
     /// The verdict in one word.
     conclusion: Conclusion,
-    /// Units of work that were asked for.
+    /// The number of requested units of work.
     asked: usize,
-    /// Those that were judged: `--time` may have left no room for the others.
+    /// The number of units that were judged before `--time` was over.
     judged: usize,
     /// Tiers that took part.
     simd: Vec<String>,
@@ -115,7 +115,8 @@ impl Report {
         });
     }
 
-    /// Concludes, once all sources are there: so many units were asked for, and so many judged.
+    /// Draws the conclusion when all sources are there, from the numbers of requested and of judged
+    /// units.
     pub fn finish(
         &mut self,
         [asked, judged]: [usize; 2],

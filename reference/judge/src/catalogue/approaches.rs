@@ -9,7 +9,7 @@ use crate::ours::forms::{self, Form, FormError};
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet};
 
-/// How bodies move.
+/// How the bodies of a pair move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ApproachKind {
     /// Two bodies approach each other, each by half of the distance.

@@ -22,7 +22,7 @@ pub enum BoxKind {
     Range,
 }
 
-/// So many boxes of a kind, in one frame.
+/// Draws `count` boxes of a kind, in one frame.
 pub fn boxes(kind: BoxKind, count: usize, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
     let mut boxes: Vec<WorldBox> = Vec::new();
     for n in 0..count {

@@ -12,7 +12,7 @@ use crate::truth::boxes_meet;
 /// The additional input of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClaimInputKind {
-    /// Groups and masks part bodies, some of them one way only.
+    /// Groups and masks filter pairs; in some pairs, only one of the two bodies excludes the other.
     Groups,
     /// A list of pairs is excluded.
     Excluded,
@@ -24,7 +24,7 @@ pub enum ClaimInputKind {
     Margins,
     /// The state is saved, restored, and restored again.
     Restored,
-    /// The bodies come in other orders.
+    /// The bodies are inserted in different orders.
     Insertion,
 }
 
@@ -65,7 +65,8 @@ pub fn with_input(
     }
 }
 
-/// One of eight groups each, the highest bit among them, and masks of any of them.
+/// Each body is in one of eight groups, including that of the highest bit, and has a mask of any of
+/// them.
 fn groups(rng: &mut impl Rng) -> Filter {
     let bit = |rng: &mut _| 1_u32 << [0, 1, 2, 3, 7, 15, 30, 31][RngExt::random_range(rng, 0..8)];
     let group = |_| {

@@ -11,7 +11,7 @@ use crate::ours::seeded_draws::{crowd as uniform, rotation};
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet, Shape};
 
-/// What happens.
+/// What happens to the bodies of a crowd.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrowdKind {
     /// Nothing: one frame.
@@ -226,8 +226,8 @@ fn permutation(n: usize, rng: &mut impl Rng) -> Vec<usize> {
     order
 }
 
-/// The former number of each body of a frame, where it was there; `None` for a frame in which
-/// nothing changed.
+/// The former number of each body of a frame, if it existed; `None` for a frame in which no body
+/// came or went.
 type FormerNumbers = Option<Vec<Option<u32>>>;
 
 /// Some bodies go, others come, numbers change: each frame's former numbers.

@@ -12,10 +12,10 @@ use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use sdop::bodies::Bodies;
 
-/// Pairs a case.
+/// Pairs per case.
 const PAIRS: usize = 16;
-/// Sizes that are tried until a case's pairs are found, and places for each pair: one in some ten
-/// and some hundred will do.
+/// Sizes that are tried until a case's pairs are found, and places for each pair. About one size in
+/// ten and one place in some hundred have such a pair.
 const SIZES: usize = 256;
 const PLACES: usize = 4096;
 
@@ -52,7 +52,7 @@ struct CellGrid {
 }
 
 impl CellGrid {
-    /// Two places at most `reach` apart, as exact numbers, whose cells have another between them.
+    /// Two places at most `reach` apart, as exact numbers, with another cell between their cells.
     fn pair_across(self, reach: f32, rng: &mut impl Rng) -> Option<[f32; 2]> {
         (0..PLACES).find_map(|_| {
             let [first, second] = self.near_border(reach, rng);
@@ -61,7 +61,7 @@ impl CellGrid {
         })
     }
 
-    /// A place about a cell's border, and the last one within reach of it.
+    /// A place near a cell's border, and the last place within its reach.
     fn near_border(self, reach: f32, rng: &mut impl Rng) -> [f32; 2] {
         let (least, side) = (f64::from(self.least), f64::from(self.side));
         let border = match self.counting {

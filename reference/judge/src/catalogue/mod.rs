@@ -94,7 +94,7 @@ pub struct CaseGroup {
     pub flag: &'static str,
     /// Where it comes from.
     pub source: &'static str,
-    /// How many cases are published.
+    /// The number of published cases.
     pub cases: u32,
     draw: CaseDraw,
 }
@@ -191,7 +191,7 @@ sdop_data::with_hard_cases! { groups! {
 /// Every group: the catalogue's own, then the files of hard cases as `hard/…`.
 ///
 /// # Errors
-/// A file of hard cases that can't be read: none that is compiled in.
+/// A file of hard cases can't be read. This does not happen for the files that are compiled in.
 pub fn groups() -> Result<Vec<CaseGroup>, CatalogueError> {
     let mut groups = OWN.to_vec();
     for (&name, &(source, text)) in HARD.iter().zip(hard::FILES) {
@@ -259,7 +259,7 @@ impl CaseGroup {
     /// Draws a case, about the first of the group's claims.
     ///
     /// # Errors
-    /// Forms that can't be had.
+    /// A form can't be built.
     pub fn case(&self, number: u32, seed: Option<u64>) -> Result<Case, CatalogueError> {
         let mut rng = ChaCha8Rng::seed_from_u64(key(self.name) ^ seed.unwrap_or(0).rotate_left(17));
         rng.set_stream(u64::from(number) + (u64::from(seed.is_some()) << 32));
@@ -295,7 +295,8 @@ impl CaseGroup {
         }
     }
 
-    /// Draws bodies; so many partners near the first, or touching it exactly, or so many boxes.
+    /// Draws bodies. The count is that of partners near the first body or touching it exactly, or
+    /// of boxes.
     fn drawn(
         &self,
         number: u32,
@@ -358,7 +359,7 @@ pub struct CaseId {
     pub group: CaseGroup,
     /// Its number in the group.
     pub number: u32,
-    /// What draws it; absent: it is published.
+    /// The seed that draws it; absent if it is published.
     pub seed: Option<u64>,
     /// What it is judged by.
     pub claim: Claim,
@@ -382,8 +383,8 @@ impl CaseId {
     }
 }
 
-/// Which cases, in turns over the groups so that every bug is looked for early. Groups that are
-/// about this claim alone come first.
+/// The selected cases, alternating between groups so that every bug is looked for early. Groups
+/// that are only about this claim come first.
 ///
 /// # Errors
 /// As [`groups`].

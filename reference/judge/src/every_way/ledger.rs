@@ -92,13 +92,13 @@ impl Ledger {
         self.failures.truncate(MOST_FAILURES);
     }
 
-    /// Missed pairs in all.
+    /// The number of all missed pairs.
     #[must_use]
     pub fn missed(&self) -> u64 {
         self.rows.values().map(|count| count.missed).sum()
     }
 
-    /// Pairs on which a list and that of all-pairs differ, in all.
+    /// The number of all pairs on which a list differs from that of all-pairs.
     #[must_use]
     pub fn differing(&self) -> u64 {
         self.rows.values().map(|count| count.differ).sum()

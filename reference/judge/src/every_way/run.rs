@@ -150,7 +150,8 @@ impl Run<'_> {
     }
 }
 
-/// What the lists of one strategy and overlap test are held against, whichever finder and mode.
+/// The lists with which those of one strategy and overlap test are compared, for every finder and
+/// mode.
 struct ExpectedLists<'a> {
     run: &'a Run<'a>,
     row: CullSettings,

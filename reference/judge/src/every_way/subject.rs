@@ -78,7 +78,7 @@ impl Subject for EveryWay {
 
 type Lists = Vec<Vec<[u32; 2]>>;
 
-/// What is in all of some lists, frame by frame; they are sorted.
+/// The pairs that all of these lists contain, frame by frame; the lists are sorted.
 fn all_report(
     mut lists: impl Iterator<Item = Result<Lists, CullError>>,
 ) -> Result<Lists, CullError> {

@@ -86,7 +86,7 @@ impl BoxLedger {
         self.failure = self.failure.take().or(other.failure);
     }
 
-    /// Wrong pairs in all.
+    /// The number of all wrong pairs.
     #[must_use]
     pub fn wrong(&self) -> u64 {
         self.cells.values().map(|[_, wrong]| wrong).sum()

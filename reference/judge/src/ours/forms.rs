@@ -26,7 +26,7 @@ pub struct Form {
     pub offset: Option<[f32; 3]>,
 }
 
-/// A form that can't be had.
+/// A form that can't be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("form {form}: {problem}")]
 pub struct FormError {

@@ -47,8 +47,9 @@ pub fn draw_strategies(area: &Area<'_>, scene: &str, costs: &[&Cost]) -> DrawRes
     panel(&right, "on another scale", &slow, name)
 }
 
-/// Costs in two parts at the widest gap between neighbours by time, if the slowest takes so many
-/// times the fastest's that its terms would be too low to see; the order within each part stays.
+/// Splits costs in two at the widest gap between neighbours by time, if the slowest takes so much
+/// longer than the fastest that the terms of the fastest would be too low to see. The order within
+/// each part stays.
 fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
     const WIDE: f64 = 4.0;
     let time = |cost: &Cost| cost.frame.measured.mean;

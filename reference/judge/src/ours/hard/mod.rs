@@ -78,7 +78,7 @@ impl HardCaseGroup {
     /// Makes the cases for one or-DOP.
     ///
     /// # Errors
-    /// Forms that can't be had.
+    /// A form can't be built.
     pub fn cases(&self, k: DirectionSet, axes: Axes) -> Result<HardCases, HardCaseError> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         Ok(self
