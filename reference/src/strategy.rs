@@ -126,7 +126,7 @@ fn volumes(hit: bool, counters: &mut Counters) -> bool {
 }
 
 /// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once per body,
-/// when first asked for.
+/// when first needed.
 pub struct PlainPredicates<'a> {
     bodies: &'a [Body<'a>],
     overlap: Overlap,

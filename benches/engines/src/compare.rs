@@ -130,7 +130,7 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<CaseT
     Ok(CaseTimings { rows, left_out })
 }
 
-/// Who has passed, and who has not been asked.
+/// Which engines have passed, and which have not been checked.
 type CheckedEngines<'a> = (Vec<(&'a Entry, Memory)>, Vec<LeftOut>);
 
 /// Runs every engine alone over the first frames and judges its pairs; counts its memory on the

@@ -22,7 +22,7 @@ const FEATURES: &str = match (cfg!(feature = "physx"), cfg!(feature = "debian"))
 pub struct Facts {
     command: String,
     machine: Machine,
-    /// Features of the CPU that engines in Rust were compiled for; ours asks at run time.
+    /// CPU features for which engines in Rust were compiled; ours detects them at run time.
     compiled_for: &'static str,
     /// What else ran, in the measurer's words.
     note: String,

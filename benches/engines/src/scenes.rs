@@ -104,7 +104,7 @@ pub const EXPECTED: [(Spread, usize, usize); 19] = [
 
 /// A scene and where it is.
 pub struct Course {
-    /// The scene, its bodies in the wished order.
+    /// The scene, with its bodies in the given order.
     pub scene: Scene,
     effects: Effects,
     bodies: Bodies,

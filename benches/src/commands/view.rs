@@ -134,7 +134,7 @@ fn culled(args: &Args, show: &ShownRun) -> miette::Result<Vec<ShownStrategy>> {
     Ok(culled)
 }
 
-/// Writes the page, and opens it if asked to; returns where it is.
+/// Writes the page, opens it if requested, and returns its path.
 fn write(args: &Args, page: &Page, name: &str) -> miette::Result<PathBuf> {
     let own = || format!("{}.html", safe(name)).into();
     let path = args.out.clone().unwrap_or_else(own);

@@ -58,8 +58,8 @@ pub struct RankSeconds {
     pub border: BorderSeconds,
 }
 
-/// What a finished run says of itself, the same on every rank but for the hash of all pairs, which
-/// rank 0 alone has.
+/// The results of a finished run. They are the same on every rank, except for the hash of all
+/// pairs, which rank 0 alone has.
 #[derive(Clone, Debug)]
 pub struct DomainSummary {
     /// As of one process. Counters are sums over ranks: updates are those of owned bodies, tests

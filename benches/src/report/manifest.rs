@@ -33,7 +33,7 @@ pub struct Manifest {
     pub date: String,
     /// The code that was measured; absent where no repository was at hand.
     pub code: Option<CodeVersion>,
-    /// The machine; absent in records taken up from files that don't say.
+    /// The machine; absent in records that were made from files without it.
     pub machine: Option<Machine>,
     /// Data caches of one core, smallest first, as the system names them.
     #[serde(default)]

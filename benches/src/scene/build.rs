@@ -160,7 +160,7 @@ impl SceneFile {
         Ok(())
     }
 
-    /// The box's side: given, or from the seeded bodies' radii and the wished density.
+    /// The box's side: as given, or from the seeded bodies' radii and the requested density.
     fn side(
         &self,
         groups: &[BodyGroup<'_>],

@@ -30,7 +30,8 @@ pub struct Header {
     pub inputs: BTreeMap<String, String>,
     /// How many units there are.
     pub units: usize,
-    /// The command as a reader types it, for pages. Other places for files make no other work.
+    /// The command as a reader types it, for pages. Other paths of files do not make it different
+    /// work.
     pub line: String,
     /// The part that this file is of, if it is one.
     pub shard: Option<Shard>,

@@ -63,7 +63,8 @@ pub trait Contestant<Frame: ?Sized = Bodies> {
         false
     }
 
-    /// Keeps its state after the last frame, in place of one kept before. False when it can't.
+    /// Saves its state after the last frame, and drops a state that was saved before. Returns false
+    /// if it can't.
     fn save(&mut self) -> bool {
         false
     }

@@ -61,7 +61,7 @@ impl Subject for Program {
 }
 
 /// A program whose processes outlive a case: the next header follows on the last frame. As many run
-/// as cases are judged at once. One that fails, or has not answered what it was asked, is ended and
+/// as cases are judged at once. A process that fails, or has not answered every frame, is ended and
 /// replaced, so that a case's end is never taken for the next one's beginning.
 pub struct Service {
     program: Program,

@@ -159,7 +159,7 @@ pub(crate) fn either(p: Option<bool>, q: impl FnOnce() -> Option<bool>) -> Optio
     }
 }
 
-/// Whether any is true, as far as it is known; the rest is not asked once one is.
+/// Whether any is true, as far as it is known. The rest is not evaluated after one that is true.
 pub(crate) fn any(answers: impl IntoIterator<Item = Option<bool>>) -> Option<bool> {
     let mut found = Some(false);
     for answer in answers {

@@ -142,7 +142,7 @@ fn rows<N: Number>(
     rows
 }
 
-/// The program in f64, to no more digits than it has.
+/// The program in f64, within the precision of f64.
 fn guess(a: Posed, b: Posed) -> Option<Optimum<f64>> {
     let Approximate { matrix, offset, .. } = Approximate::over(b, a);
     let map = Relative {

@@ -44,7 +44,7 @@ pub struct Tables {
     pub survival: Vec<SurvivalRow>,
     pub claims: Vec<PaperClaim>,
     pub study: Vec<PaperClaim>,
-    /// What the paper doesn't state, swept; none of a quick look.
+    /// Interpretations of what the paper doesn't state; empty with `--quick`.
     pub interpretations: Vec<Interpretation>,
     #[serde(skip)]
     pub counts: Vec<CountRow>,

@@ -50,8 +50,7 @@ pub struct Failure {
     pub case: Case,
     /// The pair.
     pub pair: [u32; 2],
-    /// Whether the exact answers ask for it; otherwise all-pairs has it and this list not, or the
-    /// other way round.
+    /// Whether the exact answers require it; otherwise only one of all-pairs and this list has it.
     pub missed: bool,
 }
 

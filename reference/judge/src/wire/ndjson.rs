@@ -40,7 +40,7 @@ struct CaseFields {
     flag: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     source: String,
-    /// The claim that is asked about, then the others that the case is about.
+    /// The judged claim, then the other claims of the case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     claims: Vec<Claim>,
 }
