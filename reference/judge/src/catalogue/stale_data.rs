@@ -7,7 +7,9 @@
 
 use rand::Rng;
 
-use super::changes::{ALONG, AWAY, NEAR, REACH, UNTURNED, cube, needle, places};
+use super::changes::{
+    MEETING_DISTANCE, PARTED_DISTANCE, QUARTER_TURNS, TIP_DISTANCE, UNTURNED, cube, needle, places,
+};
 use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use sdop::bodies::Bodies;
@@ -100,7 +102,7 @@ fn placed(
         id,
         shape,
         dynamic: true,
-        rotation: ALONG[axis],
+        rotation: QUARTER_TURNS[axis],
         translation: at(distance),
     };
     let mut all = vec![RowBody {
@@ -117,12 +119,20 @@ fn placed(
         ChangeKind::Reorder | ChangeKind::Rebase => 3,
     };
     match change {
-        0 => all.push(moving(id, 0, if after { NEAR } else { 1e6 })),
-        1 => all.push(moving(id, u32::from(after), REACH)),
+        0 => all.push(moving(id, 0, if after { MEETING_DISTANCE } else { 1e6 })),
+        1 => all.push(moving(id, u32::from(after), TIP_DISTANCE)),
         // A new body each time, which is gone in the next frame.
-        2 if after => all.push(moving(id + 2 * ROWS * (n + 1), 0, NEAR)),
+        2 if after => all.push(moving(id + 2 * ROWS * (n + 1), 0, MEETING_DISTANCE)),
         2 => {}
-        _ => all.push(moving(id, 0, if after { NEAR } else { AWAY })),
+        _ => all.push(moving(
+            id,
+            0,
+            if after {
+                MEETING_DISTANCE
+            } else {
+                PARTED_DISTANCE
+            },
+        )),
     }
     all
 }
