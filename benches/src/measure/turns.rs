@@ -2,10 +2,10 @@
 //!
 //! In its turn a contestant culls several consecutive frames, then the next contestant does. Other
 //! load (other processes, clock changes) therefore affects all contestants alike. The order of
-//! turns is random in each round, because otherwise a contestant would always find the data of the
-//! same other one in the caches. The first frame of a turn is *cold*, because others ran before it.
-//! The following ones are *warm*: frames of one culler in sequence, as in a simulation. Every
-//! number says which of the two it is.
+//! turns is random in each round, because otherwise a contestant would always follow the same other
+//! one and find its data in the caches. The first frame of a turn is *cold*, because others ran
+//! before it. The following ones are *warm*: frames of one culler in sequence, as in a simulation.
+//! Every number says which of the two it is.
 //!
 //! The position of the stack also affects a frame's time: loads and stores whose addresses agree
 //! modulo a page wait for each other, and an access that crosses a page is slow. That position is

@@ -226,8 +226,8 @@ fn permutation(n: usize, rng: &mut impl Rng) -> Vec<usize> {
     order
 }
 
-/// The former number of each body of a frame, if it existed; `None` for a frame in which no body
-/// came or went.
+/// The former number of each body of a frame, if it existed; `None` for a frame in which no number
+/// changed.
 type FormerNumbers = Option<Vec<Option<u32>>>;
 
 /// Some bodies go, others come, numbers change: each frame's former numbers.

@@ -2,8 +2,8 @@
 //!
 //! A group's file says what is drawn and, for every or-DOP (k, axes), which pairs overlap by each
 //! predicate: one bit per pair, hexadecimal, in the order of runs, frames and sorted pairs. The
-//! exact reference computed the answers when they were recorded, and tests compare them with it
-//! since then.
+//! exact reference computed the answers when they were recorded, and tests still compare them with
+//! it.
 
 use std::collections::BTreeMap;
 
