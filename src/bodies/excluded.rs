@@ -30,19 +30,19 @@ impl ExcludedPairs {
         partners.is_some_and(|partners| partners.contains(&b))
     }
 
-    /// Adds a pair of two bodies; whether it is new.
+    /// Adds a pair of two bodies, and returns whether it is new.
     pub fn insert(&mut self, a: u32, b: u32) -> bool {
         self.partners.entry(a).or_default().insert(b);
         self.partners.entry(b).or_default().insert(a)
     }
 
-    /// Drops a pair; whether it was there.
+    /// Removes a pair, and returns whether it was there.
     pub fn remove(&mut self, a: u32, b: u32) -> bool {
         self.remove_at(a, b);
         self.remove_at(b, a)
     }
 
-    /// Drops all pairs of a body.
+    /// Removes all pairs of a body.
     pub fn remove_all(&mut self, body: u32) {
         for partner in self.partners.remove(&body).into_iter().flatten() {
             self.remove_at(partner, body);
@@ -71,7 +71,7 @@ impl ExcludedPairs {
         pairs
     }
 
-    /// Gives back the memory of pairs that were dropped.
+    /// Frees the memory of removed pairs.
     pub fn shrink_to_fit(&mut self) {
         self.partners.shrink_to_fit();
         self.partners.values_mut().for_each(HashSet::shrink_to_fit);

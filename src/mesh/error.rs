@@ -2,7 +2,7 @@
 
 use super::MAX_COORDINATE;
 
-/// Why a mesh was refused. Prints as `file:line: problem`; the help text says how to mend it.
+/// Why a mesh was rejected. It prints as `file:line: problem`; the help text says how to fix it.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {problem}", place(.file, *.line))]
 pub struct MeshError {

@@ -53,8 +53,8 @@ pub const LANES: [u32; MAX_WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 1
 /// Bytes that come into the caches with any one of them, on any processor that is known of.
 pub const CACHE_LINE: usize = 64;
 
-/// Asks for the cache line where `element` begins, so that it is near when it is read some hundred
-/// cycles later.
+/// Prefetches the cache line in which `element` begins, so that it is in the caches when it is read
+/// some hundred cycles later.
 #[inline(always)]
 pub fn prefetch<T>(element: &T) {
     #[cfg(target_arch = "x86_64")]
@@ -67,7 +67,7 @@ pub fn prefetch<T>(element: &T) {
     let _ = element;
 }
 
-/// Asks for the cache lines in which an element begins and ends, which may be two.
+/// Prefetches the cache lines in which an element begins and ends, which may be two.
 #[inline(always)]
 pub fn prefetch_ends<const N: usize>(element: &[f32; N]) {
     element.first().map(prefetch);

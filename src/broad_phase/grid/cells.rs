@@ -41,7 +41,7 @@ pub const WRAPPED_SPAN: u32 = 3;
 pub enum TableLayout {
     /// Every cell of the bodies' box has its own entry.
     Box,
-    /// Modulo the table's length.
+    /// Table entries are cells modulo the table's length.
     Wrapped,
 }
 
