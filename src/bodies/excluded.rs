@@ -122,7 +122,7 @@ pub(crate) struct PairRules<'a> {
 /// The filters for pairs whose volumes meet, if there are any.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairFilter<'a> {
-    /// By body, where not all collide with all.
+    /// The groups by body, unless all collide with all.
     groups: Option<&'a [super::Groups]>,
     excluded: Option<&'a ExcludedPairs>,
 }
@@ -135,7 +135,7 @@ impl<'a> PairFilter<'a> {
         is_needed.then_some(Self { groups, excluded })
     }
 
-    /// Of groups alone.
+    /// A filter of groups alone.
     pub fn of_groups(groups: Option<&'a [super::Groups]>) -> Option<Self> {
         groups.map(|groups| Self {
             groups: Some(groups),

@@ -6,8 +6,8 @@ use super::periods::Periods;
 use crate::simd::in_default_mode;
 use crate::world::{BodyId, WorldError};
 
-/// By how much the widest body is taken to be wider than it is, so that bodies of nearly one size
-/// don't all count as the widest so far.
+/// The factor by which the widest body counts as wider than it is, so that bodies of nearly the
+/// same size don't all become the widest so far.
 const WIDEST_FACTOR: f64 = 1.0 + 1.0 / 64.0;
 
 /// 2⁻⁴⁰, as a multiple of the period: more than rounding takes from the ends of placed bodies. A
@@ -30,11 +30,11 @@ pub struct PeriodicPair {
 #[derive(Clone, Debug)]
 pub struct Periodic<W: ImageWorld> {
     periods: Periods,
-    /// All images. Those of no axis have the ids of their bodies.
+    /// All images. An image that is not moved has the id of its body.
     world: W,
-    /// By slot of the world, valid for bodies.
+    /// The bodies by slot of the world; slots of images have invalid entries.
     bodies: Vec<PlacedBody<W::Body>>,
-    /// By slot of the world.
+    /// The images by slot of the world.
     images: Vec<Image>,
     /// The other images of each body, by slot.
     ghosts: Vec<Vec<BodyId>>,

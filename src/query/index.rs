@@ -23,7 +23,7 @@ pub struct QueryIndex {
     pub(super) trees: [Tree; TREES],
     /// The origin of the boxes in the trees: 0 if bodies are boxes.
     pub(super) origin: [f64; 3],
-    /// By slot.
+    /// The place of each slot's body in the trees.
     homes: Vec<TreePlace>,
     pub(super) ids: Vec<BodyId>,
     pub(super) posed: Option<PosedBodies>,

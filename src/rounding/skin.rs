@@ -47,14 +47,14 @@ impl Skin {
         Self { share: 0.0, least }
     }
 
-    /// Of a ball.
+    /// The skin of a ball.
     #[inline(always)]
     #[must_use]
     pub fn of(self, radius: f32) -> f32 {
         (radius * self.share).max(self.least)
     }
 
-    /// Of balls.
+    /// The skins of balls.
     #[inline(always)]
     fn of_lanes<L: Lanes>(self, l: L, radii: L::F) -> L::F {
         l.max(radii * l.splat(self.share), l.splat(self.least))

@@ -34,7 +34,7 @@ const LONGEST_PAUSE: u32 = 64;
 #[derive(Clone, Debug)]
 pub(crate) struct Movers {
     changed: Vec<u32>,
-    /// By slot.
+    /// Whether each slot's body has changed.
     is_changed: Vec<bool>,
     /// Whether the next cull finds all pairs, because many bodies have changed or the pairs of the
     /// last cull aren't known.

@@ -8,7 +8,7 @@ use crate::pairs::{PairList, PairSorter};
 /// The pairs of one cull by slot, with the generations of slots at that time.
 #[derive(Debug, Default)]
 pub(crate) struct ReportedPairs {
-    /// In any order; empty from the time at which they are sorted.
+    /// The pairs in any order; empty once they have been sorted.
     found: Mutex<PairList>,
     sorted: OnceLock<PairList>,
     len: usize,

@@ -84,16 +84,16 @@ pub struct TermWidths {
     /// Half-width of the hits per frame.
     #[serde(deserialize_with = "or_infinite")]
     pub hits: f64,
-    /// Of Co.
+    /// Half-width of Co.
     #[serde(deserialize_with = "or_infinite")]
     pub construct: f64,
-    /// Of Nu·Cu.
+    /// Half-width of Nu·Cu.
     #[serde(deserialize_with = "or_infinite")]
     pub update: f64,
-    /// Of F.
+    /// Half-width of F.
     #[serde(deserialize_with = "or_infinite")]
     pub finding: f64,
-    /// Of Nv·Cv.
+    /// Half-width of Nv·Cv.
     #[serde(deserialize_with = "or_infinite")]
     pub test: f64,
 }

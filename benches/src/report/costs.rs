@@ -12,7 +12,7 @@ macro_rules! costs {
             &["cost", concat!("data/scenes/", $scene, ".toml"), "--seeds", "15", "--format", "json"],
         )),+];
 
-        /// As many other processes as processors.
+        /// The same scenes with as many other processes as processors.
         pub(super) const LOADED: &[ExperimentStep] = &[$(ExperimentStep::Script(
             concat!($scene, ".json"),
             &[

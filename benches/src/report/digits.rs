@@ -8,7 +8,7 @@ use crate::measure::estimate::Estimate;
 /// The pages on which each recorded number is, and its form there.
 #[derive(Debug, Default)]
 pub struct Quantities {
-    /// By the bits of the number: its texts, each with the pages that have it.
+    /// The texts of each number, which is stored as its bits, and the pages that have each text.
     shown: Mutex<BTreeMap<u64, BTreeMap<String, BTreeSet<String>>>>,
 }
 

@@ -47,7 +47,7 @@ pub struct Experiments {
     compared: SceneFile,
     prepared: Vec<PreparedScene>,
     inputs: BTreeMap<String, String>,
-    /// By scene, from its first unit in this process on.
+    /// The calibration of each scene, made with its first unit in this process.
     calibrations: Mutex<BTreeMap<PaperScene, Calibration>>,
 }
 
@@ -74,7 +74,7 @@ enum ReproduceUnit {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum UnitResult {
-    /// Of a scene with one seed.
+    /// A scene with one seed.
     Scene {
         /// Which.
         name: PaperScene,

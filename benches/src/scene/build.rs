@@ -331,7 +331,7 @@ fn add_pose(pose: [f64; 7], bodies: &mut Bodies, fine: &mut FineTranslations) {
 /// What is known of radii once all shapes are made.
 #[derive(Default)]
 struct RadiusSums {
-    /// Of bodies that are spread uniformly.
+    /// The sums over bodies that are spread uniformly.
     uniform: PowerSums,
     /// The largest of each group.
     widest: Vec<f32>,

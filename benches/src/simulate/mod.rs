@@ -138,7 +138,7 @@ pub struct Summary {
     pub counters: Counters,
     /// Sums over frames, with construction (shapes and culler) and effects.
     pub seconds: Seconds,
-    /// Of single frames' culling.
+    /// The time of culling a single frame.
     pub frame_seconds: Percentiles,
     /// Every effect, listed or not.
     pub effects: Vec<EffectReport>,

@@ -24,7 +24,7 @@ use sdop::files::{self, MAX_BYTES, WholeFile};
 /// Finished units, as a file has them.
 #[derive(Clone, Debug)]
 pub struct Units {
-    /// Of which work.
+    /// The work to which the file belongs.
     pub header: Header,
     /// Results by unit.
     pub done: BTreeMap<usize, String>,

@@ -114,9 +114,9 @@ pub struct Case {
     pub name: String,
     /// The bug it looks for.
     pub flag: String,
-    /// Where it comes from.
+    /// The source of the case.
     pub source: String,
-    /// What it is judged by.
+    /// The claim by which it is judged.
     pub claim: Claim,
     /// All claims that it is about.
     pub claims: Vec<Claim>,

@@ -15,9 +15,9 @@ use crate::ours::reference_shapes::InvalidInput;
 pub struct Count {
     /// Pairs judged, over all frames.
     pub judged: u64,
-    /// Pairs of which the claim holds.
+    /// Pairs for which the claim holds.
     pub required: u64,
-    /// Of those, not reported: the claim is broken.
+    /// Required pairs that were not reported: the claim is broken.
     pub missed: u64,
     /// The number of all reported pairs for which the claim doesn't hold.
     pub extra: u64,

@@ -72,7 +72,7 @@ fn frames(args: &Args, network: &MpiNetwork, scene: Scene) -> Option<(Scene, Dom
     Some((about, agreed(network, summary)?))
 }
 
-/// On rank 0, prints what all say of the run.
+/// Prints the results of all ranks, on rank 0.
 fn tell(
     args: &Args,
     network: &MpiNetwork,

@@ -64,7 +64,7 @@ struct StrategyReport {
     required: u64,
     reported: u64,
     missed: u64,
-    /// On which a list and that of all-pairs differ.
+    /// Pairs on which a list differs from that of all-pairs.
     differ: u64,
     /// Reported although the exact volumes are apart, but not those wider by the rounding margins;
     /// per million judged.

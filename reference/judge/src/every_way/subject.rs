@@ -31,7 +31,7 @@ pub struct EveryWay {
 }
 
 impl EveryWay {
-    /// On these modes.
+    /// Our cullers in these modes.
     #[must_use]
     pub fn new(rotation: Rotation) -> Self {
         Self { rotation }

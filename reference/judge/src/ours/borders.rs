@@ -35,7 +35,7 @@ pub struct Borders {
 /// A finder's list that isn't that of all pairs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FinderDifference {
-    /// Who.
+    /// The finder that is wrong.
     pub finder: Finder,
     /// In which frame.
     pub frame: usize,
@@ -215,7 +215,7 @@ impl BorderDraw<'_> {
         from[self.below(from.len() as u32) as usize]
     }
 
-    /// In [0, 1).
+    /// A number in [0, 1).
     fn unit(&mut self) -> f64 {
         f64::from(self.below(1 << 24)) / f64::from(1 << 24)
     }

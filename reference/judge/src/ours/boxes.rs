@@ -30,7 +30,7 @@ const UNITS: [i32; 4] = [-70, 0, 0, 100];
 /// Which list of boxes: all that decides how it is made, and nothing that decides what it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BoxCell {
-    /// Who finds the candidates.
+    /// The finder of candidates.
     pub finder: Finder,
     /// The tier's name.
     pub tier: &'static str,

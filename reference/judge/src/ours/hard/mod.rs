@@ -47,7 +47,7 @@ pub struct HardCaseGroup {
     pub contacts: ContactSpec,
     /// What they look like.
     pub forms: Vec<Form>,
-    /// By or-DOP ("18 principal"), by predicate: one bit a pair.
+    /// The answers by or-DOP ("18 principal") and by predicate: one bit per pair.
     #[serde(default)]
     pub answers: BTreeMap<String, BTreeMap<String, String>>,
 }
