@@ -1,5 +1,5 @@
-//! A missed pair ends as the smallest scene that shows it. The culler misses none, so here a shape
-//! lies about its ball.
+//! A missed pair is reduced to the smallest scene that shows it. The culler misses none, so here a
+//! shape has a ball that is too small.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

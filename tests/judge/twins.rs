@@ -1,5 +1,5 @@
-//! For each group of changes, filters, orders, states, margins and lists: a culler with the flaw
-//! that the group looks for, which it catches, next to one without, which passes.
+//! For each group about changes, filters, orders, states, margins and lists: the group catches a
+//! culler with the flaw that it looks for, and passes one without it.
 
 use sdop::bodies::Bodies;
 use sdop_judge::truth::{boxes_meet, boxes_near};
