@@ -39,6 +39,17 @@ impl From<SdopBoxBody> for BoxBody {
     }
 }
 
+/// A box that is neither fixed nor resting, in all groups. Change what differs.
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_box_body_at(bounds: Aabb) -> SdopBoxBody {
+    SdopBoxBody {
+        bounds,
+        fixed: false,
+        resting: false,
+        groups: Groups::ALL,
+    }
+}
+
 /// Makes a world without boxes. `finder` is "auto" if null; 0 threads are 1.
 ///
 /// # Safety

@@ -283,6 +283,9 @@ SdopStatus sdop_culler_cull(SdopCuller *culler,
 // `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_culler_pairs(SdopCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
 
+// A box that is neither fixed nor resting, in all groups. Change what differs.
+SdopBoxBody sdop_box_body_at(SdopBox bounds);
+
 // Makes a world without boxes. `finder` is "auto" if null; 0 threads are 1.
 //
 // # Safety
@@ -594,6 +597,10 @@ SdopStatus sdop_query_index_along(const SdopQueryIndex *index,
                                   SdopHit *buffer,
                                   size_t capacity,
                                   size_t *count);
+
+// A body of a shape at a place in the world frame: not turned, neither fixed nor resting, without
+// a margin, in all groups. Change what differs.
+SdopBody sdop_body_at(uint32_t shape, double x, double y, double z);
 
 // Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 // defaults.

@@ -48,6 +48,21 @@ impl From<SdopBody> for Body {
     }
 }
 
+/// A body of a shape at a place in the world frame: not turned, neither fixed nor resting, without
+/// a margin, in all groups. Change what differs.
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_body_at(shape: u32, x: f64, y: f64, z: f64) -> SdopBody {
+    SdopBody {
+        shape,
+        fixed: false,
+        resting: false,
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        translation: [x, y, z],
+        margin: 0.0,
+        groups: Groups::ALL,
+    }
+}
+
 /// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 /// defaults.
 ///

@@ -103,7 +103,15 @@ impl SceneArgs {
     /// # Errors
     /// A scene that can't be read, or settings that no scene can have.
     pub fn read(&self) -> miette::Result<SceneFile> {
-        let mut file = SceneFile::read_within(&self.scene, self.files.max_bytes())?;
+        self.read_other(&self.scene)
+    }
+
+    /// The same of another scene.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_other(&self, scene: &Path) -> miette::Result<SceneFile> {
+        let mut file = SceneFile::read_within(scene, self.files.max_bytes())?;
         if let Some(frames) = self.frames.and_then(NonZeroU32::new) {
             file.spec.frames = frames;
         }

@@ -16,6 +16,7 @@
 //! thread waited for a processor is subtracted if the system reports it ([`WaitingTime`]), and is
 //! recorded.
 
+use std::num::NonZeroU32;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -153,6 +154,10 @@ impl Turns {
         order
     }
 }
+
+/// The fewest frames of a run that is timed: one is cold and one warm. A scene that has fewer is
+/// simulated further.
+pub const FEWEST_TIMED_FRAMES: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 
 /// How many consecutive frames a turn has for a scene with `bodies` bodies: at least two, one of
 /// which is warm.

@@ -6,7 +6,7 @@ use super::immediate::HandingTimes;
 use super::plan::{ExperimentPlan, PaperScene};
 use super::sensitivity::Interpretation;
 use super::survival::Survival;
-use crate::cost::calibrate::Calibration;
+use crate::cost::calibrate::CalibrationRound;
 use crate::cost::pass::{Observer, Pass, SceneFrames, VariantRun, pass};
 use crate::cost::table::{self, Cost};
 use crate::hash::PairsHash;
@@ -92,7 +92,7 @@ pub fn run_scene(
     tier: Tier,
 ) -> Result<Vec<StrategyRun>, SimulationError> {
     let variants = variants(scene, strategies);
-    run_pass(scene, &variants, frames, tier, None).map(|(runs, _)| runs)
+    run_pass(scene, &variants, frames, tier, CalibrationRound::default()).map(|(runs, _)| runs)
 }
 
 /// Hashes what each variant reports, between turns.
@@ -121,7 +121,7 @@ pub(super) fn run_pass(
     variants: &[Variant],
     frames: u32,
     tier: Tier,
-    calibration: Option<&mut Calibration>,
+    calibration: CalibrationRound,
 ) -> Result<(Vec<StrategyRun>, Pass), SimulationError> {
     let mut hashing = VariantHashes {
         hashes: vec![PairsHash::default(); variants.len()],
