@@ -36,8 +36,9 @@ const EFFORT: Effort = Effort {
 /// regime: warm frames, which follow one another, or cold ones, before which other cullers ran, and
 /// the cache that holds the working set. They come from calibration scenes that are made from the
 /// scene's shapes alone, so that T is a true prediction; scenes named by --also have the same
-/// prices. The residual is measured / predicted - 1; if it exceeds 5 %, the row names the assumption
-/// that fails. Without --strategy, all strategies for which the scene has settings are measured.
+/// prices. The residual is measured / predicted - 1; if it exceeds 5 %, the row names the
+/// assumption that fails. Without --strategy, all strategies for which the scene has settings are
+/// measured.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {
