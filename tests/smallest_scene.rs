@@ -35,7 +35,7 @@ fn lying_crowd() -> (Shapes, Ledger) {
     (shapes, ledger.unwrap())
 }
 
-/// A lying ball is found out and shrinks to two bodies.
+/// A ball that is too small is detected, and the scene shrinks to two bodies.
 #[test]
 fn wrong_ball_shrinks_to_two_bodies() {
     let (shapes, ledger) = lying_crowd();

@@ -17,7 +17,7 @@ enum Flaw {
     SameNumber,
     /// Keeps the first box of a static body.
     Static,
-    /// Takes up a new body a frame late.
+    /// Adds a new body one frame too late.
     Late,
     /// Asks the mask of the first body alone.
     OneMask,

@@ -35,7 +35,7 @@ pub enum DomainError {
 }
 
 /// The outcome on which all ranks agree: an error of one is an error of all. Collective; returns
-/// the largest `number` of all ranks besides.
+/// and the largest `number` of all ranks.
 pub(super) fn agree<T>(
     network: &impl Network,
     outcome: Result<T, DomainError>,

@@ -25,8 +25,8 @@ pub struct RankLine {
     pub bodies: u64,
     /// Ghosts held, summed over frames.
     pub ghosts: u64,
-    /// Volumes updated of ghosts, besides those in the counters; with lazy updates those of the
-    /// first test alone.
+    /// Updated volumes of ghosts, in addition to those in the counters; with lazy updates those of
+    /// the first test alone.
     pub ghost_updates: u64,
     /// Pairs found here and reported by another rank.
     pub others_pairs: u64,

@@ -35,7 +35,7 @@ impl Share {
         }
     }
 
-    /// The part of a run of bodies that is at hand, counted from the run's first.
+    /// The part of a run of bodies that is held, counted from the run's first body.
     pub(super) fn within(&self, run: &Range<usize>) -> Range<usize> {
         let clamp = |number: usize| number.clamp(run.start, run.end) - run.start;
         clamp(self.held.start)..clamp(self.held.end)

@@ -8,7 +8,7 @@ pub type WorldBox = [f32; 6];
 /// Which pairs of a frame must not be reported.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
-    /// Of each body: the groups that it is in, and those that it meets, a bit each.
+    /// For each body, the groups that it is in, and those that it meets, one bit per group.
     pub groups: Vec<[u32; 2]>,
     /// Pairs i < j, sorted.
     pub excluded: Vec<[u32; 2]>,

@@ -21,7 +21,7 @@ pub struct Program {
     pub command: String,
     /// How cases are written for it.
     pub wire: Wire,
-    /// What it has for a case, on top of a second for each megabyte of it.
+    /// The time for a case, in addition to a second per megabyte of it.
     pub timeout: Duration,
 }
 

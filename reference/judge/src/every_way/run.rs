@@ -155,8 +155,8 @@ impl Run<'_> {
 struct ExpectedLists<'a> {
     run: &'a Run<'a>,
     row: CullSettings,
-    /// What all-pairs finds in the plainest mode, a list a frame, by tier: flush-to-zero may decide
-    /// otherwise.
+    /// The pairs that all-pairs finds in the simplest mode, one list per frame, by tier:
+    /// flush-to-zero may decide otherwise.
     all_pairs: BTreeMap<&'static str, Vec<Vec<[u32; 2]>>>,
     /// Whether the margins explain an extra pair, by frame.
     explained: BTreeMap<(usize, [u32; 2]), bool>,
