@@ -34,8 +34,8 @@ pub enum DomainError {
     },
 }
 
-/// The outcome on which all ranks agree: an error of one is an error of all. Collective; returns
-/// and the largest `number` of all ranks.
+/// The outcome on which all ranks agree (an error of one is an error of all), and the largest
+/// `number` of all ranks. All ranks have to call it.
 pub(super) fn agree<T>(
     network: &impl Network,
     outcome: Result<T, DomainError>,
