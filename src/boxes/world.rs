@@ -281,10 +281,9 @@ impl BoxWorld {
         self.log.pairs(&self.ids).iter()
     }
 
-    /// The pairs that the last cull reports and that were not there at the last call of this
-    /// method, and those that have ended since. Events don't borrow the world, so boxes may be
-    /// removed while they are read. Drop them before the next cull, which otherwise copies the
-    /// pairs.
+    /// The pairs that began, persisted or ended between the last call of this method and the last
+    /// cull. Events don't borrow the world, so boxes may be removed while they are read. Drop them
+    /// before the next cull, which otherwise copies the pairs.
     pub fn events(&mut self) -> Events {
         self.log.events(&self.ids)
     }

@@ -4,8 +4,8 @@ use std::ffi::c_void;
 
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
 use super::border::{
-    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
-    saved, shared, tell,
+    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, pass_events,
+    put, read_back, saved, shared,
 };
 use crate::bodies::{Groups, Motion};
 use crate::world::{Body, BodyId, World};
@@ -173,8 +173,8 @@ pub unsafe extern "C" fn sdop_world_set(
     })
 }
 
-/// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have
-/// moved.
+/// Moves bodies: columns of ids, rotations and translations. If one is rejected, those before it
+/// have moved.
 ///
 /// # Safety
 /// `world` is a handle; the columns have `count` entries.
@@ -268,8 +268,8 @@ pub unsafe extern "C" fn sdop_world_pairs(
     })
 }
 
-/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
-/// other way round.
+/// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+/// function.
 ///
 /// # Safety
 /// `world` is a handle; `take` may be called with `user`.
@@ -283,7 +283,7 @@ pub unsafe extern "C" fn sdop_world_events(
         // SAFETY: the caller's promise.
         let it = unsafe { handle(world, "world") }?;
         // SAFETY: the caller's promise.
-        unsafe { tell(&it.0.events(), take, user) }
+        unsafe { pass_events(&it.0.events(), take, user) }
     })
 }
 
@@ -307,7 +307,7 @@ pub unsafe extern "C" fn sdop_world_snapshot(
     })
 }
 
-/// Makes this world the one of a snapshot. It must have the same shapes under the same numbers.
+/// Gives this world the state of a snapshot. It must have the same shapes under the same numbers.
 ///
 /// # Safety
 /// `world` is a handle; `count` bytes may be read.

@@ -1,10 +1,11 @@
 //! Long-lived worlds: bodies come and go, and each frame finds the pairs that might touch.
 //!
-//! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and
-//! masks, contact margins, translations in f64, and pairs as a list or as events. The promise is
-//! the same, margins included: at every [`World::cull`], if two meshes, each grown by its body's
-//! margin and posed at its f64 translation, meet in exact arithmetic, and one of them is dynamic,
-//! and their groups collide, and the pair isn't [excluded](World::exclude), it is reported.
+//! A world gives an engine what it needs around a [`Culler`]: stable ids, static and dynamic
+//! bodies, groups and masks, contact margins, translations in f64, and pairs as a list or as
+//! events. The promise is the same and includes margins: every [`World::cull`] reports each pair of
+//! meshes that meet in exact arithmetic, each grown by its body's margin and posed at its f64
+//! translation, if at least one of them is dynamic, their groups collide, and the pair isn't
+//! [excluded](World::exclude).
 //!
 //! A frame costs time for what changes: bodies that were set, inserted or removed, their
 //! neighbours, and the pairs that begin or end ([`World`]). Lists and their order depend on the

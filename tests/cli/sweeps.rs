@@ -28,7 +28,7 @@ struct Sweep {
 
 const REPRODUCED: &[&str] = &["counts.csv", "table_1.csv", "survival.csv"];
 
-/// Each has a test of its own below, so that they run side by side.
+/// Each has a separate test below, so that they run side by side.
 static SWEEPS: [Sweep; 4] = [
     Sweep {
         name: "verify",

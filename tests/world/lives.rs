@@ -1,5 +1,5 @@
-//! What a world holds of its bodies: ids, interest and groups, from insertion to removal, and what
-//! it refuses.
+//! What a world keeps of its bodies (ids, interest and groups) from insertion to removal, and the
+//! input that it rejects.
 
 use sdop::culler::Culler;
 use sdop::settings::{CullSettings, DirectionSet, Interest, Strategy};

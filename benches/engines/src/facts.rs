@@ -29,7 +29,7 @@ fn features() -> String {
 pub struct Facts {
     command: String,
     machine: Machine,
-    /// Features of the CPU that engines in Rust were compiled for; ours asks at run time.
+    /// CPU features for which engines in Rust were compiled; ours detects them at run time.
     compiled_for: &'static str,
     /// What else ran, in the measurer's words.
     note: String,

@@ -1,4 +1,4 @@
-//! `sdop cost`: the formula's predicted time and the measured time, per strategy.
+//! `sdop cost`: prints the formula's predicted time and the measured time per strategy.
 
 pub mod lines;
 
@@ -36,8 +36,9 @@ const EFFORT: Effort = Effort {
 /// regime: warm frames, which follow one another, or cold ones, before which other cullers ran, and
 /// the cache that holds the working set. They come from calibration scenes that are made from the
 /// scene's shapes alone, so that T is a true prediction; scenes named by --also have the same
-/// prices. The residual is measured / predicted - 1; above 5 %, the assumption that fails is named.
-/// Without --strategy, all strategies are measured for which the scene has settings.
+/// prices. The residual is measured / predicted - 1; if it exceeds 5 %, the row names the
+/// assumption that fails. Without --strategy, all strategies for which the scene has settings are
+/// measured.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {

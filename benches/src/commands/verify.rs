@@ -52,7 +52,8 @@ pub struct Args {
     /// One group of hard cases instead of all; may be repeated
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FILES.iter().map(|file| file.0)))]
     group: Vec<String>,
-    /// Judge all ways that make a claim by the cases of that claim, as `sdop judge` does a program
+    /// Judge every configuration that makes this claim by the claim's cases, as `sdop judge` judges
+    /// a program
     #[arg(long, value_name = "CLAIM", conflicts_with_all = ["scenes", "group", "shard"], value_parser = one_of::<Claim>(&EveryWay::CLAIMS.map(Claim::name)))]
     claims: Option<Claim>,
     /// Seeded rounds: each judges 8,192 near and 89,400 random pairs

@@ -1,4 +1,4 @@
-//! The kinds of columns in a recorded table: names of rows, counts, measurements.
+//! The kinds of columns in a recorded table: row names, counts, measurements.
 
 use serde_json::Value;
 

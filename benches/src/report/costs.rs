@@ -12,7 +12,7 @@ macro_rules! costs {
             $("--also", concat!("data/scenes/", $other, ".toml")),+
         ])];
 
-        /// As many other processes as processors.
+        /// The same scenes with as many other processes as processors.
         pub(super) const LOADED: &[ExperimentStep] = &[
             costs!(loaded $first), $(costs!(loaded $other)),+
         ];

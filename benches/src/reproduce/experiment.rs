@@ -69,7 +69,7 @@ pub struct Results {
     pub variants: Vec<(PaperScene, Vec<Variant>)>,
     /// One an or-DOP and test.
     pub survival: Vec<Survival>,
-    /// What the paper doesn't state, swept; of none unless that was asked for.
+    /// Interpretations of what the paper doesn't state; empty unless requested.
     pub interpretations: Vec<Interpretation>,
     /// Hash of the calibrated scene's volumes.
     pub volumes_sha256: String,

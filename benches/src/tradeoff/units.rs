@@ -1,7 +1,7 @@
-//! A comparison divided into units: counts, which depend only on the scene and can be made on any
-//! machine, and times, which need a machine without other load. Joined in their order they are the
-//! results of one process: the same counts to the bit, and the times of the machine that measured
-//! them.
+//! A comparison divided into units: counts, which depend only on the scene and can be taken on any
+//! machine, and times, which need a machine without other load. Joined in their order, they give
+//! the results of one process: the same counts to the bit, and the times of the machine that
+//! measured them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

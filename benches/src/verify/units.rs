@@ -1,6 +1,6 @@
 //! A verification run divided into units: a group of hard cases for one or-DOP, a seed's rounds for
-//! one or-DOP, or a block of a scene's frames. Ledgers are passed as text without the failed
-//! frames: a unit with failures can be repeated.
+//! one or-DOP, or a block of a scene's frames. Ledgers are passed as text, without the failed
+//! frames, because a unit with failures can be repeated.
 
 use std::collections::BTreeMap;
 use std::time::Instant;

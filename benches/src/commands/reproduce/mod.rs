@@ -1,4 +1,4 @@
-//! `sdop reproduce`: the paper's experiments, from the runs to their tables and figures.
+//! `sdop reproduce`: runs the paper's experiments and writes their tables and figures.
 
 mod figures;
 mod rows;

@@ -20,9 +20,9 @@ use coverage::Coverage;
 pub struct Report {
     /// The verdict in one word.
     conclusion: Conclusion,
-    /// Units of work that were asked for.
+    /// The number of requested units of work.
     asked: usize,
-    /// Those that were judged: `--time` may have left no room for the others.
+    /// The number of units that were judged before `--time` was over.
     judged: usize,
     /// Tiers that took part.
     simd: Vec<String>,
@@ -66,7 +66,7 @@ struct StrategyReport {
     required: u64,
     reported: u64,
     missed: u64,
-    /// On which a list and that of all-pairs differ.
+    /// Pairs on which a list differs from that of all-pairs.
     differ: u64,
     /// Reported although the exact volumes are apart, but not those wider by the rounding margins;
     /// per million judged.
@@ -117,7 +117,8 @@ impl Report {
         });
     }
 
-    /// Concludes, once all sources are there: so many units were asked for, and so many judged.
+    /// Draws the conclusion when all sources are there, from the numbers of requested and of judged
+    /// units.
     pub fn finish(
         &mut self,
         [asked, judged]: [usize; 2],

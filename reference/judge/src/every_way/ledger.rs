@@ -53,8 +53,7 @@ pub struct Failure {
     pub case: Case,
     /// The pair.
     pub pair: [u32; 2],
-    /// Whether the exact answers ask for it; otherwise all-pairs has it and this list not, or the
-    /// other way round.
+    /// Whether the exact answers require it; otherwise only one of all-pairs and this list has it.
     pub missed: bool,
 }
 
@@ -96,13 +95,13 @@ impl Ledger {
         self.failures.truncate(MOST_FAILURES);
     }
 
-    /// Missed pairs in all.
+    /// The number of all missed pairs.
     #[must_use]
     pub fn missed(&self) -> u64 {
         self.rows.values().map(|count| count.missed).sum()
     }
 
-    /// Pairs on which a list and that of all-pairs differ, in all.
+    /// The number of all pairs on which a list differs from that of all-pairs.
     #[must_use]
     pub fn differing(&self) -> u64 {
         self.rows.values().map(|count| count.differ).sum()

@@ -1,5 +1,5 @@
-//! Rounds of a verification run: what a seed or a group of hard cases draws, judged once by every
-//! predicate and then culled in every way, in the modes of this turn.
+//! Rounds of a verification run. The bodies that a seed or a group of hard cases draws are judged
+//! once by every predicate, and then culled in every way, in the modes of this turn.
 
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;

@@ -1,5 +1,5 @@
-//! Frames that one culler sees, culled in every way. Each list is compared with the exact answers
-//! and with that of all-pairs.
+//! Culls the same frames in every way, and compares each list with the exact answers and with that
+//! of all-pairs.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -154,12 +154,13 @@ impl Run<'_> {
     }
 }
 
-/// What the lists of one strategy and overlap test are held against, whichever finder and mode.
+/// The lists with which those of one strategy and overlap test are compared, for every finder and
+/// mode.
 struct ExpectedLists<'a> {
     run: &'a Run<'a>,
     row: CullSettings,
-    /// What all-pairs finds in the plainest mode, a list a frame, by tier: flush-to-zero may decide
-    /// otherwise.
+    /// The pairs that all-pairs finds in the simplest mode, one list per frame, by tier:
+    /// flush-to-zero may decide otherwise.
     all_pairs: BTreeMap<&'static str, Vec<Vec<[u32; 2]>>>,
     /// Whether the margins explain an extra pair, by frame.
     explained: BTreeMap<(usize, [u32; 2]), bool>,

@@ -15,7 +15,7 @@ pub use reference::InvalidInput;
 /// Shapes as the culler and as the reference knows them, in one order.
 #[derive(Clone, Debug)]
 pub struct Shapes {
-    /// As built.
+    /// The shapes as built.
     pub built: Vec<Shape>,
     /// The same numbers for the reference, with each shape's oriented box.
     pub judged: Vec<reference::Shape>,

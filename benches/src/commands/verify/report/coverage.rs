@@ -21,13 +21,15 @@ pub struct Coverage {
     fewest: u64,
     /// What can't exist, and so has no cell.
     impossible: String,
-    /// By strategy and overlap test against finder: over k, axes, updates, tiers and threads.
+    /// Lists by strategy and overlap test, and by finder: the sums over k, axes, updates, tiers and
+    /// threads.
     by_strategy: Vec<CoverageLine>,
-    /// By tier, updates and threads against k and axes: over strategies, overlap tests and finders.
+    /// Lists by tier, updates and threads, and by k and axes: the sums over strategies, overlap
+    /// tests and finders.
     by_mode: Vec<CoverageLine>,
-    /// Of given boxes: pairs that meet, over frames.
+    /// Pairs of given boxes that meet, summed over frames.
     box_pairs: u64,
-    /// Those that a list had and shouldn't, or should have had.
+    /// Pairs of given boxes that a list had wrongly, or lacked.
     box_wrong: u64,
     /// Lists of given boxes: by tier and threads against finder.
     boxes: Vec<CoverageLine>,
