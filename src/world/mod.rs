@@ -119,7 +119,7 @@ use crate::{
 ///
 /// A frame costs time for the bodies that were inserted, removed or set to another value since the
 /// last cull, for their neighbours, and for the pairs that change, and nothing for all others. All
-/// pairs are found anew if more than an eighth has changed, with a strategy that has a budget, in
+/// pairs are found anew if more than a sixteenth has changed, with a strategy that has a budget, in
 /// the first cull, and in the first one after a world was restored, after [`Self::shrink_to_fit`]
 /// and after [`Self::cull_in_portions`]. All bodies are placed anew, and their pairs kept, in a
 /// frame in which local origins change, or in which bodies are in far-apart regions
