@@ -63,9 +63,13 @@ pub fn draw_boxes(below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
             groups: groups(below),
         }
     };
-    let moved = |from: &BoxBody, to: &BoxBody| BoxBody {
-        bounds: to.bounds,
-        ..*from
+    let moved = |from: &BoxBody, to: &BoxBody, part: u32| {
+        let mut bounds = from.bounds;
+        for axis in (0..3).filter(|axis| part == 0 || part == 1 + axis % 2) {
+            let axis = axis as usize;
+            (bounds.min[axis], bounds.max[axis]) = (to.bounds.min[axis], to.bounds.max[axis]);
+        }
+        BoxBody { bounds, ..*from }
     };
     let kinds = ChangeKind::ALL
         .into_iter()
@@ -114,9 +118,9 @@ pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> Histo
             )
         }
     };
-    let moved = |from: &Body, to: &Body| Body {
-        rotation: to.rotation,
-        translation: to.translation,
+    let moved = |from: &Body, to: &Body, part: u32| Body {
+        rotation: [to, to, from][part as usize].rotation,
+        translation: [to, from, to][part as usize].translation,
         ..*from
     };
     let own = |body: Body, kind, below: &mut dyn FnMut(u32) -> u32| match kind {
@@ -159,13 +163,13 @@ fn groups(below: &mut dyn FnMut(u32) -> u32) -> Groups {
     }
 }
 
-/// Draws a history of one of these kinds of changes per frame, in turn, and of up to three others.
-/// `new` draws a body next to others, `moved` takes a pose over, and `own` makes a change that only
-/// this kind of bodies knows.
+/// Draws a history of one of these kinds of changes per frame, in turn, and often of another: so few
+/// that a world searches for each changed body. `new` draws a body next to others, `moved` takes a
+/// pose over or a part of it (1, 2), and `own` makes a change that only this kind of bodies knows.
 fn draw<B: Properties>(
     kinds: &[ChangeKind],
     new: impl Fn(&[B], &mut dyn FnMut(u32) -> u32) -> B,
-    moved: impl Fn(&B, &B) -> B,
+    moved: impl Fn(&B, &B, u32) -> B,
     own: impl Fn(B, ChangeKind, &mut dyn FnMut(u32) -> u32) -> B,
     below: &mut dyn FnMut(u32) -> u32,
 ) -> History<B> {
@@ -182,7 +186,7 @@ fn draw<B: Properties>(
     let mut frames = Vec::with_capacity(FRAMES);
     for frame in 0..FRAMES {
         let mut changes = Vec::new();
-        for extra in 0..=below(4) {
+        for extra in 0..=below(2) {
             let kind = match extra {
                 0 => kinds[(frame + offset) % kinds.len()],
                 _ => kinds[below(kinds.len() as u32) as usize],
@@ -227,7 +231,7 @@ impl<B: Properties> Drawn<B> {
         &mut self,
         kind: ChangeKind,
         new: &impl Fn(&[B], &mut dyn FnMut(u32) -> u32) -> B,
-        moved: &impl Fn(&B, &B) -> B,
+        moved: &impl Fn(&B, &B, u32) -> B,
         own: &impl Fn(B, ChangeKind, &mut dyn FnMut(u32) -> u32) -> B,
         below: &mut dyn FnMut(u32) -> u32,
     ) -> Option<Change<B>> {
@@ -260,7 +264,10 @@ impl<B: Properties> Drawn<B> {
             ChangeKind::Woken => *body.motion() = Motion::Dynamic,
             ChangeKind::Fixed => *body.motion() = Motion::Fixed,
             ChangeKind::Regrouped => *body.groups() = groups(below),
-            ChangeKind::Moved => body = moved(&body, &new(&self.present(), below)),
+            ChangeKind::Moved => {
+                let to = new(&self.present(), below);
+                body = moved(&body, &to, below(3));
+            }
             _ => body = own(body, kind, below),
         }
         self.bodies[number] = Some(body);
