@@ -191,7 +191,7 @@ fn prices_and_terms_add_up() {
         &variants,
         tier,
         &mut frames,
-        Some(&mut calibration),
+        Some(calibration.round().unwrap()),
         &mut (),
     )
     .unwrap();

@@ -91,7 +91,7 @@ fn another_pass(file: &SceneFile, variants: &[Variant], calibration: &mut Calibr
     let mut made = || -> miette::Result<Pass> {
         let scene = file.build()?;
         let mut frames = SceneFrames::new(&scene, FRAMES)?;
-        let calibration = calibration.round()?;
+        let calibration = Some(calibration.round()?);
         Ok(pass(
             &scene,
             variants,

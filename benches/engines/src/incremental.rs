@@ -49,6 +49,7 @@ pub enum Extras {
     /// Pairs at this distance or nearer.
     Within(f32),
     /// Pairs that met once: it drops pairs late.
+    #[cfg_attr(not(feature = "debian"), allow(dead_code, reason = "Bullet alone"))]
     Late,
 }
 

@@ -121,7 +121,7 @@ pub fn pass(
     variants: &[Variant],
     tier: Tier,
     frames: &mut dyn Frames,
-    calibration: CalibrationRound,
+    calibration: Option<CalibrationRound>,
     observer: &mut dyn Observer,
 ) -> Result<Pass, SimulationError> {
     let mut culled = vec![VariantRun::default(); variants.len()];
@@ -136,7 +136,7 @@ pub fn pass(
         cullers.push(culler);
     }
     let (all, mut turn) = (frames.turns().max(1), 0);
-    let CalibrationRound { prices, builds } = calibration;
+    let CalibrationRound { prices, builds } = calibration.unwrap_or_default();
     let mut turns = Turns::default();
     while let Some((first, poses)) = frames.next_turn()? {
         turns.round(&mut cullers, &poses, |timed| {

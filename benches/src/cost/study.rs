@@ -188,7 +188,7 @@ pub fn study(
             {
                 let scene = subject.of_pass(n)?;
                 let mut frames = SceneFrames::new(&scene, subject.frames)?;
-                let round = round.clone();
+                let round = Some(round.clone());
                 let pass = pass(&scene, &variants, plan.tier, &mut frames, round, &mut ())?;
                 subject.passes.push(pass);
                 done();

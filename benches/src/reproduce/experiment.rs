@@ -92,7 +92,7 @@ pub fn run_scene(
     tier: Tier,
 ) -> Result<Vec<StrategyRun>, SimulationError> {
     let variants = variants(scene, strategies);
-    run_pass(scene, &variants, frames, tier, CalibrationRound::default()).map(|(runs, _)| runs)
+    run_pass(scene, &variants, frames, tier, None).map(|(runs, _)| runs)
 }
 
 /// Hashes what each variant reports, between turns.
@@ -121,7 +121,7 @@ pub(super) fn run_pass(
     variants: &[Variant],
     frames: u32,
     tier: Tier,
-    calibration: CalibrationRound,
+    calibration: Option<CalibrationRound>,
 ) -> Result<(Vec<StrategyRun>, Pass), SimulationError> {
     let mut hashing = VariantHashes {
         hashes: vec![PairsHash::default(); variants.len()],

@@ -214,7 +214,7 @@ impl Experiments {
             None => Calibration::new(&file.build()?, variants, tier, effort)?,
         };
         let scene = with_seed(file, seed)?;
-        let (runs, pass) = run_pass(&scene, variants, frames, tier, calibration.round()?)?;
+        let (runs, pass) = run_pass(&scene, variants, frames, tier, Some(calibration.round()?))?;
         held.insert(*name, calibration);
         let immediacy = largest.then(|| immediate::measure(&scene, *name, tier));
         Ok(UnitResult::Scene {

@@ -13,7 +13,6 @@ use super::counts::{share, shared};
 use super::interest::spread;
 use super::truth::{ExactJudge, Sample};
 use super::variant::Variant;
-use crate::cost::calibrate::CalibrationRound;
 use crate::cost::pass::{SceneFrames, VariantRun, pass};
 use crate::measure::turns::{Regime, median};
 use crate::percentiles::Percentiles;
@@ -203,14 +202,7 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
     let culled = |budgets: &[Budget]| -> Result<Vec<VariantRun>, TradeoffError> {
         let variants: Vec<Variant> = budgets.iter().copied().map(variant).collect();
         let mut frames = SceneFrames::new(scene, frames)?;
-        let pass = pass(
-            scene,
-            &variants,
-            tier,
-            &mut frames,
-            CalibrationRound::default(),
-            &mut (),
-        )?;
+        let pass = pass(scene, &variants, tier, &mut frames, None, &mut ())?;
         Ok(pass.culled)
     };
     let spent = |culled: &VariantRun| -> Vec<f64> {

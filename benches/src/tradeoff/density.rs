@@ -11,7 +11,6 @@ use super::pays::{CheapestRange, Line, OrDopKind, break_even, envelope};
 use super::timing::{PASSES, measure};
 use super::truth::{Sample, samples};
 use super::variant::{Variant, s_dops};
-use crate::cost::calibrate::CalibrationRound;
 use crate::cost::pass::{Pass, SceneFrames, pass};
 use crate::measure::turns::{FrameTimes, Regime, median};
 use crate::number::Positive;
@@ -118,14 +117,7 @@ pub fn lines_of_a_run(
     let mut passes = Vec::new();
     for _ in 0..PASSES {
         let mut run = SceneFrames::new(scene, frames)?;
-        passes.push(pass(
-            scene,
-            variants,
-            tier,
-            &mut run,
-            CalibrationRound::default(),
-            &mut (),
-        )?);
+        passes.push(pass(scene, variants, tier, &mut run, None, &mut ())?);
     }
     let first = Scene {
         frames,

@@ -5,7 +5,6 @@
 //! those of its calibration ([`pass`](crate::cost::pass)), by the same protocol as everywhere.
 
 use super::truth::windows;
-use crate::cost::calibrate::CalibrationRound;
 use crate::cost::pass::{Frames, Pass, pass};
 use crate::measure::turns::turn_frames;
 use crate::measure::variant::Variant;
@@ -63,14 +62,7 @@ pub fn measure(
     let mut passes = Vec::new();
     for _ in 0..PASSES {
         let frames = &mut windows.clone();
-        passes.push(pass(
-            scene,
-            variants,
-            tier,
-            frames,
-            CalibrationRound::default(),
-            &mut (),
-        )?);
+        passes.push(pass(scene, variants, tier, frames, None, &mut ())?);
     }
     Ok(passes)
 }

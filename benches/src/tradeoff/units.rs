@@ -320,7 +320,7 @@ impl Comparison {
         };
         let scene = with_seed(&self.file, seed)?;
         let mut frames = Windows::new(&scene, self.plan.samples)?;
-        let own = calibration.round()?;
+        let own = Some(calibration.round()?);
         let pass = pass(&scene, &self.variants, tier, &mut frames, own, &mut ())?;
         *held = Some(calibration);
         Ok(pass)
