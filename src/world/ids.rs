@@ -49,9 +49,15 @@ impl BodyId {
     }
 }
 
+/// The number of [`BodyId::to_bits`], as other languages have it, then the slot if it was used
+/// before.
 impl fmt::Display for BodyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}.{}", self.slot, self.generation)
+        self.to_bits().fmt(f)?;
+        match self.generation {
+            0 => Ok(()),
+            generation => write!(f, " (slot {}, generation {generation})", self.slot),
+        }
     }
 }
 

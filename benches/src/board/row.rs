@@ -29,7 +29,7 @@ const SHRINK: Duration = Duration::from_secs(4);
 /// run.
 const TRIES: usize = 20;
 
-/// The verdict on a library in one family of cases, or in all of them.
+/// The verdict on a library in one family of cases, or in all families.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CellVerdict {

@@ -16,7 +16,7 @@ pub(super) const SELF_REPORTED: &str = "self-reported";
 /// The time of a contestant per frame, and its recall.
 #[derive(Clone, Debug, Serialize)]
 pub struct Speed {
-    /// Who.
+    /// The library's name.
     pub name: String,
     /// The claim.
     pub claim: Claim,

@@ -46,7 +46,7 @@ pub struct Args {
         default_value = "benches/adapters/claims.toml"
     )]
     claims: PathBuf,
-    /// Scene on which all are timed
+    /// Also time all libraries on this scene
     #[arg(long, value_name = "SCENE")]
     timed: Option<PathBuf>,
 }

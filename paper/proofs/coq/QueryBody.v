@@ -13,7 +13,8 @@ Local Notation g := gradual64.
 Definition query_error : R := 256 * v.
 Definition slack_of (size : R) : R := add64 g (mul64 g size query_error) query_floor.
 
-(* src/query/shape.rs: QueryShape, PosedShape. A slab has its direction, its length and its ends. *)
+(* src/query/shape.rs: QueryShape::of, PosedShape::slabs. A slab has its direction, its length and its
+   ends. *)
 Record slab := { normal : point; length : R; low : R; high : R }.
 Record solid := { slabs : list slab; middle : point; ball_radius : R; reach : R; turn : quaternion;
                   place : point; margin : R }.

@@ -18,8 +18,8 @@ Definition signed_unit (i : nat) (x : R) : point :=
 Definition orders : list (nat * nat * nat) :=
   [(0, 1, 2); (0, 2, 1); (1, 0, 2); (1, 2, 0); (2, 0, 1); (2, 1, 0)]%nat.
 
-(* src/query/shape.rs: QueryShape. What a support needs: the basis and the end that faces each sum of
-   signed basis vectors. *)
+(* src/query/shape.rs: QueryShape::of. What a support needs: the basis and the end that faces each sum
+   of signed basis vectors. *)
 Record facets := { set_of : kind; basis : matrix; basis_length : R; over_square : R;
                    ends : point -> R }.
 Definition facing_of (h : facets) (a : point) (i j l : nat) : facing :=
