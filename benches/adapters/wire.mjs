@@ -32,6 +32,11 @@ export function centresAndHalves(boxes, round = Math.fround) {
   });
 }
 
+/** Skips a case in which a box is flat. */
+export function checkSides(given) {
+  if (given.some(({ half }) => half.some((length) => length <= 0))) throw new CaseSkipped("its boxes have sides above zero");
+}
+
 /** Pairs that a library has found, in any order and maybe twice, as the judge takes them. */
 function asked(found, bodies) {
   const seen = new Map();

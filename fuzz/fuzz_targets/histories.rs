@@ -1,6 +1,6 @@
-//! Long-lived worlds of boxes and of meshes whose bodies come, go, move, rest, wake and change: the
-//! bytes choose all of it. After each frame their pairs and events are those of a world made for
-//! the moment, and none that the exact reference asks for is missing.
+//! Long-lived worlds of boxes and of meshes, with bodies that come, go, move, rest, wake and
+//! change; the bytes choose everything. After each frame, their pairs and events are those of a
+//! newly built world, and no pair that the exact reference requires is missing.
 #![no_main]
 
 use std::sync::OnceLock;

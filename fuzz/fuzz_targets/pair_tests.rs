@@ -1,5 +1,5 @@
-//! Two bodies with any poses within the contract, or put in touch: what the exact reference
-//! reports, every strategy reports.
+//! Two bodies with any poses within the contract, or placed in contact: every strategy reports what
+//! the exact reference reports.
 #![no_main]
 
 use std::sync::LazyLock;

@@ -2,14 +2,14 @@
 // all frames.
 
 import * as cannon from "cannon-es";
-import { CaseSkipped, centresAndHalves, serve } from "../wire.mjs";
+import { CaseSkipped, centresAndHalves, checkSides, serve } from "../wire.mjs";
 
 const PHASES = { naive: cannon.NaiveBroadphase, sweep: cannon.SAPBroadphase };
 
 await serve("cannon-es", ({ boxes, bodies, groups, excluded, objects, gone, kept }) => {
   if (excluded?.length) throw new CaseSkipped("its broad phase has no excluded pairs, only groups");
   const given = centresAndHalves(boxes, (x) => x);
-  if (given.some(({ half }) => half.some((length) => length <= 0))) throw new CaseSkipped("its boxes have sides above zero");
+  checkSides(given);
   kept.world ??= empty();
   gone.forEach((body) => kept.world.removeBody(body));
   given.forEach((box, number) => {

@@ -1,10 +1,5 @@
 """CGAL by its Python bindings: box_self_intersection_d, with closed boxes."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 from CGAL import CGAL_Box_intersection_d as boxes_of
 from CGAL.CGAL_Kernel import Bbox_3
 from wire import Culler, serve

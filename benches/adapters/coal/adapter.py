@@ -1,9 +1,5 @@
-"""coal: one dynamic tree of boxes for all frames, and its call for all pairs."""
-
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
+"""coal: one dynamic tree of boxes for all frames, and its calls for one object's pairs
+and for all pairs, whose numbers must agree."""
 
 import coal
 from wire import ObjectCuller, centres_and_halves, serve
@@ -35,12 +31,20 @@ class Adapter(ObjectCuller):
         self.manager.setup()
         collected = coal.CollisionCallBackCollect(len(boxes) ** 2 + 1)
         self.manager.collide(collected)
-        # Its Python does not return the pairs; it says whether one is among them.
-        has, objects = collected.exist, self.objects
-        n = range(len(boxes))
-        found = [(i, j) for i in n for j in n if i < j and (has(objects[i], objects[j]) or has(objects[j], objects[i]))]
+        # Its Python does not return the pairs. It says whether one is among them, by a search of
+        # the list, which takes too long where all pairs are in one list.
+        found = [(i, j) for i, near in enumerate(map(self.near, self.objects)) for j in range(i) if self.is_in(near, i, j)]
         assert len(found) == collected.numCollisionPairs()
         return found
+
+    def near(self, it):
+        collected = coal.CollisionCallBackCollect(len(self.objects) + 1)
+        self.manager.collide(it, collected)
+        return collected
+
+    def is_in(self, collected, i, j):
+        one, other = self.objects[i], self.objects[j]
+        return collected.exist(one, other) or collected.exist(other, one)
 
 
 if __name__ == "__main__":

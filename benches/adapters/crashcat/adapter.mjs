@@ -1,13 +1,13 @@
 // crashcat: broadphase.intersectAABB, with a box shape per body in one world for all frames.
 
 import * as crashcat from "crashcat";
-import { CaseSkipped, centresAndHalves, serve } from "../wire.mjs";
+import { centresAndHalves, checkSides, serve } from "../wire.mjs";
 
 crashcat.registerAll();
 
 await serve("crashcat", ({ boxes, groups, excluded, objects, gone, kept }) => {
   const given = centresAndHalves(boxes, (x) => x);
-  if (given.some(({ half }) => half.some((length) => length <= 0))) throw new CaseSkipped("its boxes have sides above zero");
+  checkSides(given);
   kept.world ??= empty();
   const { world, layer } = kept.world;
   gone.forEach((body) => crashcat.rigidBody.remove(world, body));

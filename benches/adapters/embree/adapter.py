@@ -1,12 +1,8 @@
 """Embree, as embreex bundles it: rtcCollide of a scene of user geometry with itself, called by
 ctypes."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 from ctypes import CDLL, CFUNCTYPE, POINTER, Structure, c_char_p, c_float, c_size_t, c_uint, c_void_p
+from pathlib import Path
 
 import embreex
 import numpy as np
@@ -58,6 +54,8 @@ class Adapter(Culler):
     scene = None
 
     def frame(self, boxes):
+        if len(boxes) == 0:
+            return self.pairs([])  # it refuses to collide an empty scene
         if np.abs(boxes).max(initial=0.0) > LARGEST:
             raise CaseSkipped("it leaves out primitives beyond 1.844e18")
         if self.scene is None:

@@ -2,9 +2,6 @@
 given."""
 
 import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import ipctk
 import numpy as np

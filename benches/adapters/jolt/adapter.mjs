@@ -2,7 +2,7 @@
 // system for all frames. Filters are object layers, one per body.
 
 import initialise from "jolt-physics/wasm-compat";
-import { CaseSkipped, centresAndHalves, serve } from "../wire.mjs";
+import { centresAndHalves, checkSides, serve } from "../wire.mjs";
 
 const jolt = await initialise();
 const anyLayer = new jolt.BroadPhaseLayerFilter();
@@ -12,7 +12,7 @@ let last = null;
 
 await serve("jolt-physics", ({ boxes, groups, excluded, save, restore, objects, gone, kept }) => {
   const given = centresAndHalves(boxes);
-  if (given.some(({ half }) => half.some((length) => length <= 0))) throw new CaseSkipped("its boxes have sides above zero");
+  checkSides(given);
   if (!kept.system) {
     if (last) jolt.destroy(last.whole);
     kept.system = last = system(groups ? boxes.length : 1);

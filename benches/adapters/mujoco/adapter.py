@@ -1,11 +1,6 @@
 """MuJoCo: contacts of box geoms on the world's axes, a free body each, with the default margin of
 zero."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 import mujoco
 import numpy as np
 from wire import CaseSkipped, Culler, centres_and_halves, serve

@@ -1,9 +1,6 @@
 """newton: its broad phases of given boxes on the CPU, all pairs and sweep and prune."""
 
 import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import newton
 import numpy as np

@@ -3,10 +3,6 @@ space for all frames."""
 
 import subprocess
 import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 from ctypes import CDLL, CFUNCTYPE, c_char_p, c_double, c_float, c_int, c_uint, c_void_p
 
 import numpy as np

@@ -3,9 +3,6 @@ which asks the broad phase, or with the argument `contacts` getContactPoints, wh
 pairs that are not to collide."""
 
 import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 import numpy as np
 import pybullet

@@ -1,10 +1,5 @@
 """python-fcl: one dynamic tree of boxes for all frames, and its call for all pairs."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 import fcl
 import numpy as np
 from wire import CaseSkipped, ObjectCuller, centres_and_halves, cover, serve

@@ -1,11 +1,6 @@
 """python-prtree: one tree for all frames, made of the first one's boxes and then changed by erasing
 and inserting, and one query for all boxes."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 import numpy as np
 from python_prtree import PRTree3D
 from wire import ObjectCuller, serve

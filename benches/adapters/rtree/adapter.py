@@ -1,11 +1,6 @@
 """Rtree: one index for all frames, loaded in bulk and then changed by deletions and insertions, and
 one query for each box."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 from rtree import index
 from wire import ObjectCuller, serve
 

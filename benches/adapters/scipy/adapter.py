@@ -1,11 +1,6 @@
 """scipy: cKDTree.query_pairs, of the bodies' origins, by the distance within which balls may
 meet."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 import numpy as np
 from scipy.spatial import cKDTree
 from wire import Culler, serve

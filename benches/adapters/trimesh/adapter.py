@@ -1,10 +1,5 @@
 """trimesh: one CollisionManager for all frames, which asks python-fcl."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,11 +1,6 @@
 """vesin: NeighborList without periodic directions, of the bodies' origins, by the distance within
 which balls may meet."""
 
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-
 import numpy as np
 import vesin
 from wire import CaseSkipped, Culler, serve

@@ -1,7 +1,7 @@
-//! Box3D's dynamic tree, driven as its own broad phase drives it: a moved box that leaves its leaf
+//! Box3D's dynamic tree, used as Box3D's broad phase uses it: a moved box that leaves its leaf
 //! enlarges it, all moved boxes are searched, and the parts of the tree above enlarged leaves are
-//! built anew. Box3D's broad phase is part of its worlds and reports no pairs, so a user of the
-//! tree keeps them ([`Partners`]).
+//! rebuilt. Box3D's broad phase is part of its worlds and reports no pairs, so a user of the tree
+//! keeps them ([`Partners`]).
 //!
 //! The binding has Box3D's commit 781673be of 24 July 2026, before its tree was rewritten in
 //! September 2026.

@@ -1,7 +1,7 @@
 //! obvhs: a binary tree of boxes that is updated where bodies move.
 //!
-//! It has no pairs. As in avian, whose broad phase it is, the boxes of moved bodies are searched in
-//! the tree, and a user keeps the pairs ([`Partners`]).
+//! It keeps no pairs. As in avian, which uses it as its broad phase, the boxes of moved bodies are
+//! searched in the tree, and the user keeps the pairs ([`Partners`]).
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;

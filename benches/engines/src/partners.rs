@@ -1,5 +1,5 @@
-//! The pairs of an engine that only answers which boxes of its tree meet a box: what its user has
-//! to write. Each body has a list of its partners.
+//! The pairs of an engine that only answers which boxes of its tree meet a box. Its user has to
+//! write this: each body has a list of its partners.
 
 use crate::incremental::Change;
 

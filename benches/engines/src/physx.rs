@@ -1,7 +1,7 @@
 //! PhysX's broad phase, driven alone through its low-level interface: automatic box pruning (ABP).
 //!
-//! Objects are dynamic, each in a separate group, without a contact distance. Results are what
-//! began and what ended. ABP compares ends as they are.
+//! Objects are dynamic, each in a separate group, without a contact distance. Results are the pairs
+//! that began and ended. ABP compares ends as they are.
 
 #![allow(unsafe_code, reason = "PhysX is C++")]
 

@@ -1,8 +1,8 @@
 //! The scenes of the comparison, built by the bench's scene code: the same frames for all engines.
 //!
-//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a
-//! unit radius per frame, mirrored at walls. The paper's scene, 500 bodies in a box of 16.1, is
-//! used as the smallest uniform one.
+//! Bodies are balls around their origins with 1.5 overlaps each on average. They move a tenth of a
+//! unit radius per frame and are reflected at walls. The paper's scene, 500 bodies in a box of
+//! 16.1, is used as the smallest uniform one.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Threads for engines that work on rayon's.
+//! Threads for engines that work on rayon's pool.
 
 use miette::IntoDiagnostic as _;
 use rayon::{ThreadPool, ThreadPoolBuilder};

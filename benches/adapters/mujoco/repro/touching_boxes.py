@@ -3,8 +3,8 @@
     pip install mujoco && python touching_boxes.py
 
 All numbers are exact in floating point: the boxes share a face, an edge or a corner, at several
-places. The margin is 0, and the documentation does not say whether a distance of exactly 0 is a
-contact.
+places. The margin is 0. By the documentation a contact is active when the distance is below the
+margin, so a distance of exactly 0 need not be one.
 """
 
 import itertools

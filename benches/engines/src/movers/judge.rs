@@ -1,5 +1,5 @@
-//! Comparing every engine's pairs with those of the present boxes, found from nothing: by the
-//! oracle, and for meshes by a culler made for the moment.
+//! Compares every engine's pairs with those of the present boxes, found from nothing: by the
+//! oracle, and for meshes by a newly built culler.
 
 use miette::miette;
 use sdop::bodies::Bodies;

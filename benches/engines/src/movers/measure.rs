@@ -1,4 +1,4 @@
-//! Checking and timing all engines of a case.
+//! Checks and times all engines of a case.
 
 use std::time::Instant;
 

@@ -2,7 +2,8 @@
 //! checked to have the same pairs and timed in turns.
 //!
 //! A frame is a list of bodies with their new boxes. An engine's time runs from that list to its
-//! answer in memory: what has begun and ended where it reports events, else its list of pairs.
+//! answer in memory: its events (the pairs that began and ended) if it has any, otherwise its list
+//! of pairs.
 
 mod course;
 mod follower;

@@ -32,7 +32,7 @@ use boxes::BoxKind;
 pub use boxes::of_boxes;
 use claim_inputs::ClaimInputKind;
 use crowds::CrowdKind;
-use stale_data::ChangeKind;
+use stale_data::StaleKind;
 
 /// A case that can't be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -76,7 +76,7 @@ enum CaseDraw {
     /// Boxes without bodies.
     Boxes(BoxKind),
     /// Changes of all kinds.
-    Stale(ChangeKind),
+    Stale(StaleKind),
     /// Slow approaches.
     Approach(ApproachKind),
     /// Boxes with the additional input of one claim.
@@ -172,10 +172,10 @@ sdop_data::with_hard_cases! { groups! {
     box_range "box/range", 8, CaseDraw::Boxes(BoxKind::Range), "overflow and underflow of areas and volumes";
     crowd_new_pairs "crowd/new-pairs", 2, CaseDraw::Crowd(CrowdKind::NewPairs), "a fixed buffer of new pairs", after "mujoco_warp #1461, newton #3702 and Box3D's \"ignoring this pair\"";
     crowd_partners "crowd/partners", 1, CaseDraw::Crowd(CrowdKind::Partners), "a fixed buffer of one body's partners, a fixed stack or pool of nodes", after "Jolt #1520 and #1235";
-    stale_reshape "stale/reshape", 6, CaseDraw::Stale(ChangeKind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";
-    stale_reorder "stale/reorder", 6, CaseDraw::Stale(ChangeKind::Reorder), "stale bounds of bodies that get another number", after "fcl #368";
-    stale_rebase "stale/rebase", 6, CaseDraw::Stale(ChangeKind::Rebase), "stale bounds after another origin", after "newton #4008";
-    stale_all_at_once "stale/all-at-once", 6, CaseDraw::Stale(ChangeKind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
+    stale_reshape "stale/reshape", 6, CaseDraw::Stale(StaleKind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";
+    stale_reorder "stale/reorder", 6, CaseDraw::Stale(StaleKind::Reorder), "stale bounds of bodies that get another number", after "fcl #368";
+    stale_rebase "stale/rebase", 6, CaseDraw::Stale(StaleKind::Rebase), "stale bounds after another origin", after "newton #4008";
+    stale_all_at_once "stale/all-at-once", 6, CaseDraw::Stale(StaleKind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
     list_both "list/both", 3, CaseDraw::Approach(ApproachKind::Both), "a list kept until one body has moved as far as two together may", after "lammps #1701";
     list_one "list/one", 3, CaseDraw::Approach(ApproachKind::One), "a list kept for a number of frames", after "lammps #4239 and sisl #1016";
     list_return "list/return", 3, CaseDraw::Approach(ApproachKind::Return), "a list whose age is measured from frame to frame", after "lammps #1701";

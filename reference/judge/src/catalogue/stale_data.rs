@@ -16,7 +16,7 @@ use sdop::bodies::Bodies;
 
 /// What changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ChangeKind {
+pub enum StaleKind {
     /// Bodies stay where they are and get another shape.
     Reshape,
     /// Bodies move, and all have other numbers.
@@ -45,7 +45,7 @@ struct RowBody {
 
 /// A case whose changes are along the axis of this number, modulo 3.
 pub fn changing(
-    kind: ChangeKind,
+    kind: StaleKind,
     number: u32,
     rng: &mut impl Rng,
 ) -> Result<DrawnCase, CatalogueError> {
@@ -58,7 +58,7 @@ pub fn changing(
         let mut all: Vec<RowBody> = (0..ROWS)
             .flat_map(|row| placed(kind, axis, &places, row, n))
             .collect();
-        if matches!(kind, ChangeKind::Reorder | ChangeKind::AllAtOnce) {
+        if matches!(kind, StaleKind::Reorder | StaleKind::AllAtOnce) {
             let by = 7 * n % all.len();
             all.rotate_left(by);
         }
@@ -80,17 +80,11 @@ pub fn changing(
 
 /// A row's bodies in a frame: the static one, and the other, which meets it in every other frame.
 /// On either side there are rows that meet in the first frame and rows that don't.
-fn placed(
-    kind: ChangeKind,
-    axis: usize,
-    places: &[[f32; 3]],
-    row: usize,
-    n: usize,
-) -> Vec<RowBody> {
+fn placed(kind: StaleKind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) -> Vec<RowBody> {
     let after = (n % 2 == 1) != (row / 2 % 2 == 1);
     let side = if row.is_multiple_of(2) { 1.0 } else { -1.0 };
     let origin = match kind {
-        ChangeKind::Rebase => ORIGINS[n],
+        StaleKind::Rebase => ORIGINS[n],
         _ => 0.0,
     };
     let at = |distance: f32| {
@@ -114,9 +108,9 @@ fn placed(
     }];
     let id = 2 * row + 1;
     let change = match kind {
-        ChangeKind::Reshape => 1,
-        ChangeKind::AllAtOnce => row % 4,
-        ChangeKind::Reorder | ChangeKind::Rebase => 3,
+        StaleKind::Reshape => 1,
+        StaleKind::AllAtOnce => row % 4,
+        StaleKind::Reorder | StaleKind::Rebase => 3,
     };
     match change {
         0 => all.push(moving(id, 0, if after { MEETING_DISTANCE } else { 1e6 })),

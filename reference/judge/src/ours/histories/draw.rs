@@ -1,6 +1,6 @@
-//! Drawing histories: bodies that touch to the last place, and a few changes per frame. Every kind
-//! of change comes in turn; a number below another decides everything else, so that bytes of a
-//! fuzzer can draw, too.
+//! Draws histories: bodies that touch to the last place, and a few changes per frame. The kinds of
+//! change take turns. One function, "a number below n", makes all other choices, so that a fuzzer's
+//! bytes can make them, too.
 
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -163,9 +163,9 @@ fn groups(below: &mut dyn FnMut(u32) -> u32) -> Groups {
     }
 }
 
-/// Draws a history of one of these kinds of changes per frame, in turn, and often of another: so few
-/// that a world searches for each changed body. `new` draws a body next to others, `moved` takes a
-/// pose over or a part of it (1, 2), and `own` makes a change that only this kind of bodies knows.
+/// Draws a history with a change per frame, of these kinds in turn, and often a second one: so few
+/// that a world searches for each changed body. `new` draws a body next to others, `moved` copies a
+/// pose or a part of it (1, 2), and `own` makes a change that only bodies of this kind have.
 fn draw<B: Properties>(
     kinds: &[ChangeKind],
     new: impl Fn(&[B], &mut dyn FnMut(u32) -> u32) -> B,

@@ -1,4 +1,4 @@
-//! Living through a history in a world, and comparing what it says after each frame.
+//! Carries out a history in a world, and compares the world's pairs and events after each frame.
 
 use std::collections::{BTreeMap, HashMap};
 

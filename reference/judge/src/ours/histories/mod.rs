@@ -1,7 +1,6 @@
 //! Histories of long-lived worlds: frames in which a few bodies are inserted, removed, moved, put
-//! to rest, woken, fixed or changed. After each frame a world's pairs are compared with the exact
-//! answers and with those of a world made for the moment, and its events with the difference of its
-//! lists.
+//! to rest, woken, fixed or changed. After each frame, a world's pairs are compared with the exact
+//! answers and with those of a newly built world, and its events with the difference of its lists.
 
 mod draw;
 mod judge;

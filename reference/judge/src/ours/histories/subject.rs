@@ -1,4 +1,4 @@
-//! The two long-lived worlds as one: what a history does to them.
+//! The common interface of both long-lived worlds: what a history does to them.
 
 use sdop::boxes::{BoxBody, BoxWorld};
 use sdop::world::{Body, BodyId, Events, World, WorldError};

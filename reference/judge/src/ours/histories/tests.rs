@@ -1,4 +1,4 @@
-//! Histories are judged by worlds that are wrong on purpose.
+//! Tests the judging of histories with worlds that are wrong on purpose.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
