@@ -230,7 +230,7 @@ frames = 5
 [box]
 side = 5.0
 [[bodies]]
-shape = "torus"
+shape = "l-shape"
 count = 12
 radius = [0.5, 1.0]
 speed = [0.5, 2.0]
@@ -390,7 +390,7 @@ fn record_names_the_tier() {
     let place = tempfile::tempdir().unwrap();
     let out = ["record", "--name", "here", "--out", text(place.path())];
     let record = |arguments: &[&str]| sdop(&[&out, arguments].concat());
-    let short = ["--seeds", "1", "--frames", "8"];
+    let short = ["--quick", "--seeds", "1", "--frames", "2"];
     let run = record(&[&["reproduce", "--simd", "scalar", "--"][..], &short].concat());
     assert_eq!(
         run.status.code(),
@@ -402,7 +402,7 @@ fn record_names_the_tier() {
         let read = std::fs::read(place.path().join("here/reproduce").join(file)).unwrap();
         let read: serde_json::Value = serde_json::from_slice(&read).unwrap();
         assert_eq!(read["machine"]["simd"], "scalar", "{file}");
-        let expected = "sdop record reproduce --simd scalar -- --seeds 1 --frames 8";
+        let expected = "sdop record reproduce --simd scalar -- --quick --seeds 1 --frames 2";
         assert_eq!(read["command"], expected, "{file}");
     }
 

@@ -65,7 +65,7 @@ static SWEEPS: [Sweep; 4] = [
     Sweep {
         name: "record",
         arguments: &["reproduce", "--name", "box", "--out"],
-        last: &["--", "--quick", "--seeds", "2", "--frames", "3"],
+        last: &["--", "--quick", "--seeds", "1", "--frames", "3"],
         shards: "box/reproduce.shards",
         result: "box/reproduce",
         merge: Some("--merge"),
@@ -104,7 +104,7 @@ frames = 5
 [box]
 side = 5.0
 [[bodies]]
-shape = "torus"
+shape = "l-shape"
 count = 12
 radius = [0.5, 1.0]
 speed = [0.5, 2.0]
@@ -281,7 +281,7 @@ fn record_uses_only_its_shards() {
     sweep.run(&scene, &out, &["--shard", "2/2"]);
     let other = refused(&["--", "--quick"]);
     assert!(
-        other.contains("its command is sdop record reproduce -- --quick --seeds 2"),
+        other.contains("its command is sdop record reproduce -- --quick --seeds 1"),
         "{other}"
     );
     let missing = refused(sweep.last);
