@@ -85,12 +85,19 @@ impl<T: Copy + Default> Runs<T> {
         &self.items[first..first + run.len()]
     }
 
-    /// The entries of a list in rooms of the smallest size. Those after its last one are any.
+    /// The entries of a list in rooms of the smallest size, with the number of the first one. Those
+    /// after the list's last one are any.
     #[inline(always)]
-    pub fn rooms(&self, run: Run) -> ChunksExact<'_, T> {
+    pub fn rooms(&self, run: Run) -> (usize, ChunksExact<'_, T>) {
         let first = self.first(run);
         let end = first + run.len().next_multiple_of(ROOM);
-        self.items[first..end].chunks_exact(ROOM)
+        (first, self.items[first..end].chunks_exact(ROOM))
+    }
+
+    /// An entry by its number.
+    #[inline(always)]
+    pub fn entry(&self, number: usize) -> &T {
+        &self.items[number]
     }
 
     /// Prefetches the first entries of a list, unless it is empty.

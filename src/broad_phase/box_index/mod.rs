@@ -10,7 +10,7 @@ mod levels;
 use self::levels::{Levels, cell_count};
 use crate::bodies::{Aabb, Groups, PairRules};
 use crate::pairs::{ROOM, Run, Runs};
-use crate::simd::prefetch;
+use crate::simd::{TaggedBox, prefetch};
 
 /// The table of cells is enlarged when more than this share of it is used.
 const MAX_LOAD: [usize; 2] = [3, 4];
@@ -22,16 +22,6 @@ const CELLS_PER_BOX: u64 = 2;
 const FIXED_TAG: u32 = 1;
 /// Tag of a box that doesn't collide with all groups.
 const GROUPED_TAG: u32 = 2;
-
-/// A box in its cell. Two are in a cache line.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(32))]
-struct CellEntry {
-    min: [f32; 3],
-    slot: u32,
-    max: [f32; 3],
-    tags: u32,
-}
 
 /// A cell of the table, within a cache line.
 #[derive(Clone, Copy, Debug, Default)]
@@ -68,7 +58,7 @@ pub(crate) struct BoxIndex {
     /// is rebuilt.
     cells: Vec<Cell>,
     taken: usize,
-    boxes: Runs<CellEntry>,
+    boxes: Runs<TaggedBox>,
     /// The cell of each slot's box.
     homes: Vec<HomeCell>,
     len: usize,
@@ -105,8 +95,8 @@ impl BoxIndex {
         let &IndexedBox {
             slot,
             is_present,
-            tags,
             ref aabb,
+            ..
         } = indexed;
         if !is_present {
             return self.remove(slot);
@@ -117,12 +107,7 @@ impl BoxIndex {
         let level = self.levels.level_of(aabb);
         let cell = self.levels.all[usize::from(level)].home(aabb);
         let home = HomeCell { cell, level };
-        let entry = CellEntry {
-            min: aabb.min,
-            slot,
-            max: aabb.max,
-            tags,
-        };
+        let entry = indexed.tagged();
         if self.homes[slot as usize] == home {
             let at = self.find(cell);
             let boxes = self.boxes.get_mut(self.cells[at].boxes);
@@ -241,29 +226,30 @@ impl BoxIndex {
                 search.ends.push((search.names.len(), false));
             }
         }
-        for &name in &search.names {
+        search.runs.extend(search.names.iter().map(|&name| {
             let run = self.cells[self.find(name)].boxes;
             if !run.is_empty() {
                 self.boxes.prefetch(run);
             }
-            search.runs.push(run);
-        }
+            run
+        }));
         let (mut work, mut first) = (search.runs.len(), 0);
         for (seeker, &(end, is_everywhere)) in seekers.iter().zip(&search.ends) {
             let start = found.len();
-            let hits = &mut search.hits;
+            let (tagged, hits) = (seeker.tagged(), &mut search.hits);
             hits.count = 0;
             if is_everywhere {
                 for cell in &self.cells {
-                    work += self.look_into(cell.boxes, &seeker.aabb, hits);
+                    work += self.look_into(cell.boxes, &tagged, hits);
                 }
             }
             for &run in &search.runs[std::mem::replace(&mut first, end)..end] {
-                work += self.look_into(run, &seeker.aabb, hits);
+                work += self.look_into(run, &tagged, hits);
             }
-            let met = &hits.slots_and_tags[..hits.count];
-            let allowed = met.iter().filter(|met| seeker.may_meet(**met, rules));
-            found.extend(allowed.map(|[slot, _]| slot));
+            let met = hits.numbers[..hits.count].iter();
+            let met = met.map(|&number| self.boxes.entry(number as usize));
+            let allowed = met.filter(|met| seeker.may_meet(met, rules));
+            found.extend(allowed.map(|met| met.slot));
             sort_each_once(found, start);
             ends.push(found.len());
         }
@@ -290,21 +276,19 @@ impl BoxIndex {
         search.ends.push((search.names.len(), false));
     }
 
-    /// Appends the boxes of a cell that meet this one, with their tags. Nearly all cells have few
+    /// Appends the boxes of a cell that meet this one. Nearly all cells have few
     /// boxes, so there is no branch that depends on how many, or on which of them meet.
     #[inline(always)]
-    fn look_into(&self, run: Run, aabb: &Aabb, hits: &mut Hits) -> usize {
-        let Aabb { min, max } = *aabb;
+    fn look_into(&self, run: Run, &seeker: &TaggedBox, hits: &mut Hits) -> usize {
         hits.make_room(run.len() + ROOM);
-        let (mut count, entries) = (hits.count, &mut hits.slots_and_tags[..]);
-        for (start, room) in (0..).step_by(ROOM).zip(self.boxes.rooms(run)) {
-            for (at, entry) in (start..).zip(room) {
-                let on = |axis: usize| {
-                    u32::from(min[axis] <= entry.max[axis])
-                        & u32::from(entry.min[axis] <= max[axis])
-                };
-                entries[count] = [entry.slot, entry.tags];
-                count += (on(0) & on(1) & on(2) & u32::from(at < run.len())) as usize;
+        let (mut count, entries) = (hits.count, &mut hits.numbers[..]);
+        let (first, rooms) = self.boxes.rooms(run);
+        let (mut number, end) = (first as u32, (first + run.len()) as u32);
+        for room in rooms {
+            for entry in room {
+                entries[count] = number;
+                count += usize::from(entry.meets(&seeker) & (number < end));
+                number += 1;
             }
         }
         hits.count = count;
@@ -315,22 +299,22 @@ impl BoxIndex {
 /// The boxes that meet a seeker.
 #[derive(Clone, Debug, Default)]
 struct Hits {
-    /// The first `count` are in use.
-    slots_and_tags: Vec<[u32; 2]>,
+    /// Numbers of entries, of which the first `count` are in use.
+    numbers: Vec<u32>,
     count: usize,
 }
 
 impl Hits {
     #[inline(always)]
     fn make_room(&mut self, more: usize) {
-        if self.slots_and_tags.len() < self.count + more {
+        if self.numbers.len() < self.count + more {
             self.grow(more);
         }
     }
 
     #[cold]
     fn grow(&mut self, more: usize) {
-        self.slots_and_tags.resize(2 * (self.count + more), [0; 2]);
+        self.numbers.resize(2 * (self.count + more), 0);
     }
 }
 
@@ -366,9 +350,19 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
 }
 
 impl IndexedBox {
-    /// Whether a pair with another box, of which slot and tags are given, is reported if the boxes
+    fn tagged(&self) -> TaggedBox {
+        TaggedBox {
+            min: self.aabb.min,
+            slot: self.slot,
+            max: self.aabb.max,
+            tags: self.tags,
+        }
+    }
+
+    /// Whether a pair with another box, is reported if the boxes
     /// meet.
-    fn may_meet(&self, [slot, tags]: [u32; 2], rules: PairRules<'_>) -> bool {
+    fn may_meet(&self, other: &TaggedBox, rules: PairRules<'_>) -> bool {
+        let &TaggedBox { slot, tags, .. } = other;
         let are_fixed = self.tags & tags & FIXED_TAG != 0;
         let collide = (self.tags | tags) & GROUPED_TAG == 0
             || rules.groups[self.slot as usize].collide(rules.groups[slot as usize]);
