@@ -25,8 +25,8 @@
 //! don't intersect may be reported too. Strategies differ in how many of those they report, and in
 //! time.
 //!
-//! The answer is about one moment. There is no continuous detection, and a narrow phase has to test
-//! the reported pairs.
+//! The answer is for one moment: there is no continuous detection. A narrow phase has to test the
+//! reported pairs.
 //!
 //! # A first use
 //!

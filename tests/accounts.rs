@@ -1,5 +1,5 @@
-//! A culler's accounts: seconds of stages add up to those of frames, without counting anything
-//! twice or the caller's time; and the tests of a budget are spent in the requested order.
+//! A culler's accounts: the stages' seconds add up to the frames', count nothing twice and exclude
+//! the caller's time; a budget of tests is spent in the requested order.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

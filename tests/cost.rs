@@ -1,5 +1,5 @@
-//! The cost formula's counts: equal on every tier, as many as the finder's arithmetic says, and
-//! calibrated on other scenes than it predicts.
+//! The cost formula: its counts are equal in every tier and those that the finder's arithmetic
+//! gives, and its prices come from scenes that it doesn't predict.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -191,7 +191,7 @@ fn prices_and_terms_add_up() {
         &variants,
         tier,
         &mut frames,
-        Some(&mut calibration),
+        Some(calibration.round().unwrap()),
         &mut (),
     )
     .unwrap();

@@ -1,5 +1,5 @@
-//! The same bodies as in `python/tests/test_hashes.py`, whose hashes are these: an answer doesn't
-//! depend on the language that asks.
+//! The bodies and hashes are those of `python/tests/test_hashes.py`: answers are the same in both
+//! languages.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::collections::HashMap;

@@ -1,16 +1,15 @@
-//! What happens when a culler is used otherwise than meant. No entry may panic, hang or silently
-//! drop a pair.
+//! What happens when a culler is misused. No entry may panic, hang or silently drop a pair.
 //!
 //! | misuse | what happens |
 //! |---|---|
 //! | columns of unequal length; a shape number out of range; a pose that is not finite or beyond 2⁶⁰, at construction | `CullError::Contract`, naming body and quantity |
 //! | fewer or more bodies in a frame than at construction | `CullError::Changed` |
 //! | a `dynamic` flag toggled between frames | `CullError::Changed`, naming the body |
-//! | a translation that is infinite, NaN or beyond 2⁶⁰ in a frame | `CullError::Contract`, naming the body; the next frame is culled as ever |
-//! | a rotation that is zero or not finite in a frame | the same; but where a ball comes first and is centred in the body's origin, all pairs that the ball meets are reported |
+//! | a translation that is infinite, NaN or beyond 2⁶⁰ in a frame | `CullError::Contract`, naming the body; the next frame is culled as usual |
+//! | a rotation that is zero or not finite in a frame | the same; but if balls are tested first and the body's ball is centred at its origin, all pairs whose balls meet are reported |
 //! | a shape number changed between frames, out of range or not | no effect before `Culler::refresh`, which checks it |
-//! | a static body moved between frames | stays where it was for the culler, whatever the finder does, until `Culler::refresh` |
-//! | shapes whose or-DOPs have unlike directions | `CullError::Shape`, naming the shape |
+//! | a static body moved between frames | has no effect before `Culler::refresh`, with every finder |
+//! | shapes whose or-DOPs have different directions | `CullError::Shape`, naming the shape |
 //! | a column of groups of another length | `CullError::Contract`; the groups stay as they were |
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,9 +1,9 @@
-//! What the margins are for: the same f32 arithmetic without them, or with less, misses pairs that
-//! touch exactly.
+//! Why margins are needed: without them, or with smaller ones, the same f32 arithmetic misses pairs
+//! that touch exactly.
 //!
 //! A Pythagorean quadruple x² + y² + z² = n² of 24-bit integers is a centre distance that f32 holds
-//! exactly, so spheres of radii r and n − r touch in exact arithmetic, and integers judge it. Small
-//! quadruples are toothless: every operation on them is exact.
+//! exactly, so spheres of radii r and n − r touch in exact arithmetic, which integers decide. Small
+//! quadruples test nothing, because every operation on them is exact.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

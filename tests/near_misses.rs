@@ -1,5 +1,5 @@
-//! Near-touching configurations drawn by proptest, on every SIMD tier: what the exact reference
-//! reports, every strategy over every finder reports.
+//! Bodies that nearly touch, drawn by proptest: every strategy with every finder, in every SIMD
+//! tier, reports what the exact reference reports.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,5 +1,5 @@
-//! The culling settings by name: flags, scene files and JSON spell them alike, and what can't be
-//! carried out is refused.
+//! The culling settings by name: flags, scene files and JSON spell them alike, and invalid ones are
+//! rejected.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sdop::settings::*;

@@ -1,5 +1,5 @@
-//! Everything that culls fits the stack of a thread, 2 MB. Without optimisation, each vector of an
-//! inlined function has a separate place there, which once took 10 MB.
+//! Everything that culls fits into a thread's stack of 2 MB. Without optimisation, each vector of
+//! an inlined function has a separate place on the stack, which once took 10 MB.
 //!
 //! `.ci/run` also runs this test with a library that isn't optimised. It uses only `sdop` itself,
 //! so that nothing else has to be compiled for that.

@@ -1,5 +1,5 @@
-//! A missed pair ends as the smallest scene that shows it. The culler misses none, so here a shape
-//! lies about its ball.
+//! A missed pair is reduced to the smallest scene that shows it. The culler misses none, so here a
+//! shape has a ball that is too small.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -35,7 +35,7 @@ fn lying_crowd() -> (Shapes, Ledger) {
     (shapes, ledger.unwrap())
 }
 
-/// A lying ball is found out and shrinks to two bodies.
+/// A ball that is too small is detected, and the scene shrinks to two bodies.
 #[test]
 fn wrong_ball_shrinks_to_two_bodies() {
     let (shapes, ledger) = lying_crowd();

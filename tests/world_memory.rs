@@ -1,5 +1,5 @@
-//! What worlds hold is what is in them now: after streams of shapes, crowds and crowds' events, in
-//! bytes of the heap.
+//! The memory of worlds, in bytes of the heap, follows what is in them now, also after many shapes
+//! have come and gone, crowds, and the events of crowds.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(unsafe_code, reason = "an allocator that counts is an allocator")]

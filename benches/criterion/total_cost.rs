@@ -88,10 +88,10 @@ fn total_cost(criterion: &mut Criterion) {
 }
 
 fn another_pass(file: &SceneFile, variants: &[Variant], calibration: &mut Calibration) -> Pass {
-    let made = || -> miette::Result<Pass> {
+    let mut made = || -> miette::Result<Pass> {
         let scene = file.build()?;
         let mut frames = SceneFrames::new(&scene, FRAMES)?;
-        let calibration = Some(calibration);
+        let calibration = Some(calibration.round()?);
         Ok(pass(
             &scene,
             variants,

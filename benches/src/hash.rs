@@ -69,7 +69,7 @@ impl PairsDigest {
         }
     }
 
-    /// In hexadecimal.
+    /// The digest in hexadecimal.
     #[must_use]
     pub fn finish(self) -> String {
         format!("{:016x}{:016x}", self.0[0], self.0[1])

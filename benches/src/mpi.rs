@@ -1,16 +1,16 @@
 //! Ranks: copies of this program that `mpirun` or a scheduler starts and that communicate by MPI.
 //!
 //! Without the feature `mpi` nothing is linked, and [`launched`] only serves to reject a start as
-//! many ranks. With it, a program that runs alone does not start MPI; `Ranks::start` does.
-//! [`RankEnding`] ensures that no rank waits for one that failed.
+//! many ranks. With the feature, only `Ranks::start` starts MPI, so a program that runs alone does
+//! not. [`RankEnding`] ensures that no rank waits for one that failed.
 
 use std::env;
 
 /// What launchers call the number of ranks: OpenMPI, and the PMI of MPICH and of Slurm.
 const SIZE_VARIABLES: [&str; 2] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"];
 
-/// Set by any launcher that speaks `PMIx`, which leaves the number to be asked for; Slurm says it
-/// besides.
+/// Set by any launcher that speaks `PMIx`, whose number of ranks has to be requested from it; Slurm
+/// also sets the number.
 const PMIX_VARIABLES: [&str; 2] = ["PMIX_RANK", "SLURM_STEP_NUM_TASKS"];
 
 /// What launchers call a rank's number.

@@ -36,7 +36,7 @@ impl Percentiles {
 mod tests {
     use super::*;
 
-    /// Each is the least value that so many do not exceed.
+    /// Each percentile is the least value that its share of the values does not exceed.
     #[test]
     fn percentiles_use_nearest_rank() {
         for (values, [p50, p99, most]) in [

@@ -67,7 +67,7 @@ int main(void) {
     check(sdop_box_world_new(NULL, 1, &world));
     uint64_t ids[3];
     for (size_t i = 0; i < count; ++i) {
-        const SdopBoxBody body = {boxes[i], false, false, {UINT32_MAX, UINT32_MAX}};
+        const SdopBoxBody body = sdop_box_body_at(boxes[i]);
         check(sdop_box_world_insert(world, &body, &ids[i]));
     }
     int events = 0;

@@ -74,7 +74,7 @@ void a_world(const SdopShape *shape) {
     const World world(made);
     std::array<std::uint64_t, 2> ids{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        const SdopBody body{0, false, false, {0, 0, 0, 1}, {1000000031.5 + 0.7 * static_cast<double>(i), 0, 0}, 0, {~0U, ~0U}};
+        const SdopBody body = sdop_body_at(0, 1000000031.5 + 0.7 * static_cast<double>(i), 0, 0);
         check(sdop_world_insert(world.get(), &body, &ids[i]));
     }
     assert(pairs_of(world.get()).size() == 1); // they overlap by 0.3, a billion units from the origin
@@ -95,7 +95,8 @@ void a_world(const SdopShape *shape) {
     assert(pairs_of(world.get()).empty());
     check(sdop_world_include(world.get(), ids[1], ids[0]));
     assert(pairs_of(world.get()).size() == 1);
-    const SdopBody asleep{0, false, true, {0, 0, 0, 1}, {1000000031.5, 0, 0}, 0, {~0U, ~0U}};
+    SdopBody asleep = sdop_body_at(0, 1000000031.5, 0, 0);
+    asleep.resting = true;
     check(sdop_world_set(world.get(), ids[0], &asleep));
     assert(pairs_of(world.get()).size() == 1);
     assert(sdop_world_exclude(world.get(), ids[0], ids[0] + 1000) == SDOP_STATUS_REFUSED);
@@ -116,8 +117,9 @@ void parts_of_bodies(const SdopShape *link) {
     SdopWorld *made = nullptr;
     check(sdop_world_new(shapes, 2, nullptr, &made));
     const World world(made);
-    const SdopBody robot{0, false, false, {0, 0, 0, 1}, {0, 0, 0}, 0, {~0U, ~0U}};
-    const SdopBody post{1, true, false, {0, 0, 0, 1}, {3.25, 0.25, 0}, 0, {~0U, ~0U}};
+    const SdopBody robot = sdop_body_at(0, 0, 0, 0);
+    SdopBody post = sdop_body_at(1, 3.25, 0.25, 0);
+    post.fixed = true;
     std::uint64_t robot_id = 0, post_id = 0;
     check(sdop_world_insert(world.get(), &robot, &robot_id));
     check(sdop_world_insert(world.get(), &post, &post_id));
@@ -150,7 +152,8 @@ void queries(const SdopShape *shape) {
     const World world(made);
     std::array<std::uint64_t, 3> ids{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-        const SdopBody body{0, false, false, {0, 0, 0, 1}, {1e9 + 4.0 * static_cast<double>(i), 0, 0}, 0.25F, {~0U, ~0U}};
+        SdopBody body = sdop_body_at(0, 1e9 + 4.0 * static_cast<double>(i), 0, 0);
+        body.margin = 0.25F;
         check(sdop_world_insert(world.get(), &body, &ids[i]));
     }
     SdopQueryIndex *index_made = nullptr;

@@ -25,7 +25,7 @@ static float real() {
 static void skip(int words) { while (words-- > 0) word(); }
 
 // --- the culler --------------------------------------------------------------------------------
-struct Ball { float x[3], r; };
+struct Ball { float x[3], r, size; }; // size: the largest number that went into it
 struct Body { int shape; bool fixed; };
 
 static Ball posed(const Ball &b, const float q[4], const float t[3]) {
@@ -34,16 +34,18 @@ static Ball posed(const Ball &b, const float q[4], const float t[3]) {
     float n = 2 / (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + w * w);
     auto cross = [&](const float c[3], int k) { return v[(k + 1) % 3] * c[(k + 2) % 3] - v[(k + 2) % 3] * c[(k + 1) % 3]; };
     float u[3] = {cross(b.x, 0), cross(b.x, 1), cross(b.x, 2)}; // c + n (w u + v × u), u = v × c
-    Ball p{{}, b.r};
-    for (int k = 0; k < 3; k++) p.x[k] = t[k] + (b.x[k] + n * (w * u[k] + cross(u, k)));
+    Ball p{{}, b.r, b.r};
+    for (int k = 0; k < 3; k++) {
+        p.x[k] = t[k] + (b.x[k] + n * (w * u[k] + cross(u, k)));
+        p.size = std::max({p.size, std::fabs(t[k]), std::fabs(b.x[k])}); // they may cancel in x
+    }
     return p;
 }
 
 static bool meet(const Ball &a, const Ball &b) {
     float reach = a.r + b.r;
 #ifndef NO_MARGIN
-    for (int k = 0; k < 3; k++) reach += 4e-6f * std::max({std::fabs(a.x[k]), std::fabs(b.x[k]), a.r, b.r});
-    reach += 1e-37f;
+    reach += 1.2e-5f * std::max(a.size, b.size) + 1e-37f;
 #endif
     return std::hypot(a.x[0] - b.x[0], a.x[1] - b.x[1], a.x[2] - b.x[2]) <= reach;
 }
@@ -57,7 +59,7 @@ int main() {
                 skip(2); // shape NAME
                 int vertices = count(), triangles = count(), slabs = count();
                 skip(1); // ball
-                Ball ball;
+                Ball ball{};
                 for (float &x : ball.x) x = real();
                 ball.r = real();
                 shapes.push_back(ball);

@@ -1,5 +1,5 @@
-//! Boxes that touch to the last place, of any aspect and size, which move: the bytes choose all of
-//! it. Every finder in every tier lists exactly those that have a point in common.
+//! Moving boxes of any aspect and size that touch to the last place; the bytes choose everything.
+//! Every finder in every tier lists exactly the boxes that have a point in common.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,5 @@
-//! No bytes harm a mesh reader, and what it accepts keeps the mesh contract, in every format.
+//! No input makes a mesh reader panic, and the meshes that it accepts keep the contract, in every
+//! format.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,5 +1,5 @@
-//! Two bodies with any poses within the contract, or put in touch: what the exact reference
-//! reports, every strategy reports.
+//! Two bodies with any poses within the contract, or placed in contact: every strategy reports what
+//! the exact reference reports.
 #![no_main]
 
 use std::sync::LazyLock;
@@ -12,7 +12,7 @@ use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::every_way::{Ledger, Run};
 use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::contact::{Contact, Kind, PlacedShape};
+use sdop_judge::ours::contact::{Contact, ContactKind, PlacedShape};
 use sdop_judge::ours::seeded_draws::add;
 use sdop_judge::ours::{Answers, Predicate, Shapes};
 
@@ -59,7 +59,7 @@ fn in_touch(
     second: &PlacedShape,
 ) -> Option<[f32; 3]> {
     let contact = Contact {
-        kind: *Kind::ALL.get(usize::from(head[1] % 16))?,
+        kind: *ContactKind::ALL.get(usize::from(head[1] % 16))?,
         pick: [head[4], head[5]].map(u32::from),
         direction: second.translation.map(f64::from),
         gap: f64::from(head[6].cast_signed()) / 16.0,

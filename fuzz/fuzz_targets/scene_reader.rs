@@ -1,4 +1,4 @@
-//! No text harms the scene reader, and what it builds keeps the bodies' contract.
+//! No text makes the scene reader panic, and the scenes that it builds keep the bodies' contract.
 #![no_main]
 
 use std::path::Path;

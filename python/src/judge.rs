@@ -45,7 +45,7 @@ pub fn judge(
         fail_fast,
         ..Options::default()
     };
-    let subject = InPython { make };
+    let subject = PythonSubject { make };
     let verdict = py
         .detach(|| examine(&subject, &options, |_, _| {}))
         .map_err(|error| SdopError::new_err(error.to_string()))?;
@@ -114,11 +114,11 @@ impl Scene {
 }
 
 /// A Python class, or another callable that makes cullers.
-struct InPython {
+struct PythonSubject {
     make: Py<PyAny>,
 }
 
-impl Subject for InPython {
+impl Subject for PythonSubject {
     fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         let mut answered = Vec::new();
         // Threads of the judge hold the interpreter for a whole case: a case's frames come one
@@ -139,7 +139,7 @@ impl Subject for InPython {
     }
 }
 
-impl InPython {
+impl PythonSubject {
     /// Answers all frames, or returns the reason why the case is skipped.
     fn run(
         &self,

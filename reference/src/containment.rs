@@ -1,5 +1,5 @@
-//! Containment: whether a mesh is in its volumes, exactly. It is checked separately from overlaps,
-//! for body-frame volumes and for posed ones.
+//! Checks exactly whether a volume contains its mesh. This is separate from the tests of overlap,
+//! and covers volumes in the body frame and posed volumes.
 //!
 //! All checks take a pose; a volume in the body frame is checked under [`Pose::IDENTITY`], a
 //! world-aligned one with the identity basis under the body's pose. The cascade is that of

@@ -1,4 +1,5 @@
-//! Vectors and rotations over any [`Number`], in the written order of the formulas.
+//! Vectors and rotations over any [`Number`], computed in the order in which the formulas are
+//! written.
 
 use crate::number::Number;
 

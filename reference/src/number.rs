@@ -2,8 +2,8 @@
 //!
 //! A decision is the sign of a polynomial in the input. Written once over [`Number`], the same
 //! polynomial is guessed in f64, bounded in intervals ([`crate::exact::interval`]) and computed
-//! exactly in integers, so that the stages of the exact cascade cannot disagree about the formula,
-//! only about what they can tell.
+//! exactly in integers, so that the stages of the exact cascade cannot differ in the formula, only
+//! in what they can decide.
 //!
 //! Every f32 and f64 is a dyadic rational m·2^e. [`Number::lift`] divides it by a unit 2^u that all
 //! quantities of one kind (the lengths of a pair; the components of one quaternion) share. A

@@ -29,7 +29,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// A shape of a ball, slabs and a mesh. Whether the volumes contain the mesh is not asked here.
+    /// A shape of a ball, slabs and a mesh. It is not checked whether the volumes contain the mesh.
     ///
     /// # Errors
     /// When a number is not finite, the slabs are not k/2, the basis is not exact or an index is
@@ -60,7 +60,7 @@ impl Shape {
         })
     }
 
-    /// A mesh of which only its triangles are asked about: its ball and slabs are of a cube about
+    /// A mesh of which only the triangles are used: its ball and slabs are those of a cube about
     /// the origin, whatever the mesh.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! The paper's strategies (sections 4 and 5) as predicates over a pair, and all pairs of a scene.
 //!
-//! Strategies share one loop and differ in which volumes must overlap. What decides a volume
-//! overlap is a [`OverlapTests`]: the plain f64 formulas here, or the exact ones.
+//! Strategies share one loop and differ in which volumes must overlap. [`OverlapTests`] decides
+//! whether volumes overlap, by the plain f64 formulas here or by the exact ones.
 
 use std::cell::OnceCell;
 
@@ -126,7 +126,7 @@ fn volumes(hit: bool, counters: &mut Counters) -> bool {
 }
 
 /// The plain f64 formulas over one frame of bodies. What a pose fixes is computed once per body,
-/// when first asked for.
+/// when first needed.
 pub struct PlainPredicates<'a> {
     bodies: &'a [Body<'a>],
     overlap: Overlap,

@@ -1,4 +1,5 @@
-//! Bounding volumes as plain numbers in the body frame. They are built by others and judged here.
+//! Bounding volumes as plain numbers in the body frame. This crate judges them; it does not build
+//! them.
 
 use crate::InvalidInput;
 

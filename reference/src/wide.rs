@@ -1,7 +1,7 @@
 //! [`WidePose`]: exact mesh intersection for poses of f64.
 //!
 //! [`Pose`] takes f32, and the error bounds of volumes assume that. Whether two meshes meet depends
-//! on the poses through [`Relative`](crate::exact::relative::Relative) alone. Its intervals and
+//! on the poses through [`Relative`](crate::exact::relative::Relative) alone. Intervals and
 //! integers take any f64. Its first stage, [`Approximate`](crate::exact::relative::Approximate),
 //! allows for a mapped coordinate M y + w the error 256u(|y|∞ + |Δ|∞), with u = 2⁻⁵³ and Δ = tB −
 //! tA; that is enough for f64 too, where products are rounded as well:
@@ -77,7 +77,7 @@ fn largest_of([x, y, z, w]: [f64; 4]) -> f64 {
     largest(&[x, y, z]).max(w.abs())
 }
 
-/// Whether two posed meshes intersect, and what it took.
+/// Whether two posed meshes intersect, and which stages decided it.
 pub fn meet(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Meeting {
     meeting::meet((a.0.mesh(), &a.1.0), (b.0.mesh(), &b.1.0))
 }

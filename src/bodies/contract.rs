@@ -94,7 +94,7 @@ pub(crate) fn refuse(
 mod tests {
     use super::*;
 
-    /// As many bodies are taken as can be numbered.
+    /// The limit is the number of bodies that can be numbered.
     #[test]
     fn body_limit_is_enforced() {
         assert_eq!(check_number(0), Ok(()));

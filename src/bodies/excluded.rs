@@ -1,4 +1,5 @@
-//! Pairs of bodies that are left out whatever their volumes say: bodies that a joint connects.
+//! Excluded pairs: bodies that are never reported as a pair, for example because a joint connects
+//! them.
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
@@ -29,19 +30,19 @@ impl ExcludedPairs {
         partners.is_some_and(|partners| partners.contains(&b))
     }
 
-    /// Adds a pair of two bodies; whether it is new.
+    /// Adds a pair of two bodies, and returns whether it is new.
     pub fn insert(&mut self, a: u32, b: u32) -> bool {
         self.partners.entry(a).or_default().insert(b);
         self.partners.entry(b).or_default().insert(a)
     }
 
-    /// Drops a pair; whether it was there.
+    /// Removes a pair, and returns whether it was there.
     pub fn remove(&mut self, a: u32, b: u32) -> bool {
         self.remove_at(a, b);
         self.remove_at(b, a)
     }
 
-    /// Drops all pairs of a body.
+    /// Removes all pairs of a body.
     pub fn remove_all(&mut self, body: u32) {
         for partner in self.partners.remove(&body).into_iter().flatten() {
             self.remove_at(partner, body);
@@ -70,7 +71,7 @@ impl ExcludedPairs {
         pairs
     }
 
-    /// Gives back the memory of pairs that were dropped.
+    /// Frees the memory of removed pairs.
     pub fn shrink_to_fit(&mut self) {
         self.partners.shrink_to_fit();
         self.partners.values_mut().for_each(HashSet::shrink_to_fit);
@@ -118,10 +119,10 @@ pub(crate) struct PairRules<'a> {
     pub excluded: &'a ExcludedPairs,
 }
 
-/// What is asked of a pair whose volumes meet, where something is.
+/// The filters for pairs whose volumes meet, if there are any.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairFilter<'a> {
-    /// By body, where not all collide with all.
+    /// The groups by body, unless all collide with all.
     groups: Option<&'a [super::Groups]>,
     excluded: Option<&'a ExcludedPairs>,
 }
@@ -134,7 +135,7 @@ impl<'a> PairFilter<'a> {
         is_needed.then_some(Self { groups, excluded })
     }
 
-    /// Of groups alone.
+    /// A filter of groups alone.
     pub fn of_groups(groups: Option<&'a [super::Groups]>) -> Option<Self> {
         groups.map(|groups| Self {
             groups: Some(groups),

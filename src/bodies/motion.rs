@@ -15,7 +15,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// Of a body that is dynamic or fixed, and, unless fixed, at rest or not.
+    /// The motion of a body that is dynamic or fixed, and, unless fixed, at rest or not.
     pub(crate) const fn of(is_dynamic: bool, is_resting: bool) -> Self {
         match (is_dynamic, is_resting) {
             (false, _) => Self::Fixed,

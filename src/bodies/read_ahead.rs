@@ -1,9 +1,9 @@
 //! Reading a column into the caches before it is gathered from.
 //!
 //! The user's columns are in the order of bodies and are gathered in the order of places, which is
-//! a random order in memory. A column that is no longer in the caches (another thread has just
-//! written it, or much else was written since) is read several times as fast from end to end as in
-//! that random order.
+//! a random order in memory. If a column is no longer in the caches (another thread has just
+//! written it, or much other data was written since), reading it from end to end is several times
+//! as fast as in that random order.
 
 use std::hint::black_box;
 

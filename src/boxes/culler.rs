@@ -32,8 +32,7 @@ pub struct BoxCuller {
     counters: VolumeCounters,
 }
 
-/// Choices for a [`BoxCuller`] or a [`BoxWorld`](super::BoxWorld). Those that aren't made have
-/// defaults.
+/// Settings of a [`BoxCuller`] or a [`BoxWorld`](super::BoxWorld). Each has a default.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "a builder does nothing before `build`"]
 pub struct BoxCullerBuilder {
@@ -153,7 +152,7 @@ impl BoxCuller {
         outcome.map(|()| &self.pairs)
     }
 
-    /// Culls one frame as [`Self::cull`] does and hands its pairs to `take`, about 65,000 at a
+    /// Culls one frame as [`Self::cull`] does and passes its pairs to `take`, about 65,000 at a
     /// time, in the order of that list. Returns their number; [`Self::pairs`] is empty. Memory
     /// doesn't grow with their number. With several threads, `take` is called from any of them, one
     /// call at a time.

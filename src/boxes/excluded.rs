@@ -4,10 +4,10 @@ use super::BoxWorld;
 use crate::world::{BodyId, WorldError};
 
 impl BoxWorld {
-    /// Leaves a pair of boxes out of what is reported, from the next cull on, until
-    /// [`Self::include`] or until one of them is removed. Returns whether it was there to be
-    /// reported; a box and itself never are. Costs what a box costs that has moved, and memory in
-    /// proportion to the pairs.
+    /// Excludes a pair of boxes: it is not reported from the next cull on, until [`Self::include`]
+    /// or until one of the boxes is removed. Returns whether the pair was included before; a box
+    /// and itself are no pair. It costs as much as moving a box, and memory in proportion to the
+    /// excluded pairs.
     ///
     /// # Errors
     /// A box that has been removed.
@@ -20,7 +20,7 @@ impl BoxWorld {
         Ok(is_new)
     }
 
-    /// Reports a pair again that was left out. Returns whether it was.
+    /// Includes an excluded pair again. Returns whether it was excluded.
     ///
     /// # Errors
     /// A box that has been removed.
@@ -33,7 +33,7 @@ impl BoxWorld {
         Ok(was_excluded)
     }
 
-    /// Whether a pair is left out. None is that has a box which has been removed.
+    /// Whether a pair is excluded. A pair with a removed box is not.
     #[must_use]
     pub fn is_excluded(&self, a: BodyId, b: BodyId) -> bool {
         match [a, b].map(|id| self.ids.slot(id)) {
@@ -42,7 +42,7 @@ impl BoxWorld {
         }
     }
 
-    /// The pairs that are left out, the lower slot first, sorted by slots.
+    /// The excluded pairs, the lower slot first, sorted by slots.
     #[must_use]
     pub fn excluded(&self) -> Vec<[BodyId; 2]> {
         let pairs = self.excluded.sorted();

@@ -1,4 +1,4 @@
-//! A frame of given boxes: cubes around them, a finder's candidates, the test, the list.
+//! Culls one frame of given boxes: cubes around them, candidates from a finder, the test, the list.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};

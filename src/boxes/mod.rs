@@ -1,13 +1,13 @@
 //! A broad phase for axis-aligned boxes: which of them meet?
 //!
-//! For engines that have boxes, of any aspect ratio, and need only a broad phase. A [`BoxCuller`]
-//! gets all boxes anew in each frame; in a [`BoxWorld`] they come and go, rest or move, with stable
-//! ids, groups and events.
+//! Use it if your engine has boxes, of any aspect ratio, and needs only a broad phase. A
+//! [`BoxCuller`] takes all boxes anew in each frame. In a [`BoxWorld`], boxes come and go, rest or
+//! move, and have stable ids, groups and events.
 //!
-//! The promise: for boxes given as f32, exactly those pairs are reported that share a point in
-//! exact real arithmetic, touching included. No box is widened, no pair is missed, and none is
-//! reported that is an ulp apart. Ends are any finite numbers. Lists depend on the calls alone,
-//! never on the CPU or on threads.
+//! The promise: for f32 boxes, exactly those pairs are reported that share a point in exact real
+//! arithmetic, touching included. No box is widened, no pair is missed, and no pair that is an ulp
+//! apart is reported. Ends may be any finite numbers. Lists depend only on the calls, never on the
+//! CPU or on threads.
 
 mod crowds;
 mod cubes;

@@ -1,6 +1,7 @@
 //! Frames in which few boxes change: a pair's verdict is a function of the ends, groups and motion
-//! of its two boxes, and of whether the pair is excluded. A box is noted as changed when any of the
-//! first is set, and one of the two when a pair is excluded or included.
+//! of its two boxes, and of whether the pair is excluded. A box counts as changed when its ends,
+//! groups or motion are set. When a pair is excluded or included, one of its two boxes counts as
+//! changed.
 
 use super::BoxWorld;
 use crate::bodies::PairRules;

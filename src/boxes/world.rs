@@ -36,7 +36,7 @@ impl From<Aabb> for BoxBody {
 ///
 /// A frame costs time for the boxes that were inserted, removed or set to another value since the
 /// last cull, for their neighbours, and for the pairs that change, and nothing for all others. If
-/// more than an eighth has changed, all pairs are found anew, as in a
+/// more than a sixteenth has changed, all pairs are found anew, as in a
 /// [`BoxCuller`](super::BoxCuller). The same holds for the first cull, and for the first one after
 /// a world was restored, after [`Self::shrink_to_fit`] and after [`Self::cull_in_portions`]. In
 /// every case the pairs are exactly those of the present boxes.
@@ -281,10 +281,9 @@ impl BoxWorld {
         self.log.pairs(&self.ids).iter()
     }
 
-    /// The pairs that the last cull reports and that were not there at the last call of this
-    /// method, and those that have ended since. Events don't borrow the world, so boxes may be
-    /// removed while they are read. Drop them before the next cull, which otherwise copies the
-    /// pairs.
+    /// The pairs that began, persisted or ended between the last call of this method and the last
+    /// cull. Events don't borrow the world, so boxes may be removed while they are read. Drop them
+    /// before the next cull, which otherwise copies the pairs.
     pub fn events(&mut self) -> Events {
         self.log.events(&self.ids)
     }

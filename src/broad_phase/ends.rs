@@ -1,5 +1,5 @@
 //! The ends of boxes in slot order. Boxes that are much longer than wide are compared by their
-//! ends, because the cubes around them overlap far more often than they do. Comparing ends is
+//! ends, because the cubes around them overlap far more often than the boxes. Comparing ends is
 //! exact.
 //!
 //! Both the first volume test and lists of neighbours use them. For lists, boxes are [`grown`] by a

@@ -2,9 +2,9 @@
 //! is a candidate at most once, and each pair whose cubes meet exactly once, unless both bodies are
 //! static.
 //!
-//! It uses cubes because some first tests compare world-aligned volumes, for which balls stand for
-//! the cubes around them. A list of neighbours knows whether they do, and whether it was built from
-//! the boxes themselves.
+//! The checks use cubes because some first tests compare world-aligned volumes, and finders then
+//! use the cubes around the balls. A list of neighbours knows whether that is so, and whether it
+//! was built from the boxes themselves.
 
 use std::ops::Range;
 

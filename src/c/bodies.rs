@@ -105,7 +105,7 @@ pub unsafe extern "C" fn sdop_shape_free(shape: *mut SdopShape) {
 pub struct SdopOptions {
     /// Which volumes are tested; null is "s-dop-sequential", spheres and then or-DOPs.
     pub strategy: *const c_char,
-    /// Who finds the candidates; null is "auto".
+    /// The finder of candidate pairs; null is "auto".
     pub finder: *const c_char,
     /// Number of threads; 0 is 1.
     pub threads: usize,
@@ -158,7 +158,8 @@ pub struct SdopBodies {
     pub count: usize,
     /// For each body, the number of its shape.
     pub shape: *const u32,
-    /// Whether each may move; null: all may. Pairs of two that may not are never reported.
+    /// Whether each body may move; null: all may. A pair of two bodies that may not is never
+    /// reported.
     pub dynamic: *const bool,
     /// Quaternions x, y, z, w of any non-zero norm.
     pub rotation: *const [f32; 4],

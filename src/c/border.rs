@@ -19,13 +19,13 @@ use crate::world::{BodyId, Event, Events, SnapshotError, WorldError};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SdopStatus {
-    /// As asked.
+    /// The call succeeded.
     Ok = 0,
-    /// Input that can't be carried out. Of a column, what comes before it has been.
+    /// Invalid input. Entries of a column before the invalid one have been applied.
     Refused = 1,
     /// The buffer is too small; the count says how much is needed.
     TooSmall = 2,
-    /// A pointer is null that must not be.
+    /// A pointer that must not be null is null.
     Null = 3,
     /// A bug of sdop: free the handle, and report it.
     Bug = 4,
@@ -58,7 +58,7 @@ impl From<[BodyId; 2]> for SdopIdPair {
     }
 }
 
-/// What has become of a pair.
+/// How a pair has changed.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SdopEventKind {
@@ -70,21 +70,21 @@ pub enum SdopEventKind {
     Ended = 2,
 }
 
-/// A pair and what has become of it.
+/// A pair and how it has changed.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SdopEvent {
-    /// What has become of it.
+    /// How it has changed.
     pub kind: SdopEventKind,
     /// The pair.
     pub pair: SdopIdPair,
 }
 
-/// Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return
-/// normally.
+/// Receives some of a frame's pairs and their number, after the pointer that was passed along. Must
+/// return normally.
 pub type SdopTakePairs = Option<unsafe extern "C" fn(*mut c_void, *const SdopPair, usize)>;
 
-/// Takes an event: the pointer given along, the event. Must return normally.
+/// Receives an event, after the pointer that was passed along. Must return normally.
 pub type SdopTakeEvent = Option<unsafe extern "C" fn(*mut c_void, SdopEvent)>;
 
 thread_local! {
@@ -204,10 +204,10 @@ pub unsafe fn put<T>(out: *mut T, value: T, what: &str) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A column of so many entries.
+/// A column of `count` entries.
 ///
 /// # Safety
-/// The pointer is null, or so many entries after it may be read for as long as the call lasts.
+/// The pointer is null, or `count` entries from it on may be read for as long as the call lasts.
 pub unsafe fn column<'a, T>(first: *const T, count: usize, what: &str) -> Result<&'a [T], Refusal> {
     if count == 0 {
         return Ok(&[]);
@@ -324,11 +324,15 @@ impl User {
     }
 }
 
-/// Hands events to a callback.
+/// Passes events to a callback.
 ///
 /// # Safety
 /// The callback may be called with this pointer.
-pub unsafe fn tell(events: &Events, take: SdopTakeEvent, user: *mut c_void) -> Result<(), Refusal> {
+pub unsafe fn pass_events(
+    events: &Events,
+    take: SdopTakeEvent,
+    user: *mut c_void,
+) -> Result<(), Refusal> {
     let take = take.ok_or_else(|| null("take"))?;
     for event in events.iter() {
         let (kind, pair) = match event {

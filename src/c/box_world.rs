@@ -3,8 +3,8 @@
 use std::ffi::{c_char, c_void};
 
 use super::border::{
-    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
-    saved, shared, tell,
+    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, pass_events,
+    put, read_back, saved, shared,
 };
 use super::boxes::builder;
 use crate::bodies::{Aabb, Groups, Motion};
@@ -36,6 +36,17 @@ impl From<SdopBoxBody> for BoxBody {
             motion: Motion::of(!body.fixed, body.resting),
             groups: body.groups,
         }
+    }
+}
+
+/// A box that is neither fixed nor resting, in all groups. Change what differs.
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_box_body_at(bounds: Aabb) -> SdopBoxBody {
+    SdopBoxBody {
+        bounds,
+        fixed: false,
+        resting: false,
+        groups: Groups::ALL,
     }
 }
 
@@ -117,7 +128,7 @@ pub unsafe extern "C" fn sdop_box_world_set(
     })
 }
 
-/// Moves boxes: columns of ids and boxes. Those before one that is refused have moved.
+/// Moves boxes: columns of ids and boxes. If one is rejected, those before it have moved.
 ///
 /// # Safety
 /// `world` is a handle; the columns have `count` entries.
@@ -213,8 +224,8 @@ pub unsafe extern "C" fn sdop_box_world_pairs(
     })
 }
 
-/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
-/// other way round.
+/// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+/// function.
 ///
 /// # Safety
 /// `world` is a handle; `take` may be called with `user`.
@@ -228,7 +239,7 @@ pub unsafe extern "C" fn sdop_box_world_events(
         // SAFETY: the caller's promise.
         let it = unsafe { handle(world, "world") }?;
         // SAFETY: the caller's promise.
-        unsafe { tell(&it.0.events(), take, user) }
+        unsafe { pass_events(&it.0.events(), take, user) }
     })
 }
 
@@ -252,7 +263,7 @@ pub unsafe extern "C" fn sdop_box_world_snapshot(
     })
 }
 
-/// Makes this world the one of a snapshot.
+/// Gives this world the state of a snapshot.
 ///
 /// # Safety
 /// `world` is a handle; `count` bytes may be read.

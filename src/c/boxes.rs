@@ -75,8 +75,8 @@ impl SdopBoxCuller {
     }
 }
 
-/// Finds the pairs of boxes that meet, touching included, and whose groups collide. `groups` may be
-/// null: all do. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
+/// Finds the pairs of boxes that meet, touching included, and whose groups collide. If `groups` is
+/// null, all collide. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
 ///
 /// # Safety
 /// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be
@@ -100,8 +100,8 @@ pub unsafe extern "C" fn sdop_box_culler_cull(
     })
 }
 
-/// Copies the pairs of the last frame into `buffer`, in an order that depends on the finder and the
-/// frames so far alone. If they don't fit, `count` says how many there are.
+/// Copies the pairs of the last frame into `buffer`, in an order that depends only on the finder
+/// and the frames so far. If they don't fit, `count` says how many there are.
 ///
 /// # Safety
 /// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
@@ -120,7 +120,7 @@ pub unsafe extern "C" fn sdop_box_culler_pairs(
     })
 }
 
-/// Culls as `sdop_box_culler_cull` does and hands the pairs to `take`, some 65,000 at a time, so
+/// Culls as `sdop_box_culler_cull` does and passes the pairs to `take`, about 65,000 at a time, so
 /// that memory doesn't grow with their number. With several threads, `take` is called from any of
 /// them, one call at a time.
 ///

@@ -115,8 +115,8 @@ pub unsafe extern "C" fn sdop_part_culler_free(culler: *mut SdopPartCuller) {
     unsafe { free(culler) }
 }
 
-/// Says which parts a shape of the world has. The world's shape of that number has to be the one of
-/// `sdop_compound_shape`. If `compound` is null, the shape is one part again.
+/// Sets the parts of a shape of the world. The world's shape of that number has to be the one that
+/// `sdop_compound_shape` made. If `compound` is null, the shape is one part again.
 ///
 /// # Safety
 /// `culler` is a handle, `compound` a handle or null.

@@ -1,9 +1,9 @@
 //! The interface for C and C++ (`sdop.h`): handles, columns in, pairs out.
 //!
 //! A function that can fail returns an [`SdopStatus`] and leaves the reason, with its remedy, in
-//! [`sdop_last_error`]. No panic crosses the border. Handles may move between threads, and one is
-//! used by one thread at a time, except where a function takes it as `const`: such calls may run at
-//! the same time.
+//! [`sdop_last_error`]. No panic crosses the border. Handles may move between threads. Only one
+//! thread at a time may use a handle, except in functions that take it as `const`: such calls may
+//! run at the same time.
 
 #![allow(unsafe_code, reason = "pointers of C cross the border here")]
 

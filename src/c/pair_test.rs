@@ -37,8 +37,8 @@ pub unsafe extern "C" fn sdop_pair_test_free(test: *mut SdopPairTest) {
     unsafe { free(test) }
 }
 
-/// Adds a shape, which the test copies; `number` gets what it is known by: 0, and one more for each
-/// that is added or grown.
+/// Adds a shape, which the test copies. `number` gets its number: 0 for the first, and one more for
+/// each shape that is added or grown.
 ///
 /// # Safety
 /// `test` and `shape` are handles; `number` may be written.
@@ -57,8 +57,8 @@ pub unsafe extern "C" fn sdop_pair_test_add(
     })
 }
 
-/// Adds what a shape of the test is with all points up to `margin` away; `number` gets what it is
-/// known by.
+/// Adds a shape of the test grown by `margin`, a length. `number` gets the number of the grown
+/// shape.
 ///
 /// # Safety
 /// `test` is a handle; `number` may be written.

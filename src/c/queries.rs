@@ -6,7 +6,7 @@ use super::world::SdopWorld;
 use crate::query::{Line, LineHit, QueryIndex, QueryVolume};
 use crate::world::BodyId;
 
-/// The bodies of a world, prepared for queries. Many threads may ask it at the same time, while
+/// The bodies of a world, prepared for queries. Many threads may query it at the same time, while
 /// none updates it.
 #[derive(Debug)]
 pub struct SdopQueryIndex(QueryIndex);
@@ -67,9 +67,8 @@ pub unsafe extern "C" fn sdop_query_index_free(index: *mut SdopQueryIndex) {
     unsafe { free(index) }
 }
 
-/// Brings the index up to date with a world: from now on queries are about its bodies as they are
-/// now. Only bodies that have changed since the last update cost more than a comparison. No cull is
-/// needed.
+/// Brings the index up to date with a world: queries then see its bodies as they are now. A body
+/// that has not changed since the last update costs one comparison. No cull is needed.
 ///
 /// # Safety
 /// `index` and `world` are handles.
@@ -122,7 +121,7 @@ unsafe fn touching(
 }
 
 /// Writes the ids of the bodies that may touch a box on the world's axes into `buffer`, sorted by
-/// slots. None is missed that has a point in common with it. If they don't fit, `count` says how
+/// slots. No body that has a point in common with it is missed. If they don't fit, `count` says how
 /// many there are.
 ///
 /// # Safety
@@ -169,8 +168,8 @@ pub unsafe extern "C" fn sdop_query_index_touching_ball(
     })
 }
 
-/// Finds the body whose volume a segment may meet first: none is met at a smaller s. `hit` gets it,
-/// and `found` whether there is one.
+/// Finds the body whose volume a segment may meet first: no other is met at a smaller s. `found`
+/// gets whether there is such a body, and `hit` gets it.
 ///
 /// # Safety
 /// `index` is a handle, `segment` a segment; `hit` and `found` may be written.

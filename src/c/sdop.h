@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-// What has become of a pair.
+// How a pair has changed.
 typedef enum {
   // Reported now and not before.
   SDOP_EVENT_KIND_BEGUN = 0,
@@ -21,13 +21,13 @@ typedef enum {
 
 // How a call ended.
 typedef enum {
-  // As asked.
+  // The call succeeded.
   SDOP_STATUS_OK = 0,
-  // Input that can't be carried out. Of a column, what comes before it has been.
+  // Invalid input. Entries of a column before the invalid one have been applied.
   SDOP_STATUS_REFUSED = 1,
   // The buffer is too small; the count says how much is needed.
   SDOP_STATUS_TOO_SMALL = 2,
-  // A pointer is null that must not be.
+  // A pointer that must not be null is null.
   SDOP_STATUS_NULL = 3,
   // A bug of sdop: free the handle, and report it.
   SDOP_STATUS_BUG = 4,
@@ -51,7 +51,7 @@ typedef struct SdopPairTest SdopPairTest;
 // Finds the pairs of parts within the pairs of bodies that a world reports.
 typedef struct SdopPartCuller SdopPartCuller;
 
-// The bodies of a world, prepared for queries. Many threads may ask it at the same time, while
+// The bodies of a world, prepared for queries. Many threads may query it at the same time, while
 // none updates it.
 typedef struct SdopQueryIndex SdopQueryIndex;
 
@@ -92,7 +92,8 @@ typedef struct {
   size_t count;
   // For each body, the number of its shape.
   const uint32_t *shape;
-  // Whether each may move; null: all may. Pairs of two that may not are never reported.
+  // Whether each body may move; null: all may. A pair of two bodies that may not is never
+  // reported.
   const bool *dynamic;
   // Quaternions x, y, z, w of any non-zero norm.
   const float (*rotation)[4];
@@ -106,7 +107,7 @@ typedef struct {
 typedef struct {
   // Which volumes are tested; null is "s-dop-sequential", spheres and then or-DOPs.
   const char *strategy;
-  // Who finds the candidates; null is "auto".
+  // The finder of candidate pairs; null is "auto".
   const char *finder;
   // Number of threads; 0 is 1.
   size_t threads;
@@ -149,19 +150,19 @@ typedef struct {
   uint64_t second;
 } SdopIdPair;
 
-// A pair and what has become of it.
+// A pair and how it has changed.
 typedef struct {
-  // What has become of it.
+  // How it has changed.
   SdopEventKind kind;
   // The pair.
   SdopIdPair pair;
 } SdopEvent;
 
-// Takes an event: the pointer given along, the event. Must return normally.
+// Receives an event, after the pointer that was passed along. Must return normally.
 typedef void (*SdopTakeEvent)(void*, SdopEvent);
 
-// Takes some of a frame's pairs: the pointer given along, the pairs, their number. Must return
-// normally.
+// Receives some of a frame's pairs and their number, after the pointer that was passed along. Must
+// return normally.
 typedef void (*SdopTakePairs)(void*, const SdopPair*, size_t);
 
 // A shape in the frame of a body.
@@ -282,6 +283,9 @@ SdopStatus sdop_culler_cull(SdopCuller *culler,
 // `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_culler_pairs(SdopCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
 
+// A box that is neither fixed nor resting, in all groups. Change what differs.
+SdopBoxBody sdop_box_body_at(SdopBox bounds);
+
 // Makes a world without boxes. `finder` is "auto" if null; 0 threads are 1.
 //
 // # Safety
@@ -312,7 +316,7 @@ SdopStatus sdop_box_world_remove(SdopBoxWorld *world, uint64_t id);
 // `world` is a handle, `body` a box.
 SdopStatus sdop_box_world_set(SdopBoxWorld *world, uint64_t id, const SdopBoxBody *body);
 
-// Moves boxes: columns of ids and boxes. Those before one that is refused have moved.
+// Moves boxes: columns of ids and boxes. If one is rejected, those before it have moved.
 //
 // # Safety
 // `world` is a handle; the columns have `count` entries.
@@ -346,8 +350,8 @@ SdopStatus sdop_box_world_cull(SdopBoxWorld *world, size_t *pairs);
 // `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_box_world_pairs(SdopBoxWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
 
-// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
-// other way round.
+// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+// function.
 //
 // # Safety
 // `world` is a handle; `take` may be called with `user`.
@@ -360,7 +364,7 @@ SdopStatus sdop_box_world_events(SdopBoxWorld *world, SdopTakeEvent take, void *
 // `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
 SdopStatus sdop_box_world_snapshot(SdopBoxWorld *world, uint8_t *buffer, size_t capacity, size_t *count);
 
-// Makes this world the one of a snapshot.
+// Gives this world the state of a snapshot.
 //
 // # Safety
 // `world` is a handle; `count` bytes may be read.
@@ -378,8 +382,8 @@ SdopStatus sdop_box_culler_new(const char *finder, size_t threads, SdopBoxCuller
 // It is from `sdop_box_culler_new` and not used afterwards.
 void sdop_box_culler_free(SdopBoxCuller *culler);
 
-// Finds the pairs of boxes that meet, touching included, and whose groups collide. `groups` may be
-// null: all do. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
+// Finds the pairs of boxes that meet, touching included, and whose groups collide. If `groups` is
+// null, all collide. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
 //
 // # Safety
 // `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be
@@ -390,14 +394,14 @@ SdopStatus sdop_box_culler_cull(SdopBoxCuller *culler,
                                 size_t count,
                                 size_t *pairs);
 
-// Copies the pairs of the last frame into `buffer`, in an order that depends on the finder and the
-// frames so far alone. If they don't fit, `count` says how many there are.
+// Copies the pairs of the last frame into `buffer`, in an order that depends only on the finder
+// and the frames so far. If they don't fit, `count` says how many there are.
 //
 // # Safety
 // `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_box_culler_pairs(SdopBoxCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
 
-// Culls as `sdop_box_culler_cull` does and hands the pairs to `take`, some 65,000 at a time, so
+// Culls as `sdop_box_culler_cull` does and passes the pairs to `take`, about 65,000 at a time, so
 // that memory doesn't grow with their number. With several threads, `take` is called from any of
 // them, one call at a time.
 //
@@ -447,8 +451,8 @@ SdopStatus sdop_part_culler_new(SdopPartCuller **out);
 // It is from `sdop_part_culler_new` and not used afterwards.
 void sdop_part_culler_free(SdopPartCuller *culler);
 
-// Says which parts a shape of the world has. The world's shape of that number has to be the one of
-// `sdop_compound_shape`. If `compound` is null, the shape is one part again.
+// Sets the parts of a shape of the world. The world's shape of that number has to be the one that
+// `sdop_compound_shape` made. If `compound` is null, the shape is one part again.
 //
 // # Safety
 // `culler` is a handle, `compound` a handle or null.
@@ -493,15 +497,15 @@ SdopStatus sdop_pair_test_new(uint32_t k, SdopPairTest **out);
 // It is from `sdop_pair_test_new` and not used afterwards.
 void sdop_pair_test_free(SdopPairTest *test);
 
-// Adds a shape, which the test copies; `number` gets what it is known by: 0, and one more for each
-// that is added or grown.
+// Adds a shape, which the test copies. `number` gets its number: 0 for the first, and one more for
+// each shape that is added or grown.
 //
 // # Safety
 // `test` and `shape` are handles; `number` may be written.
 SdopStatus sdop_pair_test_add(SdopPairTest *test, const SdopShape *shape, uint32_t *number);
 
-// Adds what a shape of the test is with all points up to `margin` away; `number` gets what it is
-// known by.
+// Adds a shape of the test grown by `margin`, a length. `number` gets the number of the grown
+// shape.
 //
 // # Safety
 // `test` is a handle; `number` may be written.
@@ -533,9 +537,8 @@ SdopStatus sdop_query_index_new(SdopQueryIndex **out);
 // It is from `sdop_query_index_new` and not used afterwards.
 void sdop_query_index_free(SdopQueryIndex *index);
 
-// Brings the index up to date with a world: from now on queries are about its bodies as they are
-// now. Only bodies that have changed since the last update cost more than a comparison. No cull is
-// needed.
+// Brings the index up to date with a world: queries then see its bodies as they are now. A body
+// that has not changed since the last update costs one comparison. No cull is needed.
 //
 // # Safety
 // `index` and `world` are handles.
@@ -548,7 +551,7 @@ SdopStatus sdop_query_index_update(SdopQueryIndex *index, const SdopWorld *world
 SdopStatus sdop_query_index_update_boxes(SdopQueryIndex *index, const SdopBoxWorld *world);
 
 // Writes the ids of the bodies that may touch a box on the world's axes into `buffer`, sorted by
-// slots. None is missed that has a point in common with it. If they don't fit, `count` says how
+// slots. No body that has a point in common with it is missed. If they don't fit, `count` says how
 // many there are.
 //
 // # Safety
@@ -573,8 +576,8 @@ SdopStatus sdop_query_index_touching_ball(const SdopQueryIndex *index,
                                           size_t capacity,
                                           size_t *count);
 
-// Finds the body whose volume a segment may meet first: none is met at a smaller s. `hit` gets it,
-// and `found` whether there is one.
+// Finds the body whose volume a segment may meet first: no other is met at a smaller s. `found`
+// gets whether there is such a body, and `hit` gets it.
 //
 // # Safety
 // `index` is a handle, `segment` a segment; `hit` and `found` may be written.
@@ -594,6 +597,10 @@ SdopStatus sdop_query_index_along(const SdopQueryIndex *index,
                                   SdopHit *buffer,
                                   size_t capacity,
                                   size_t *count);
+
+// A body of a shape at a place in the world frame: not turned, neither fixed nor resting, without
+// a margin, in all groups. Change what differs.
+SdopBody sdop_body_at(uint32_t shape, double x, double y, double z);
 
 // Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 // defaults.
@@ -641,8 +648,8 @@ SdopStatus sdop_world_remove(SdopWorld *world, uint64_t id);
 // `world` is a handle, `body` a body.
 SdopStatus sdop_world_set(SdopWorld *world, uint64_t id, const SdopBody *body);
 
-// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have
-// moved.
+// Moves bodies: columns of ids, rotations and translations. If one is rejected, those before it
+// have moved.
 //
 // # Safety
 // `world` is a handle; the columns have `count` entries.
@@ -679,8 +686,8 @@ SdopStatus sdop_world_cull(SdopWorld *world, size_t *pairs);
 // `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_world_pairs(SdopWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
 
-// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
-// other way round.
+// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+// function.
 //
 // # Safety
 // `world` is a handle; `take` may be called with `user`.
@@ -693,7 +700,7 @@ SdopStatus sdop_world_events(SdopWorld *world, SdopTakeEvent take, void *user);
 // `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
 SdopStatus sdop_world_snapshot(SdopWorld *world, uint8_t *buffer, size_t capacity, size_t *count);
 
-// Makes this world the one of a snapshot. It must have the same shapes under the same numbers.
+// Gives this world the state of a snapshot. It must have the same shapes under the same numbers.
 //
 // # Safety
 // `world` is a handle; `count` bytes may be read.

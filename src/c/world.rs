@@ -4,8 +4,8 @@ use std::ffi::c_void;
 
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
 use super::border::{
-    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, put, read_back,
-    saved, shared, tell,
+    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, pass_events,
+    put, read_back, saved, shared,
 };
 use crate::bodies::{Groups, Motion};
 use crate::world::{Body, BodyId, World};
@@ -45,6 +45,21 @@ impl From<SdopBody> for Body {
             groups: body.groups,
             margin: body.margin,
         }
+    }
+}
+
+/// A body of a shape at a place in the world frame: not turned, neither fixed nor resting, without
+/// a margin, in all groups. Change what differs.
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_body_at(shape: u32, x: f64, y: f64, z: f64) -> SdopBody {
+    SdopBody {
+        shape,
+        fixed: false,
+        resting: false,
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        translation: [x, y, z],
+        margin: 0.0,
+        groups: Groups::ALL,
     }
 }
 
@@ -158,8 +173,8 @@ pub unsafe extern "C" fn sdop_world_set(
     })
 }
 
-/// Moves bodies: columns of ids, rotations and translations. Those before one that is refused have
-/// moved.
+/// Moves bodies: columns of ids, rotations and translations. If one is rejected, those before it
+/// have moved.
 ///
 /// # Safety
 /// `world` is a handle; the columns have `count` entries.
@@ -253,8 +268,8 @@ pub unsafe extern "C" fn sdop_world_pairs(
     })
 }
 
-/// Hands to `take` what the last cull reports that it didn't at the last call of this, and the
-/// other way round.
+/// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+/// function.
 ///
 /// # Safety
 /// `world` is a handle; `take` may be called with `user`.
@@ -268,7 +283,7 @@ pub unsafe extern "C" fn sdop_world_events(
         // SAFETY: the caller's promise.
         let it = unsafe { handle(world, "world") }?;
         // SAFETY: the caller's promise.
-        unsafe { tell(&it.0.events(), take, user) }
+        unsafe { pass_events(&it.0.events(), take, user) }
     })
 }
 
@@ -292,7 +307,7 @@ pub unsafe extern "C" fn sdop_world_snapshot(
     })
 }
 
-/// Makes this world the one of a snapshot. It must have the same shapes under the same numbers.
+/// Gives this world the state of a snapshot. It must have the same shapes under the same numbers.
 ///
 /// # Safety
 /// `world` is a handle; `count` bytes may be read.

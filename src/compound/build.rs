@@ -41,7 +41,7 @@ pub struct Compound {
 
 impl Compound {
     /// A compound of parts with these shapes. Its own shape has the slab directions of the first
-    /// part's, along the principal axes of all.
+    /// part's shape, along the principal axes of all parts.
     ///
     /// # Errors
     /// No parts, a part whose shape number or pose is invalid, or parts that reach farther from the

@@ -1,4 +1,4 @@
-//! The pairs of parts of a world's pairs.
+//! Finds the pairs of parts within a world's pairs.
 
 use super::part_set::{PartSet, PosedParts};
 use super::{Compound, CompoundError};
@@ -18,8 +18,8 @@ pub struct PartPair {
 /// Finds the pairs of parts within the pairs of bodies that a [`World`] reports. See the
 /// [module](super).
 ///
-/// Costs time for pairs of bodies of which one has changed since the last call, and a comparison
-/// for each other pair.
+/// A call costs time for the pairs with a body that has changed since the last call, and one
+/// comparison for each other pair.
 #[derive(Clone, Debug, Default)]
 pub struct PartCuller {
     compounds: Vec<Option<Compound>>,
@@ -49,7 +49,7 @@ impl PartCuller {
         Self::default()
     }
 
-    /// Says which parts a shape of the world has. The world's shape of that number has to be
+    /// Sets the parts of a shape of the world. The world's shape of that number has to be
     /// [`Compound::shape`].
     pub fn set_parts(&mut self, shape: u32, compound: Compound) {
         let number = shape as usize;

@@ -9,8 +9,8 @@
 //!
 //! The promise is that of culling. If the meshes of two parts, each grown by the margin of its body
 //! and posed by its local pose and then by the pose of its body, meet in exact arithmetic, and the
-//! world may report the two bodies, the pair of parts is reported. Rounding of composed poses is
-//! part of that: parts are grown by it.
+//! world may report the two bodies, the pair of parts is reported. This includes the rounding of
+//! composed poses: parts are grown by its bound.
 //!
 //! ```
 //! use sdop::compound::{Compound, Part, PartCuller};

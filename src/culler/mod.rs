@@ -107,7 +107,7 @@ struct Volumes {
     rows: OrDopRows,
     intervals: Option<Intervals>,
     interval_slots: IntervalSlots,
-    /// By body.
+    /// Whether each body is of interest.
     interest: Vec<bool>,
     /// Counts frames from 1.
     stamp: u32,

@@ -1,4 +1,4 @@
-//! Changing a culler's set of bodies, and reordering them.
+//! Changes a culler's set of bodies, and reorders the bodies.
 
 use super::needs;
 use super::sample::Sample;

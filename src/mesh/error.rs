@@ -1,8 +1,8 @@
-//! The errors of meshes: where (file and line), what, and how to mend it.
+//! The errors of meshes: where the mistake is (file and line), what it is, and how to fix it.
 
 use super::MAX_COORDINATE;
 
-/// Why a mesh was refused. Prints as `file:line: problem`; the help text says how to mend it.
+/// Why a mesh was rejected. It prints as `file:line: problem`; the help text says how to fix it.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {problem}", place(.file, *.line))]
 pub struct MeshError {

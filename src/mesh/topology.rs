@@ -46,7 +46,7 @@ impl Component {
 pub struct Topology {
     /// The components, in the order of their lowest vertex index.
     pub components: Vec<Component>,
-    /// The component's index of each triangle.
+    /// For each triangle, the index of its component.
     pub component_of: Vec<usize>,
     /// Vertices that no triangle uses.
     pub unused_vertices: usize,

@@ -1,5 +1,5 @@
-//! Periodic boxes, with ends in f64. Their images are boxes in f32 that contain them; pairs of
-//! images are then decided by the ends as given, without an error.
+//! Periodic boxes, with ends in f64. Their images are f32 boxes that contain them. The f64 ends
+//! then decide each pair of images exactly.
 
 use super::PeriodicError;
 use super::images::{ImageWorld, PlacedBody, Placement, forward_images};

@@ -1,4 +1,4 @@
-//! The images of bodies: what a world has to know to hold them.
+//! The images of bodies: what a world has to know in order to hold them.
 
 use std::fmt::Debug;
 

@@ -1,5 +1,5 @@
-//! Periodic meshes. An image has the pose of its body with another translation; where f64 rounds
-//! that, it is grown by a bound of the error.
+//! Periodic meshes. An image has the pose of its body with another translation. If f64 rounds that
+//! translation, the image is grown by a bound of the error.
 
 use super::PeriodicError;
 use super::images::{ImageWorld, PlacedBody, Placement, forward_images};

@@ -3,26 +3,26 @@
 //!
 //! [`PeriodicWorld`] has posed meshes, [`PeriodicBoxes`] boxes with ends in f64. Each of the axes
 //! x, y and z may have a period. A body may be anywhere, also many periods away, and has images
-//! everywhere: copies moved by whole periods. A pair is reported if any image of the one may touch
-//! the other, once, with the number of periods by which the second body is moved to do so
-//! ([`PeriodicPair::image`]).
+//! everywhere: copies moved by whole periods. A pair is reported if an image of one body may touch
+//! the other body. It is reported once, with the number of periods by which the second body has to
+//! be moved to touch the first ([`PeriodicPair::image`]).
 //!
-//! Along a periodic axis, a body has to be smaller than half of the period: then two bodies can
-//! touch in one image at most. Larger ones are refused with an error that has their size. For boxes
-//! that is the length of the box, for meshes the diameter of the ball about them, with the margin.
-//! With a cutoff radius, that is the rule of the nearest image: the cutoff is less than half of the
+//! Along a periodic axis, a body has to be smaller than half of the period, so that two bodies can
+//! touch in at most one image. Larger bodies are rejected with an error that gives their size: the
+//! length of a box, or the diameter of the ball around a mesh, including its margin. For particles
+//! with a cutoff radius this is the minimum image convention: the cutoff is less than half of the
 //! period.
 //!
-//! The promise is that of [`World`] and [`BoxWorld`], for the exact periods. Meshes, each grown by
-//! its margin, that meet in exact arithmetic when one is moved by whole periods are reported. Boxes
-//! are reported exactly if they meet. Wrapping a position rounds nothing, and where f64 rounds an
-//! image's translation, the image is grown by a bound of the error.
+//! The promise is that of [`World`] and [`BoxWorld`], for the exact periods. If two meshes, each
+//! grown by its margin, meet in exact arithmetic when one of them is moved by whole periods, the
+//! pair is reported. Boxes are reported exactly if they meet. Wrapping a position does not round
+//! it. If f64 rounds an image's translation, the image is grown by a bound of the error.
 //!
-//! Bodies are culled in a world that has them within one period, and with images of those near a
-//! lower border beyond the upper one: one more for a body near one border, three at an edge, seven
-//! at a corner. Near is within the width of the widest body so far, so one giant makes all others
-//! cost more. All other bodies cost nothing more than in a world without periods, except that each
-//! reported pair is compared once more.
+//! Internally, an ordinary world holds each body within one period. A body near a lower border also
+//! has images beyond the upper one: one image near a single border, three at an edge, seven at a
+//! corner. "Near" means within the width of the widest body so far, so a single giant makes many
+//! bodies cost more. Bodies without images cost no more than in a world without periods, except
+//! that each reported pair is compared once more.
 //!
 //! ```
 //! use sdop::periodic::{PeriodicBox, PeriodicBoxes};

@@ -6,8 +6,8 @@ use super::periods::Periods;
 use crate::simd::in_default_mode;
 use crate::world::{BodyId, WorldError};
 
-/// By how much the widest body is taken to be wider than it is, so that bodies of nearly one size
-/// don't all count as the widest so far.
+/// The factor by which the widest body counts as wider than it is, so that bodies of nearly the
+/// same size don't all become the widest so far.
 const WIDEST_FACTOR: f64 = 1.0 + 1.0 / 64.0;
 
 /// 2⁻⁴⁰, as a multiple of the period: more than rounding takes from the ends of placed bodies. A
@@ -19,8 +19,8 @@ const BORDER_ERROR: f64 = 1.0 / (1_u64 << 40) as f64;
 pub struct PeriodicPair {
     /// The bodies, the lower slot first.
     pub bodies: [BodyId; 2],
-    /// By how many periods of each axis the second body is moved, from where the user has put it,
-    /// to where it may touch the first.
+    /// The number of periods along each axis by which the second body is moved, from where the user
+    /// has put it, so that it may touch the first.
     pub image: [i32; 3],
 }
 
@@ -30,11 +30,11 @@ pub struct PeriodicPair {
 #[derive(Clone, Debug)]
 pub struct Periodic<W: ImageWorld> {
     periods: Periods,
-    /// All images. Those of no axis have the ids of their bodies.
+    /// All images. An image that is not moved has the id of its body.
     world: W,
-    /// By slot of the world, valid for bodies.
+    /// The bodies by slot of the world; slots of images have invalid entries.
     bodies: Vec<PlacedBody<W::Body>>,
-    /// By slot of the world.
+    /// The images by slot of the world.
     images: Vec<Image>,
     /// The other images of each body, by slot.
     ghosts: Vec<Vec<BodyId>>,
@@ -110,8 +110,8 @@ impl<W: ImageWorld> Periodic<W> {
     /// Adds a body, anywhere.
     ///
     /// # Errors
-    /// Along a periodic axis the body is not smaller than half of the period, or farther than 2²⁸
-    /// periods from the origin; or it is outside of the contract.
+    /// Along a periodic axis, the body is as long as half of the period or longer, or farther than
+    /// 2²⁸ periods from the origin; or it is outside of the contract.
     pub fn insert(&mut self, body: impl Into<W::Body>) -> Result<BodyId, PeriodicError> {
         let body = body.into();
         in_default_mode(|| {
@@ -166,8 +166,9 @@ impl<W: ImageWorld> Periodic<W> {
         self.slots_of_bodies().map(|slot| self.images[slot].of)
     }
 
-    /// Leaves a pair of bodies out of what is reported, with all images, until [`Self::include`] or
-    /// until one of them is removed. Returns whether it was there to be reported.
+    /// Excludes a pair of bodies with all of their images: it is not reported until
+    /// [`Self::include`] or until one of the bodies is removed. Returns whether the pair was
+    /// included before.
     ///
     /// # Errors
     /// A body that has been removed.
@@ -177,7 +178,7 @@ impl<W: ImageWorld> Periodic<W> {
         Ok(self.world.set_excluded([a, b], true)?)
     }
 
-    /// Reports a pair again that was left out. Returns whether it was.
+    /// Includes an excluded pair again. Returns whether it was excluded.
     ///
     /// # Errors
     /// A body that has been removed.
@@ -187,7 +188,7 @@ impl<W: ImageWorld> Periodic<W> {
         Ok(self.world.set_excluded([a, b], false)?)
     }
 
-    /// Whether a pair is left out.
+    /// Whether a pair is excluded.
     #[must_use]
     pub fn is_excluded(&self, a: BodyId, b: BodyId) -> bool {
         self.world.has_excluded([a, b])

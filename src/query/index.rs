@@ -23,7 +23,7 @@ pub struct QueryIndex {
     pub(super) trees: [Tree; TREES],
     /// The origin of the boxes in the trees: 0 if bodies are boxes.
     pub(super) origin: [f64; 3],
-    /// By slot.
+    /// The place of each slot's body in the trees.
     homes: Vec<TreePlace>,
     pub(super) ids: Vec<BodyId>,
     pub(super) posed: Option<PosedBodies>,
@@ -86,9 +86,9 @@ impl QueryIndex {
     }
 
     /// Brings the index up to date with a world, [`World`](crate::World) or
-    /// [`BoxWorld`](crate::BoxWorld): from now on queries are about its bodies as they are now. The
-    /// cost is one comparison per body, plus changes to the trees for those that have changed. If
-    /// the world is not the one of the last update, all bodies are new.
+    /// [`BoxWorld`](crate::BoxWorld): queries then see its bodies as they are now. It costs one
+    /// comparison per body, and changes to the trees for those that have changed. If the world is
+    /// not that of the last update, all bodies are new.
     pub fn update(&mut self, world: &impl QuerySource) {
         in_default_mode(|| {
             world.bring(self);

@@ -1,5 +1,5 @@
-//! Queries: which bodies may touch a volume, which does a line meet first, which bodies of one set
-//! meet those of another?
+//! Queries: which bodies may touch a volume, which body does a line meet first, which bodies of one
+//! set may meet those of another?
 //!
 //! Use them for picking, sensors, explosions, lines of sight and placing a body. A [`QueryIndex`]
 //! holds the bodies of a [`World`](crate::World) or a [`BoxWorld`](crate::BoxWorld) as they were at
@@ -9,10 +9,10 @@
 //!
 //! The promise is that of culling: no body is missed that has a point in common with the volume or
 //! the line in exact arithmetic, touching included. Boxes are reported for a box exactly if they
-//! meet. For balls and lines, f64 rounding may report boxes at a distance below 2⁻⁵⁰ of the lengths
-//! involved, too. Bodies of a `World` are grown by their margins and tested by their boxes, balls
-//! and or-DOPs, as in culling, so a narrow phase has to test the reported ones. Queries ignore
-//! groups and whether a body moves: filter the answers.
+//! meet. For balls and lines, a box may also be reported at a distance below 2⁻⁵⁰ of the lengths
+//! involved, because f64 rounds. Bodies of a `World` are grown by their margins and tested by their
+//! boxes, balls and or-DOPs, as in culling, so a narrow phase has to test the reported ones.
+//! Queries ignore groups and whether a body moves: filter the answers.
 //!
 //! ```
 //! use sdop::{Aabb, BoxWorld, Line, QueryIndex, QueryVolume};

@@ -1,5 +1,5 @@
-//! Without the feature `shapes` all bodies are boxes, and the types of [`shape`](super::shape) have
-//! no values.
+//! Replaces [`shape`](super::shape) without the feature `shapes`: all bodies are boxes, and these
+//! types have no values.
 
 use super::LineTrack;
 use crate::bodies::Aabb;

@@ -141,7 +141,7 @@ impl QueryShape {
         (centre, self.radius)
     }
 
-    /// At least the distance of a point from the one that poses place.
+    /// A bound on the distance of the shape's points from the point that poses place.
     pub(crate) fn radius_about_pose(&self) -> f64 {
         self.reach + self.pose_offset.iter().map(|x| x.abs()).sum::<f64>()
     }
@@ -208,9 +208,9 @@ fn index_of(facing: [i8; 3]) -> usize {
 /// Shapes and poses of bodies that are not boxes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PosedBodies {
-    /// By shape number, as bodies use it.
+    /// The shapes by the numbers that bodies use.
     pub shapes: Vec<Option<QueryShape>>,
-    /// By slot.
+    /// The bodies by slot.
     pub bodies: Vec<Body>,
 }
 
@@ -229,7 +229,7 @@ impl PosedBodies {
 pub(crate) struct PosedShape<'a> {
     pub shape: &'a QueryShape,
     pub rotation: Rotation,
-    /// Of the vertices' origin.
+    /// The translation of the vertices' origin.
     pub translation: [f64; 3],
     /// The margin, plus the error of the translation.
     pub margin: f64,

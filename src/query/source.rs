@@ -143,11 +143,12 @@ impl BodyExtent {
         }
     }
 
-    /// What boxes in f32 are seen from, so that answers are a function of the bodies as they are
-    /// now: the world's origin unless bodies are far from it. Then their middle in steps of about
-    /// twice the width, so that it seldom changes while they move.
+    /// The origin of the f32 boxes. It is a function of the present bodies, so that answers are,
+    /// too: the world's origin unless bodies are far from it; otherwise their middle, in steps of
+    /// about twice their width, so that it seldom changes while they move.
     fn origin(&self) -> [f64; 3] {
-        /// Bodies may be so many times farther from the world's origin than they are apart.
+        /// The largest ratio of the bodies' distance from the world's origin to their distance from
+        /// each other.
         const MOST_OFFSET_RATIO: f64 = 16.0;
         const MANTISSA: u64 = (1 << 52) - 1;
         let far = largest(self.middle);

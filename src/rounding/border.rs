@@ -1,5 +1,5 @@
-//! Borders between domains: within which distance of its ball's centre a body can be in a pair, and
-//! of which bodies a domain needs copies.
+//! Borders between domains: how far from its ball's centre a body can still be in a pair, and which
+//! bodies a domain therefore needs copies of.
 //!
 //! Many ranks share a world. Each owns the bodies whose ball's f32 centre is in its cell, a box. A
 //! pair is reported by the owner of the body with the smaller [`reach`], or with the lower number
@@ -12,8 +12,8 @@
 //! Reported ⇒ |c_i − c_j|∞ ≤ w_i + w_j: for balls and for oriented volumes, which are binned by
 //! balls of their own, w is [`widen`]'s radius, and `finder.g` proves |Δ| ≤ (R_i + R_j)(1 + 4u) for
 //! each pair that the sphere test reports. Of the 16u there, 12u·(R_i + R_j) are left for the f64
-//! arithmetic here, which takes 2⁻⁵¹ of the same sum. World-aligned boxes lie in the ball, but for
-//! their own rounding, which [`reach_of_box`] adds twice over.
+//! arithmetic here, which takes 2⁻⁵¹ of the same sum. World-aligned boxes lie in the ball except
+//! for their own rounding, of which [`reach_of_box`] adds twice the amount.
 
 use super::{down, exp2, up, widen};
 

@@ -41,7 +41,7 @@ pub struct Cube<L: Lanes> {
 }
 
 impl<L: Lanes> Cube<L> {
-    /// Of the boxes between such ends, axis by axis.
+    /// The cubes of the boxes between these ends, which are given axis by axis.
     #[inline(always)]
     #[must_use]
     pub fn about(l: L, lower: [L::F; 3], upper: [L::F; 3]) -> Self {

@@ -7,9 +7,9 @@
 //! exact real arithmetic. A margin in the volume costs nothing in the pair loop, and one bound per
 //! volume can be proved; an epsilon in each comparison can't.
 //!
-//! Model of a machine operation, of which every bound here is a consequence: the result is x(1+ε)+φ
-//! with |ε| ≤ u and
-//! |φ| ≤ [`FLUSH`], with denormals on, with results flushed to zero, or with operands read as zero alike.
+//! Every bound here follows from one model of a machine operation: the result is x(1+ε)+φ with
+//! |ε| ≤ u and |φ| ≤ [`FLUSH`]. It holds with denormals on, with results flushed to zero, and with
+//! operands read as zero.
 //!
 //! Each constant states its derivation, the Gappa script in `paper/proofs/` that checks it (the
 //! control next to it is one notch tighter and must fail), and the largest error that hill climbing

@@ -1,5 +1,5 @@
-//! Periodic axes: positions are wrapped into one period, and ends of boxes compared across it,
-//! without an error.
+//! Periodic axes: wraps positions into one period, and compares ends of boxes across it, without an
+//! error.
 //!
 //! The remainder of a division is an f64 itself, so [`wrap`] rounds nothing. A sum with a multiple
 //! of the period may be rounded, and [`shifted`] returns a bound. A comparison with one

@@ -1,11 +1,11 @@
 //! The f64 pose: x ↦ R(q)x + t with R(q) the rotation matrix of q over |q|² (poses are rational
 //! maps).
 //!
-//! Products of two f32 are exact in f64, so the numerator of an entry rounds thrice at most, |q|²
-//! thrice, its reciprocal and their product once each: |δr_ij| ≤ (2 + 6|r_ij|)·2⁻⁵³, and
-//! 24·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. One division serves all nine entries:
-//! eighteen of them were a third of an or-DOP's update. f64 here costs one matrix per body and
-//! frame; in f32 the same bound would be larger than all margins together.
+//! Products of two f32 are exact in f64. Therefore the numerator of an entry rounds at most three
+//! times, |q|² three times, and its reciprocal and their product once each: |δr_ij| ≤ (2 +
+//! 6|r_ij|)·2⁻⁵³, and 24·2⁻⁵³·max(|x|∞, |t|∞) bounds a transformed coordinate. One division serves
+//! all nine entries: eighteen of them were a third of an or-DOP's update. f64 here costs one matrix
+//! per body and frame; in f32 the same bound would be larger than all margins together.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

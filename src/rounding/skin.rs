@@ -2,10 +2,10 @@
 //!
 //! A list holds the pairs that come within reach while each ball's drift, the distance that its
 //! centre has moved plus what its radius has grown since, is at most its budget B. The drift is
-//! measured in f32 and held against the skin s = max(fl(Rσ), a): a share σ of the radius, or the
-//! same length a ≥ 2⁻⁶⁰ for all; the budget is what the measurement can hide beyond that, B = s(1 +
-//! 32u) + 2⁻⁶⁰. Both in the order of operations of [`stays`]; a list is made of balls grown by
-//! [`Reach`].
+//! measured in f32 and compared with the skin s = max(fl(Rσ), a): a share σ of the radius, or the
+//! same length a ≥ 2⁻⁶⁰ for all balls. Rounding may hide a little more drift than s, so the budget
+//! is B = s(1 + 32u) + 2⁻⁶⁰. The bound holds for the order of operations in [`stays`]. A list is
+//! made of balls grown by [`Reach`].
 
 use super::{U, exp2};
 use crate::simd::Lanes;
@@ -47,14 +47,14 @@ impl Skin {
         Self { share: 0.0, least }
     }
 
-    /// Of a ball.
+    /// The skin of a ball.
     #[inline(always)]
     #[must_use]
     pub fn of(self, radius: f32) -> f32 {
         (radius * self.share).max(self.least)
     }
 
-    /// Of balls.
+    /// The skins of balls.
     #[inline(always)]
     fn of_lanes<L: Lanes>(self, l: L, radii: L::F) -> L::F {
         l.max(radii * l.splat(self.share), l.splat(self.least))

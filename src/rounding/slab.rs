@@ -6,7 +6,8 @@
 //! support by weak duality, whose coefficients combine the slab directions to e + δ instead of e.
 //! Each slab gains 2⁻¹⁷ρ‖d‖ = 128u·ρ‖d‖, and any nonnegative combination of slab directions that
 //! gives e gains at least 128u·ρ‖e‖ by the triangle inequality. Errors grow with
-//! |Δ|, but beyond a few ρ_A + ρ_B the slabs' polytopes are apart on any account (`paper/proofs/LEMMAS.md`).
+//! the length of Δ, but if it exceeds a few ρ_A + ρ_B, the slabs' polytopes are certainly apart
+//! (`paper/proofs/LEMMAS.md`).
 
 use super::pose::norm;
 use super::{down, exp2, up};

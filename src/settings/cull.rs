@@ -37,7 +37,8 @@ choices! {
 choices! {
     /// Which separating axes the or-DOP test tries.
     Overlap, "overlap test", {
-        /// The first body's slab normals: the paper's "interval pairs in local space".
+        /// The first body's slab normals: the paper's "interval pairs in local space". First is the
+        /// body with the lower number, or in the lower slot of a world.
         OneSided = "one-sided",
         /// Both bodies' slab normals.
         TwoSided = "two-sided",
@@ -91,8 +92,9 @@ pub enum Interest {
     serde(deny_unknown_fields)
 )]
 pub struct ViewCone {
-    /// The body that looks. The apex is its translation, and `direction` is in its frame. It is of
-    /// interest itself if its sphere's centre is in the cone, as a centre at its origin is.
+    /// The body to which the cone is attached. Its translation is the apex, and `direction` is in
+    /// its frame. The body itself is of interest if its sphere's centre is in the cone, as a centre
+    /// at its origin is.
     pub body: Option<u32>,
     /// The fixed apex, world frame, instead of `body`.
     pub apex: Option<[f32; 3]>,

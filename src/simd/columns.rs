@@ -1,5 +1,5 @@
-//! Sixteen records as columns, whatever the tier's width: what is read a body at a time is computed
-//! with a vector at a time.
+//! Sixteen records as columns, whatever the tier's width: records are read one body at a time, and
+//! computed with a vector at a time.
 
 use super::{LANES, Lanes, MAX_WIDTH, ROW};
 

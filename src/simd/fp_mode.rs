@@ -2,8 +2,8 @@
 //! numbers.
 //!
 //! Rust assumes the default mode: rounding to nearest, subnormal numbers as they are, no traps.
-//! Audio and game engines set others. All arithmetic that decides runs in the default mode, and the
-//! caller finds its own as it was, also after a panic.
+//! Audio and game engines set others. All arithmetic that decides runs in the default mode.
+//! Afterwards the caller's mode is restored, also after a panic.
 
 use std::marker::PhantomData;
 

@@ -1,4 +1,5 @@
-//! The NEON tier of AArch64: 4 lanes. What NEON has no instruction for goes through memory.
+//! The NEON tier of AArch64: 4 lanes. Operations for which NEON has no instruction go through
+//! memory.
 //!
 //! `vminq`/`vmaxq` propagate NaN and order −0 below +0, so `min` and `max` are a comparison and a
 //! selection instead.

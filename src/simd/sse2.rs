@@ -1,5 +1,5 @@
-//! The SSE2 tier: 4 lanes, the floor of every x86-64 CPU. What SSE2 has no instruction for goes
-//! through memory.
+//! The SSE2 tier: 4 lanes, available on every x86-64 CPU. Operations for which SSE2 has no
+//! instruction go through memory.
 
 use std::arch::x86_64::*;
 

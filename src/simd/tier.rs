@@ -36,9 +36,9 @@ pub enum TierError {
     /// The tier exists but this CPU lacks it.
     #[error("this CPU has no {missing}; it has {have}")]
     Unavailable {
-        /// The tier asked for.
+        /// The requested tier.
         missing: String,
-        /// The tiers there are, comma separated.
+        /// The available tiers, separated by commas.
         have: String,
     },
 }

@@ -1,8 +1,8 @@
 //! S-DOP in batches (paper, section 4b): the potentially colliding set is listed first, then its
 //! or-DOPs are tested.
 //!
-//! Lazy updates need the pairs before rows are computed, so that every refining strategy flows this
-//! way with them. If the output is in portions, so is the list.
+//! Lazy updates need the pairs before rows are computed, so with lazy updates every refining
+//! strategy uses this flow. If the output is in portions, so is the list.
 
 use super::interest::InterestFilter;
 use super::listing::{PairNames, list};

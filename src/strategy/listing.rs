@@ -51,9 +51,9 @@ enum FirstVolume<'a> {
 /// How given boxes are tested.
 #[derive(Clone, Copy)]
 pub(crate) enum BoxTest<'a> {
-    /// By the cubes around and inside them.
+    /// Given boxes, tested by the cubes around and inside them.
     Cubes(CubeTest<'a>),
-    /// By their ends.
+    /// Given boxes, tested by their ends.
     Ends(&'a EndSlots),
 }
 

@@ -72,7 +72,7 @@ pub(super) struct OutputTurns<'s> {
 }
 
 struct TurnState<'s> {
-    /// The task whose turn it is.
+    /// The task that may pass on portions now.
     task: usize,
     /// Whether a task panicked. Nothing is passed on from then on.
     abandoned: bool,

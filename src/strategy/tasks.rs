@@ -113,7 +113,7 @@ pub(super) fn split_work(
 mod tests {
     use super::*;
 
-    /// What so much work leaves on so many threads: each task's share of it, in the order of the
+    /// The result of this much work on this many threads: each task's share, in the order of the
     /// list, and the totals.
     fn shares(threads: usize, units: usize) -> (Vec<[u32; 2]>, Totals) {
         let pool = Threads::new(threads).expect("a few threads");

@@ -1,5 +1,5 @@
-//! [`AlignedRows`]: rows that each occupy one cache line. A `Vec` of floats is only aligned to four
-//! bytes, so most rows would cross two lines, and rows are read whole and in random order.
+//! [`AlignedRows`]: rows that each occupy one cache line. Rows are read whole and in random order.
+//! In a `Vec` of floats, which is only aligned to four bytes, most rows would span two lines.
 
 use std::ops::{Deref, DerefMut};
 

@@ -230,7 +230,8 @@ mod tests {
     use crate::threads::Threads;
     use crate::volume::ShapeSpec;
 
-    /// To round outward once more would lose no pair, and report some that are apart.
+    /// Slabs are rounded outward only once. Doing it twice would lose no pair, but report some that
+    /// are apart.
     #[test]
     fn slabs_grow_by_their_margin() {
         let half = [1.0, 2.5, 0.75];

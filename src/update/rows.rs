@@ -1,6 +1,6 @@
 //! [`OrDopRows`]: or-DOP updates. The basis is rotated with the body, and its slabs stay.
 //!
-//! They are computed for sixteen bodies at a time in every tier.
+//! Rows are computed for sixteen bodies at a time in every tier.
 
 use std::ops::Range;
 

@@ -191,9 +191,9 @@ fn grown(size: f32, rounding: f32) -> f32 {
 
 /// The origin of the vertices and the scale of the mesh.
 struct ShapePlacement {
-    /// In the mesh's coordinates, which are relative to the mesh's offset.
+    /// The centre in the mesh's coordinates, which are relative to the mesh's offset.
     centre: DVec3,
-    /// In the file's coordinates.
+    /// The offset in the file's coordinates.
     offset: DVec3,
     scale: f64,
     pose_offset: DVec3,

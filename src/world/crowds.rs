@@ -6,7 +6,7 @@ use super::pair_log::WorldPairs;
 use super::{World, WorldError};
 
 impl World {
-    /// Culls as [`Self::cull`] does and hands the pairs to `take`, about 65,000 at a time. Returns
+    /// Culls as [`Self::cull`] does and passes the pairs to `take`, about 65,000 at a time. Returns
     /// their number. Then there are no [`Self::pairs`], and for [`Self::events`] the cull found
     /// none.
     ///

@@ -1,4 +1,4 @@
-//! Errors of worlds.
+//! The errors of worlds.
 
 use thiserror::Error;
 

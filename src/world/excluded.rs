@@ -1,14 +1,14 @@
-//! Pairs that a world doesn't report: bodies that a joint connects, links of one machine.
+//! Pairs that a world doesn't report, such as bodies that a joint connects or links of one machine.
 
 use super::{BodyId, World, WorldError};
 
 impl World {
-    /// Leaves a pair of bodies out of what is reported, from the next cull on, until
-    /// [`Self::include`] or until one of them is removed. Returns whether it was there to be
-    /// reported; a body and itself never are.
+    /// Excludes a pair of bodies: it is not reported from the next cull on, until [`Self::include`]
+    /// or until one of the bodies is removed. Returns whether the pair was included before; a body
+    /// and itself are no pair.
     ///
-    /// Costs one look-up per pair that passes the first test, and memory in proportion to the
-    /// pairs. Groups filter as before.
+    /// It costs one look-up per pair that passes the first test, and memory in proportion to the
+    /// excluded pairs. Groups filter as before.
     ///
     /// ```
     /// # use sdop::{Body, ProceduralShape, Shape, ShapeSpec, World};
@@ -33,7 +33,7 @@ impl World {
         Ok(is_new)
     }
 
-    /// Reports a pair again that was left out. Returns whether it was.
+    /// Includes an excluded pair again. Returns whether it was excluded.
     ///
     /// # Errors
     /// A body that has been removed.
@@ -46,7 +46,7 @@ impl World {
         Ok(was_excluded)
     }
 
-    /// Whether a pair is left out. None is that has a body which has been removed.
+    /// Whether a pair is excluded. A pair with a removed body is not.
     #[must_use]
     pub fn is_excluded(&self, a: BodyId, b: BodyId) -> bool {
         let slots = [a, b].map(|id| self.ids.slot(id));
@@ -56,7 +56,7 @@ impl World {
         }
     }
 
-    /// The pairs that are left out, the lower slot first, sorted by slots.
+    /// The excluded pairs, the lower slot first, sorted by slots.
     #[must_use]
     pub fn excluded(&self) -> Vec<[BodyId; 2]> {
         let pairs = self.culler.excluded().sorted();

@@ -49,9 +49,15 @@ impl BodyId {
     }
 }
 
+/// The number of [`BodyId::to_bits`], as other languages have it, then the slot if it was used
+/// before.
 impl fmt::Display for BodyId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}.{}", self.slot, self.generation)
+        self.to_bits().fmt(f)?;
+        match self.generation {
+            0 => Ok(()),
+            generation => write!(f, " (slot {}, generation {generation})", self.slot),
+        }
     }
 }
 
@@ -204,8 +210,12 @@ mod tests {
         ids.settle();
         assert_eq!((ids.shrink(), ids.len(), ids.next()), (4, 3, 1));
         assert!(!ids.take() && ids.take());
-        let given = [1, 4].map(|slot| ids.id(slot).to_string());
-        assert_eq!(given, ["1.1", "4.1"], "4.0 was another's");
+        let given = [1, 4].map(|slot| ids.id(slot));
+        let again = |slot| BodyId {
+            slot,
+            generation: 1,
+        };
+        assert_eq!(given, [1, 4].map(again), "generation 0 was another's");
         assert_eq!(ids.iter().count(), 5);
     }
 
@@ -219,8 +229,8 @@ mod tests {
             ids.settle();
             ids.take();
         }
-        let given: Vec<_> = ids.iter().map(|id| id.to_string()).collect();
-        assert_eq!(given, ["1.7".to_owned(), "2.0".to_owned()]);
+        let given: Vec<_> = ids.iter().map(|id| [id.slot, id.generation]).collect();
+        assert_eq!(given, [[1, 7], [2, 0]]);
         assert_eq!((ids.len(), ids.slots(), ids.shrink()), (2, 3, 3));
     }
 }

@@ -1,10 +1,10 @@
 //! The pairs of a world in which few bodies move: kept by body, changed pair by pair, with the
 //! changes from which events are read.
 //!
-//! They have two forms. As long as a cull finds all pairs anew, they are lists that take turns
-//! ([`PairLog`]). Once a cull changes some, they are lists of partners ([`Partners`]) and a log of
-//! what has changed since events were last read. Either form can be made from the other
-//! in one pass over the pairs.
+//! The pairs have two forms. As long as each cull finds all pairs anew, there are two lists that
+//! take turns ([`PairLog`]). When a cull changes only some pairs, there are lists of partners
+//! ([`Partners`]) and a log of what has changed since events were last read. Either form can be
+//! made from the other in one pass over the pairs.
 
 use std::sync::Arc;
 

@@ -1,10 +1,11 @@
 //! Long-lived worlds: bodies come and go, and each frame finds the pairs that might touch.
 //!
-//! What an engine needs around a [`Culler`]: stable ids, static and dynamic bodies, groups and
-//! masks, contact margins, translations in f64, and pairs as a list or as events. The promise is
-//! the same, margins included: at every [`World::cull`], if two meshes, each grown by its body's
-//! margin and posed at its f64 translation, meet in exact arithmetic, and one of them is dynamic,
-//! and their groups collide, and the pair isn't [excluded](World::exclude), it is reported.
+//! A world gives an engine what it needs around a [`Culler`]: stable ids, static and dynamic
+//! bodies, groups and masks, contact margins, translations in f64, and pairs as a list or as
+//! events. The promise is the same and includes margins: every [`World::cull`] reports each pair of
+//! meshes that meet in exact arithmetic, each grown by its body's margin and posed at its f64
+//! translation, if at least one of them is dynamic, their groups collide, and the pair isn't
+//! [excluded](World::exclude).
 //!
 //! A frame costs time for what changes: bodies that were set, inserted or removed, their
 //! neighbours, and the pairs that begin or end ([`World`]). Lists and their order depend on the
@@ -118,7 +119,7 @@ use crate::{
 ///
 /// A frame costs time for the bodies that were inserted, removed or set to another value since the
 /// last cull, for their neighbours, and for the pairs that change, and nothing for all others. All
-/// pairs are found anew if more than an eighth has changed, with a strategy that has a budget, in
+/// pairs are found anew if more than a sixteenth has changed, with a strategy that has a budget, in
 /// the first cull, and in the first one after a world was restored, after [`Self::shrink_to_fit`]
 /// and after [`Self::cull_in_portions`]. All bodies are placed anew, and their pairs kept, in a
 /// frame in which local origins change, or in which bodies are in far-apart regions
@@ -355,7 +356,8 @@ impl World {
     }
 
     /// Finds the pairs that might touch now, and returns them: the lower slot first, sorted by
-    /// slots. Under every strategy, list and order are a function of the present bodies (with
+    /// slots. Under every strategy, list and order are a function of the present bodies and their
+    /// slots, whose order is that of a pair's first and second body (with
     /// [`Order::OldestAnswer`](crate::Order), also of when pairs were refined, and with a budget of
     /// time, of the clock), independent of the finder, of threads and of earlier calls. That holds
     /// for translations that f32 has to round, too: the origins about which they are rounded follow

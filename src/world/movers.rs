@@ -1,11 +1,11 @@
-//! Frames in which few bodies change: only the partners of these are searched, and the pairs of all
-//! others are kept.
+//! Frames in which few bodies change: a world searches only for the partners of these bodies, and
+//! keeps the pairs of all others.
 //!
 //! A pair's verdict is a function of its two bodies: their places, their models, and whether their
-//! pair counts. A body of which any of these has changed since the last cull is in the list of
-//! changed ones, so a pair of two others keeps its verdict. The partners of each changed body are
-//! found anew by an index of all, compared with its former ones, and the differences are also made
-//! in the lists of its partners.
+//! pair counts. If any of these has changed since the last cull, the body is in the list of changed
+//! bodies, so a pair of two other bodies keeps its verdict. For each changed body, an index of all
+//! bodies finds the new partners. They are compared with the former ones, and the lists of the
+//! partners concerned are changed as well.
 
 use super::{Ids, LivePairs};
 use crate::bodies::PairRules;
@@ -13,7 +13,7 @@ use crate::broad_phase::{BoxIndex, IndexedBox, Search};
 
 /// Changed bodies are searched one by one if they are at most one in this number of bodies.
 /// Otherwise finding all pairs anew is faster.
-const BODIES_PER_CHANGE: usize = 8;
+const BODIES_PER_CHANGE: usize = 16;
 
 /// The largest work of such a search, in boxes read per body of the world.
 const WORK_PER_BODY: usize = 8;
@@ -24,9 +24,9 @@ const SEEKERS_PER_BATCH: usize = 16;
 /// The number of bodies by which prefetching is ahead.
 const PREFETCH_DISTANCE: usize = 8;
 
-/// An index pays if it serves for so many frames. After one that didn't, or a frame in which
-/// looking one by one took too long, the next frames find all pairs: twice as many as the last
-/// time, up to so many.
+/// An index pays if it serves for at least `LEAST_SERVICE` frames. After one that didn't, or after
+/// a frame in which searching one by one took too long, the next frames find all pairs: twice as
+/// many frames as the last time, up to `LONGEST_PAUSE`.
 const LEAST_SERVICE: u32 = 8;
 const LONGEST_PAUSE: u32 = 64;
 
@@ -34,7 +34,7 @@ const LONGEST_PAUSE: u32 = 64;
 #[derive(Clone, Debug)]
 pub(crate) struct Movers {
     changed: Vec<u32>,
-    /// By slot.
+    /// Whether each slot's body has changed.
     is_changed: Vec<bool>,
     /// Whether the next cull finds all pairs, because many bodies have changed or the pairs of the
     /// last cull aren't known.

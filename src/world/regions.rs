@@ -4,11 +4,11 @@
 //! is a connected set of occupied cells, next to each other along faces, edges or corners; if its
 //! bodies are smaller than those of others, it is cut again into smaller cells. Each region is in a
 //! cube with space around its bodies. The cubes are packed next to each other along a Morton curve,
-//! the small ones first. So the f32 coordinates of a region depend on the sizes of the cubes before
-//! it, not on its position in the world.
+//! the small ones first. Therefore the f32 coordinates of a region depend on the sizes of the cubes
+//! before it, not on its position in the world.
 //!
 //! Cells are numbered by whole f64, which hold the cell of any f64 translation exactly. They are
-//! compared by differences, since a number's own neighbours are no f64 from 2⁵³ on.
+//! compared by differences, because from 2⁵³ on the next whole number is not always an f64.
 
 use std::cmp::Ordering;
 

@@ -1,5 +1,5 @@
-//! The pairs of one cull: in the order in which they were found until they or their events are
-//! first read, sorted from then on.
+//! The pairs of one cull. They are in the order in which they were found until they or their events
+//! are first read, and sorted from then on.
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -8,7 +8,7 @@ use crate::pairs::{PairList, PairSorter};
 /// The pairs of one cull by slot, with the generations of slots at that time.
 #[derive(Debug, Default)]
 pub(crate) struct ReportedPairs {
-    /// In any order; empty from the time at which they are sorted.
+    /// The pairs in any order; empty once they have been sorted.
     found: Mutex<PairList>,
     sorted: OnceLock<PairList>,
     len: usize,

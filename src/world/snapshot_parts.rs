@@ -73,8 +73,8 @@ pub(crate) fn check_length(
     ))
 }
 
-/// Pairs of bodies that are left out, as a snapshot has them: sorted pairs of slots that have
-/// bodies, the lower first.
+/// Excluded pairs of bodies, as a snapshot has them: sorted pairs of slots that have bodies, the
+/// lower first.
 pub(crate) fn restored_excluded(
     pairs: &[[u32; 2]],
     ids: &Ids,

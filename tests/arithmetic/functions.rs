@@ -1,5 +1,7 @@
 //! The code's functions, each on inputs that are drawn for it.
 
+use std::fmt;
+
 use sdop::Aabb;
 use sdop::broad_phase::{BallBounds, BallTest, Cells, SlotBodies, SlotTest, TableLayout};
 use sdop::overlap::boxes::CubeTest;
@@ -64,16 +66,16 @@ impl Case {
     pub fn bit(self, yes: bool) -> Self {
         self.number(u64::from(yes))
     }
+}
 
-    pub fn write(&self, lines: &mut String) {
-        let words = |numbers: &[u64]| -> String {
-            numbers
-                .iter()
-                .map(|number| format!(" {number:x}"))
-                .collect()
-        };
+/// One line: the name, the inputs, `=` and the results, in hexadecimal.
+impl fmt::Display for Case {
+    fn fmt(&self, line: &mut fmt::Formatter) -> fmt::Result {
+        line.write_str(self.name)?;
         let [inputs, results] = &self.bits;
-        *lines += &format!("{}{} ={}\n", self.name, words(inputs), words(results));
+        inputs.iter().try_for_each(|x| write!(line, " {x:x}"))?;
+        line.write_str(" =")?;
+        results.iter().try_for_each(|x| write!(line, " {x:x}"))
     }
 }
 

@@ -14,13 +14,14 @@ mod limit;
 mod ordops;
 mod small;
 
-use std::fmt::Write;
-use std::fs;
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
 
 use sdop::simd::Tier;
 use sha2::{Digest, Sha256};
 
-use functions::FUNCTIONS;
+use functions::{Case, FUNCTIONS};
 use inputs::Inputs;
 
 /// So many cases of each function.
@@ -29,17 +30,22 @@ const CASES: usize = 600;
 /// The hash of these cases, as `.ci/proofs` has last confirmed them.
 const CONFIRMED: &str = "6ef16122a2062591";
 
-/// Cases of each function in turn, one per line.
-fn cases(tier: Tier, of_each: usize) -> String {
+/// Hands over cases of each function in turn.
+fn for_each_case(tier: Tier, of_each: usize, mut take: impl FnMut(Case)) {
     let mut inputs = Inputs::new(1);
-    let mut lines = String::new();
     let mut pairs = ordops::Pairs::new(2);
     for _ in 0..of_each {
         for function in FUNCTIONS {
-            function(tier, &mut inputs).write(&mut lines);
+            take(function(tier, &mut inputs));
         }
-        pairs.next(tier).write(&mut lines);
+        take(pairs.next(tier));
     }
+}
+
+/// One per line.
+fn cases(tier: Tier, of_each: usize) -> String {
+    let mut lines = String::new();
+    for_each_case(tier, of_each, |case| writeln!(lines, "{case}").unwrap());
     lines
 }
 
@@ -84,12 +90,16 @@ fn cases_are_on_both_sides() {
     }
 }
 
-/// Writes cases of the scalar tier to the file that `SDOP_CASES` names, as many of each function as
-/// `SDOP_CASES_OF_EACH` says.
+/// Writes cases of the scalar tier to the file or pipe that `SDOP_CASES` names, as many of each
+/// function as `SDOP_CASES_OF_EACH` says.
 #[test]
-#[ignore = "writes a file, for .ci/proofs"]
+#[ignore = "writes cases, for .ci/proofs"]
 fn write_cases() {
     let value = |name| std::env::var(name).unwrap();
     let of_each = value("SDOP_CASES_OF_EACH").parse().unwrap();
-    fs::write(value("SDOP_CASES"), cases(Tier::SCALAR, of_each)).unwrap();
+    let mut out = BufWriter::new(File::create(value("SDOP_CASES")).unwrap());
+    for_each_case(Tier::SCALAR, of_each, |case| {
+        writeln!(out, "{case}").unwrap();
+    });
+    out.flush().unwrap();
 }

@@ -1,9 +1,8 @@
-//! What happens when boxes are given otherwise than meant. No entry may panic, hang or silently
-//! drop a pair.
+//! What happens to invalid input of boxes. No entry may panic, hang or silently drop a pair.
 //!
 //! | misuse | what happens |
 //! |---|---|
-//! | an end that is infinite or no number, `min` above `max`, in a frame of a `BoxCuller` | `CullError::Contract`, naming box and ends; the next frame is culled as ever |
+//! | an end that is infinite or no number, `min` above `max`, in a frame of a `BoxCuller` | `CullError::Contract`, naming box and ends; the next frame is culled as usual |
 //! | the same in a `BoxWorld` | `WorldError::Contract` where it is inserted or set; the world stays as it was |
 //! | a column of groups of another length than there are boxes | `CullError::Contract` at the cull |
 //! | an id of a box that was removed | `WorldError::Gone` |

@@ -1,4 +1,4 @@
-//! Boxes that are hard to tell apart, and the pairs of them that meet, by the definition.
+//! Boxes for which it is hard to decide whether they meet, and the pairs that do by the definition.
 
 use sdop::{Aabb, Groups};
 

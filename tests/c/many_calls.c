@@ -82,7 +82,8 @@ static size_t world_of_boxes(Caller *it) {
     check(it, sdop_box_world_new(NULL, 1, &world));
     uint64_t ids[BOXES];
     for (int i = 0; i < BOXES; ++i) {
-        const SdopBoxBody body = {box(i), i % 4 == 0, false, {UINT32_MAX, UINT32_MAX}};
+        SdopBoxBody body = sdop_box_body_at(box(i));
+        body.fixed = i % 4 == 0;
         check(it, sdop_box_world_insert(world, &body, &ids[i]));
     }
     size_t found, begun = 0, bytes;
@@ -117,7 +118,7 @@ static size_t bodies(Caller *it) {
     sdop_shape_free(whole);
     uint64_t id;
     for (int i = 0; i < BODIES; ++i) {
-        const SdopBody body = {(uint32_t)i % 2, false, false, {0, 0, 0, 1}, {0.75 * i, 0, 0}, 0, {UINT32_MAX, UINT32_MAX}};
+        const SdopBody body = sdop_body_at((uint32_t)i % 2, 0.75 * i, 0, 0);
         check(it, sdop_world_insert(world, &body, &id));
     }
     size_t found, parts;
@@ -196,7 +197,7 @@ static void prepare(Caller *it) {
     check(it, sdop_box_world_new(NULL, 1, &world));
     uint64_t id;
     for (int i = 0; i < BOXES; ++i) {
-        const SdopBoxBody body = {box(i), false, false, {UINT32_MAX, UINT32_MAX}};
+        const SdopBoxBody body = sdop_box_body_at(box(i));
         check(it, sdop_box_world_insert(world, &body, &id));
     }
     check(it, sdop_query_index_new(&index_of_boxes));

@@ -1,4 +1,4 @@
-//! `sdop mesh`: counts, sizes of volumes, conversion, and refusals with file and line.
+//! `sdop mesh`: counts, sizes of volumes, conversion, and errors with file and line.
 
 use serde_json::Value;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{json, refusal, sdop, stdout, text};
+use super::{json, refusal, scene_file, sdop, stdout, text};
 
 const TINY: [&str; 7] = [
     "reproduce",
@@ -149,6 +149,53 @@ fn cost_predicts_every_term() {
     let sum: f64 = terms.map(recurring).sum();
     let predicted = costs[0]["frame"]["predicted"]["mean"].as_f64().unwrap();
     assert!((sum / predicted - 1.0).abs() < 1e-12 && predicted > 0.0);
+}
+
+/// Scenes of one kind have the same prices; others are refused.
+#[test]
+fn scenes_of_one_kind_share_prices() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().to_str().unwrap();
+    let paper = |bodies: u32| format!("data/scenes/paper-{bodies}.toml");
+    let (few, more, crowd) = (paper(50), paper(150), "data/scenes/uniform-10k.toml");
+    let both = [
+        "cost", &few, "--also", &more, "--frames", "2", "--seeds", "2",
+    ];
+    let strategy = ["--strategy", "s-dop-batch", "--out", out];
+    let printed = json(&[&both[..], &strategy].concat());
+    let [one, other] = &printed.as_array().unwrap()[..] else {
+        panic!("{printed}");
+    };
+    assert_eq!([&one["scene"], &other["scene"]], ["paper-50", "paper-150"]);
+    assert_eq!(one["prices"], other["prices"]);
+    assert_ne!(one["costs"][0]["terms"], other["costs"][0]["terms"]);
+    let written = std::fs::read_to_string(directory.path().join("paper-150.json")).unwrap();
+    assert_eq!(
+        &serde_json::from_str::<serde_json::Value>(&written).unwrap(),
+        other
+    );
+    let refused = refusal(&["cost", &few, "--also", crowd]);
+    assert!(refused.contains("can't have the same prices"), "{refused}");
+}
+
+/// A run of one frame has no warm one: scenes are simulated further, and fewer frames can't be
+/// asked for where there are no others.
+#[test]
+fn one_frame_is_not_timed_alone() {
+    let (directory, scene) = scene_file(
+        "name = \"still\"\nframes = 1\n[box]\nside = 9.0\n\
+         [[bodies]]\nshape = \"box\"\ncount = 9\nradius = 1.0\n",
+    );
+    let short = ["--frames", "1", "--seeds", "1", "--format", "csv"];
+    let timed = ["cost", text(&scene), "--strategy", "s-dop-batch"];
+    let csv = stdout(&[&timed[..], &short].concat());
+    let warm = csv.lines().filter(|line| line.contains(",warm,"));
+    assert!(warm.count() > 5, "{csv}");
+    let compared = ["tradeoff", text(&scene), "--quick", "--out"];
+    let csv = stdout(&[&compared[..], &[text(directory.path())], &short].concat());
+    assert!(csv.lines().count() > 5, "{csv}");
+    let refused = refusal(&["reproduce", "--quick", "--frames", "1"]);
+    assert!(refused.contains("1 is not in 2..=1000000"), "{refused}");
 }
 
 /// Cost covers every strategy that the scene has settings for.

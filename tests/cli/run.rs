@@ -1,4 +1,5 @@
-//! `sdop run`: the object it prints, that it depends on scene and flags alone, and what it refuses.
+//! `sdop run`: the object that it prints, which depends only on scene and flags, and the input that
+//! it rejects.
 
 use sdop::simd::Tier;
 use serde_json::Value;

@@ -28,7 +28,8 @@ struct Sweep {
 
 const REPRODUCED: &[&str] = &["counts.csv", "table_1.csv", "survival.csv"];
 
-const SWEEPS: &[Sweep] = &[
+/// Each has a separate test below, so that they run side by side.
+static SWEEPS: [Sweep; 4] = [
     Sweep {
         name: "verify",
         arguments: &[
@@ -198,32 +199,48 @@ fn every_sharable_command_is_tested() {
     assert_eq!(judged, shared);
 }
 
-/// Shards of every sweep are the work of one process.
-#[test]
-fn shards_equal_one_process() {
+/// Shards of a sweep are the work of one process.
+fn shards_equal_one_process(sweep: &Sweep) {
     let (directory, scene) = scene_file(SCENE);
-    for sweep in SWEEPS {
-        let [alone, out] =
-            ["alone", "out"].map(|name| directory.path().join(sweep.name).join(name));
-        let whole = sweep.facts(&sweep.run(&scene, &alone, &[]), &alone);
-        assert!(
-            whole.iter().all(|fact| fact.to_string().len() > 100),
-            "{whole:?}"
-        );
-        let mut shards = Vec::new();
-        for part in ["2/3", "1/3", "3/3"] {
-            let said = sweep.run(&scene, &out, &["--shard", part]);
-            let (path, units) = said.trim_end().rsplit_once(": ").unwrap();
-            assert!(units.ends_with(" units"), "{said}");
-            shards.push(PathBuf::from(path));
-        }
-        let place = out.join(sweep.shards);
-        assert!(
-            shards.iter().all(|path| path.starts_with(&place)),
-            "{shards:?}"
-        );
-        assert_eq!(sweep.merged(&scene, &out, &shards), whole, "{}", sweep.name);
+    let [alone, out] = ["alone", "out"].map(|name| directory.path().join(name));
+    let whole = sweep.facts(&sweep.run(&scene, &alone, &[]), &alone);
+    assert!(
+        whole.iter().all(|fact| fact.to_string().len() > 100),
+        "{whole:?}"
+    );
+    let mut shards = Vec::new();
+    for part in ["2/3", "1/3", "3/3"] {
+        let said = sweep.run(&scene, &out, &["--shard", part]);
+        let (path, units) = said.trim_end().rsplit_once(": ").unwrap();
+        assert!(units.ends_with(" units"), "{said}");
+        shards.push(PathBuf::from(path));
     }
+    let place = out.join(sweep.shards);
+    assert!(
+        shards.iter().all(|path| path.starts_with(&place)),
+        "{shards:?}"
+    );
+    assert_eq!(sweep.merged(&scene, &out, &shards), whole, "{}", sweep.name);
+}
+
+#[test]
+fn verify_shards_equal_one_process() {
+    shards_equal_one_process(&SWEEPS[0]);
+}
+
+#[test]
+fn reproduce_shards_equal_one_process() {
+    shards_equal_one_process(&SWEEPS[1]);
+}
+
+#[test]
+fn tradeoff_shards_equal_one_process() {
+    shards_equal_one_process(&SWEEPS[2]);
+}
+
+#[test]
+fn record_shards_equal_one_process() {
+    shards_equal_one_process(&SWEEPS[3]);
 }
 
 /// Shards of another scene are no part of a work.

@@ -1,4 +1,4 @@
-//! Whatever has come, moved and gone, a culler reports what a new one would.
+//! After any insertions, moves and removals, a culler of parts reports what a new one would.
 
 use sdop::Motion;
 

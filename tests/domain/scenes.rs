@@ -1,4 +1,4 @@
-//! Whole scenes: the digest, the hash and what must add up, over ranks, strategies and finders.
+//! Whole scenes: the digest, the hash and the sums of counters, over ranks, strategies and finders.
 
 use sdop::settings::{CullSettings, Finder, Interest, Strategy, Updates};
 use sdop_bench::scene::Scene;

@@ -1,4 +1,4 @@
-//! The response next to its formula, and what it keeps.
+//! The response compared with its formula, and the quantities that it conserves.
 
 use sdop::bodies::Bodies;
 use sdop_bench::effects::Velocities;

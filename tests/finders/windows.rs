@@ -1,6 +1,6 @@
-//! or-DOP rows that are made where they are tested, as batches do with many bodies, against rows
-//! that are all made before, as the sequential strategy has them: the same pairs and counts, in
-//! every tier and on any number of threads.
+//! Batches with many bodies compute or-DOP rows just before they are tested; the sequential
+//! strategy computes all rows before the pairs. Both give the same pairs and counts, in every tier
+//! and on any number of threads.
 
 use super::*;
 

@@ -1,5 +1,5 @@
-//! Cases are the same whenever they are drawn, differ by seed, and come back from their files as
-//! they went.
+//! Cases are the same whenever they are drawn, differ by seed, and are unchanged after they were
+//! written and read.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,4 @@
-//! Programs that know the exact answers to something else than what they are asked: none of them
-//! passes.
+//! Programs that know the exact answers to another frame or another case: none of them passes.
 
 use std::collections::HashMap;
 use std::sync::Mutex;

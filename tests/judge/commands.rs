@@ -1,5 +1,5 @@
-//! The command line: examples, known failures, halves on two machines, timing, recordings of
-//! others.
+//! The command line: examples, known failures, cases written on one machine and judged on another,
+//! timing, recordings by other programs.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

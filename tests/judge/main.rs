@@ -1,4 +1,4 @@
-//! Strangers under judgement: Rust cullers and programs, right ones and one of each flaw.
+//! Judges foreign cullers: Rust cullers and programs, right ones and one with each flaw.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

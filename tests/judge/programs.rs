@@ -1,5 +1,5 @@
-//! Programs under judgement: what each ill behaviour is called, that none is waited for, and that
-//! the next case is run.
+//! Judged programs that misbehave: each failure has a name, the judge waits for none of them, and
+//! it goes on with the next case.
 
 use std::time::{Duration, Instant};
 

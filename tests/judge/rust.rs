@@ -1,4 +1,4 @@
-//! Rust cullers: right ones pass, a flaw each is found, by the group that looks for it.
+//! Rust cullers: right ones pass, and each flaw is found by the group that looks for it.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

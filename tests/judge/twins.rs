@@ -1,5 +1,5 @@
-//! For each group of changes, filters, orders, states, margins and lists: a culler with the flaw
-//! that the group looks for, which it catches, next to one without, which passes.
+//! For each group about changes, filters, orders, states, margins and lists: the group catches a
+//! culler with the flaw that it looks for, and passes one without it.
 
 use sdop::bodies::Bodies;
 use sdop_judge::truth::{boxes_meet, boxes_near};
@@ -17,7 +17,7 @@ enum Flaw {
     SameNumber,
     /// Keeps the first box of a static body.
     Static,
-    /// Takes up a new body a frame late.
+    /// Adds a new body one frame too late.
     Late,
     /// Asks the mask of the first body alone.
     OneMask,

@@ -1,5 +1,5 @@
-//! The vectors in `data/vectors` are what the command makes, say the same in hex and decimal, and
-//! decide both ways.
+//! The vectors in `data/vectors` are up to date, have the same numbers in hexadecimal and in
+//! decimal, and include pairs that meet and pairs that don't.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

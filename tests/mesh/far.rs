@@ -1,5 +1,5 @@
-//! Meshes far from their origin: what f64 coordinates become, and that a near mesh is the f32 that
-//! its file says.
+//! Meshes far from their origin: how f64 coordinates are stored, and that a mesh near its origin
+//! has the f32 numbers of its file.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

@@ -1,4 +1,4 @@
-//! OBJ files: what is read, and where a bad one is bad.
+//! OBJ files: what is read, and where an invalid file is wrong.
 
 use glam::Vec3;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read, read_bytes};

@@ -1,4 +1,4 @@
-//! OFF files: what is read, and where a bad one is bad.
+//! OFF files: what is read, and where an invalid file is wrong.
 
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 

@@ -1,5 +1,5 @@
-//! Meshes survive every format to the bit, and no reader panics, hangs or asks for more memory than
-//! the bytes warrant.
+//! Meshes survive every format to the bit, and no reader panics, hangs or allocates more memory
+//! than the file's size justifies.
 
 use glam::Vec3;
 use proptest::prelude::*;

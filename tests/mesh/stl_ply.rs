@@ -1,4 +1,4 @@
-//! STL and PLY files, text and binary: what is read, and where a bad one is bad.
+//! STL and PLY files, text and binary: what is read, and where an invalid file is wrong.
 
 use glam::Vec3;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};

@@ -1,5 +1,5 @@
-//! What other programs read is read here too: bytes that are not UTF-8, capitals, marks, comments
-//! and line ends.
+//! Files that other programs read are read: bytes that are not UTF-8, capitals, byte-order marks,
+//! comments and line ends.
 
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 

@@ -1,4 +1,5 @@
-//! Components, closedness and counts: of small meshes made to go wrong, and of the shipped ones.
+//! Components, closedness and counts of small meshes that are easy to get wrong, and of the shipped
+//! meshes.
 
 use glam::Vec3;
 use sdop::mesh::topology::{Component, Topology, without_area};

@@ -1,5 +1,5 @@
-//! `.tri` dialects: each good file reads to the same mesh, each bad one is refused with its line, a
-//! doubtful one with both names.
+//! `.tri` dialects: each valid file gives the same mesh, each invalid one an error with its line,
+//! and an ambiguous one an error with both dialects.
 
 use glam::Vec3;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};

@@ -1,4 +1,4 @@
-//! An index that has followed a world answers as one made for the moment.
+//! An index that has followed a world answers like a newly built one.
 
 use sdop::boxes::BoxBody;
 use sdop::query::QuerySource;

@@ -1,4 +1,4 @@
-//! Any text at all: nothing panics.
+//! No text causes a panic.
 
 use std::path::Path;
 

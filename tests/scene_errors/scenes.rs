@@ -1,4 +1,4 @@
-//! Scenes whose parts don't go together: box and bodies, meshes, effects, culling.
+//! Scenes with parts that don't fit together: box and bodies, meshes, effects, culling.
 
 use miette::Diagnostic;
 use sdop_bench::scene::SceneFile;

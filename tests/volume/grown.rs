@@ -1,5 +1,5 @@
-//! Slabs that are grown by a margin contain every point within it, in exact arithmetic and by no
-//! ulp more than they must.
+//! Slabs that are grown by a margin contain every point within it, in exact arithmetic, and are not
+//! an ulp larger than necessary.
 
 use dashu_int::IBig;
 use rand::{RngExt, SeedableRng};

@@ -1,4 +1,5 @@
-//! Few bodies come and go among many that drift: what a finder keeps of the others loses no pair.
+//! Few bodies come and go among many that drift: no pair is lost by what a finder keeps of the
+//! others.
 
 use sdop::culler::Culler;
 use sdop::settings::{CullSettings, Finder, Strategy, Updates};

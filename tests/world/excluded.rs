@@ -1,5 +1,5 @@
-//! Excluded pairs: whatever comes and goes, a world reports what it would without them, less the
-//! pairs that are excluded now.
+//! Excluded pairs: whatever comes and goes, a world reports the pairs that it would report
+//! otherwise, without those that are excluded now.
 
 use super::*;
 

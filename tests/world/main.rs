@@ -1,5 +1,4 @@
-//! Long-lived worlds: whatever has come and gone, a world reports what a culler made for the moment
-//! would.
+//! Long-lived worlds: whatever has come and gone, a world reports what a newly built culler would.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,5 +1,5 @@
-//! Worlds of many shapes, margins and places: whether two bodies are reported follows from theirs,
-//! and not from those of others.
+//! Worlds of many shapes, margins and places: whether a pair is reported depends only on its two
+//! bodies, and not on others.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

@@ -1,5 +1,5 @@
 //! Worlds in which few bodies change per frame: whatever the history, pairs and events are those of
-//! a world made for the moment.
+//! a newly built world.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! One pair at a time: the verdicts of a world that knows the two bodies alone.
+//! One pair at a time: the verdicts are those of a world with only these two bodies.
 
 use sdop::culler::Culler;
 use sdop::settings::{CullSettings, Strategy};

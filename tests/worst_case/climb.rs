@@ -2,8 +2,8 @@
 //! hit.
 //!
 //! A step moves up to three parameters by ± 2^j ulps, j uniform, so that all scales are tried
-//! alike. A step that doesn't lose is taken, which lets the walk cross plateaus. Stuck, it starts
-//! anew from a fresh point or from its best.
+//! alike. A step that doesn't make the result worse is taken, so that the walk can cross plateaus.
+//! A walk that is stuck starts again from a new point or from its best.
 
 /// SplitMix64: a seeded stream that is the same everywhere.
 pub struct Random(u64);

@@ -1,5 +1,5 @@
-//! What the arithmetic should have given: double-double for the f64 pose, plain f64 for errors of
-//! f32 (2⁻²⁹ of a u).
+//! The results that the arithmetic should give: in double-double for the f64 pose, in plain f64 for
+//! errors of f32 (2⁻²⁹ of a u).
 
 use std::ops::{Add, Mul};
 

@@ -1,6 +1,6 @@
-//! The worst error that hill climbing finds stays below each bound's constant, and comes near
-//! enough to what a long search finds that the short one has teeth. `cargo bench --bench
-//! worst_case` is the long one.
+//! The worst error that hill climbing finds stays below each bound's constant, and comes close
+//! enough to that of a long search for the short one to be a real test. `cargo bench --bench
+//! worst_case` is the long search.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

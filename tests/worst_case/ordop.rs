@@ -1,6 +1,5 @@
-//! The separating-axis arithmetic once more, number by number on [`F`], so that a search can look
-//! at τ and the supports that the culler's kernel only compares. `kernel.rs` holds both against
-//! each other.
+//! The separating-axis arithmetic once more, number by number on [`F`], so that a search can read τ
+//! and the supports, which the culler's kernel only compares. `kernel.rs` compares both.
 
 use sdop::overlap::ordop::table::{COEFFICIENTS, members_of};
 

@@ -1,8 +1,8 @@
 // Bullet's btDbvtBroadphase: two trees that are updated body by body, and a cache of pairs.
 //
-// No margin, no velocity prediction. The tree is tested against itself once per frame, not once per
-// moved body, which is faster if all bodies move. The whole cache is cleaned up then, so that it
-// holds only the present pairs.
+// No velocity prediction. Where all boxes are given in each frame, there is no margin, and the tree
+// is tested against itself once per frame, not once per moved body, which is faster if all bodies
+// move. The whole cache is cleaned up then, so that it holds only the present pairs.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
 #include <memory>
@@ -24,20 +24,39 @@ btVector3 corner(const Box& box, int side) {
     return btVector3(box.ends[0][side], box.ends[1][side], box.ends[2][side]);
 }
 
-}  // namespace
-
-void* bullet_new(const Box* boxes, size_t count, unsigned) {
-    gDbvtMargin = 0;
+std::unique_ptr<Bullet> made(const Box* boxes, size_t count, bool deferred, int cleaned) {
     auto peer = std::make_unique<Bullet>();
     peer->broad_phase.setVelocityPrediction(0);
-    peer->broad_phase.m_deferedcollide = true;
-    peer->broad_phase.m_cupdates = 100;
+    peer->broad_phase.m_deferedcollide = deferred;
+    peer->broad_phase.m_cupdates = cleaned;
     for (size_t i = 0; i < count; i++) {
         void* number = reinterpret_cast<void*>(i);
         peer->proxies.push_back(
             peer->broad_phase.createProxy(corner(boxes[i], 0), corner(boxes[i], 1), 0, number, 1, 1, nullptr));
     }
-    return peer.release();
+    return peer;
+}
+
+}  // namespace
+
+void* bullet_new(const Box* boxes, size_t count, unsigned) {
+    gDbvtMargin = 0;
+    return made(boxes, count, true, 100).release();
+}
+
+// Moved bodies search the trees one by one, which is the default and faster if few move; so many
+// per cent of the pairs are looked through for ended ones in each frame.
+extern "C" void* bullet_movers_new(const Box* boxes, size_t count, int cleaned) {
+    return made(boxes, count, false, cleaned).release();
+}
+
+extern "C" void bullet_move(void* user, float margin, const uint32_t* bodies, const Box* boxes, size_t count) {
+    gDbvtMargin = margin;
+    Bullet& peer = *static_cast<Bullet*>(user);
+    for (size_t i = 0; i < count; i++) {
+        peer.broad_phase.setAabb(peer.proxies[bodies[i]], corner(boxes[i], 0), corner(boxes[i], 1), nullptr);
+    }
+    peer.broad_phase.calculateOverlappingPairs(nullptr);
 }
 
 void bullet_frame(void* user, const Box* boxes) {

@@ -13,6 +13,11 @@ impl Changes {
         self.0.push((pair, begins));
     }
 
+    /// Bytes of the list.
+    pub fn bytes(&self) -> u64 {
+        (self.0.capacity() * size_of::<([u32; 2], bool)>()) as u64
+    }
+
     /// What the changes add up to. A pair that begins twice is there twice, so that the check sees
     /// it.
     pub fn pairs(&self) -> Vec<[u32; 2]> {

@@ -37,7 +37,7 @@ pub struct Case {
 
 /// An engine that took too long.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct LeftOut {
+pub struct ExcludedEngine {
     /// The case.
     #[serde(flatten)]
     pub case: Case,
@@ -54,7 +54,7 @@ pub struct CaseTimings {
     /// In the order of engines.
     pub rows: Vec<EngineTiming>,
     /// Those without a row.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<ExcludedEngine>,
 }
 
 /// What one engine did in a case.
@@ -130,8 +130,8 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<CaseT
     Ok(CaseTimings { rows, left_out })
 }
 
-/// Who has passed, and who has not been asked.
-type CheckedEngines<'a> = (Vec<(&'a Entry, Memory)>, Vec<LeftOut>);
+/// Which engines have passed, and which have not been checked.
+type CheckedEngines<'a> = (Vec<(&'a Entry, Memory)>, Vec<ExcludedEngine>);
 
 /// Runs every engine alone over the first frames and judges its pairs; counts its memory on the
 /// way.
@@ -159,7 +159,7 @@ fn check<'a>(
         let (peer, ms) = tried?;
         drop(peer);
         if ms > limit_ms && entry.name != OURS {
-            left_out.push(LeftOut {
+            left_out.push(ExcludedEngine {
                 case,
                 engine: entry.name,
                 ms,

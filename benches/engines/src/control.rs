@@ -77,7 +77,7 @@ struct ControlResults {
     rows: Vec<SpeedUp>,
 }
 
-/// Measures, prints the table, and writes it if asked to.
+/// Measures, prints the table, and writes it if requested.
 pub fn run(args: &Args) -> miette::Result<()> {
     let mut measured = ControlResults {
         facts: Facts::new(args.note.clone()),

@@ -9,20 +9,27 @@ use sdop::Tier;
 use sdop_bench::measure::machine::Machine;
 use serde::Serialize;
 
-/// The flag that compiles the same engines in.
-const FEATURES: &str = match (cfg!(feature = "physx"), cfg!(feature = "debian")) {
-    (true, true) => " --features physx,debian",
-    (true, false) => " --features physx",
-    (false, true) => " --features debian",
-    (false, false) => "",
-};
+/// The features that compile the same engines in.
+fn features() -> String {
+    let compiled = [
+        (cfg!(feature = "physx"), "physx"),
+        (cfg!(feature = "debian"), "debian"),
+        (cfg!(feature = "box3d"), "box3d"),
+    ];
+    let names = compiled.into_iter().filter(|(is_in, _)| *is_in);
+    let names = names.map(|(_, name)| name).collect::<Vec<_>>().join(",");
+    match names.as_str() {
+        "" => String::new(),
+        names => format!(" --features {names}"),
+    }
+}
 
 /// The circumstances of a measurement.
 #[derive(Serialize)]
 pub struct Facts {
     command: String,
     machine: Machine,
-    /// Features of the CPU that engines in Rust were compiled for; ours asks at run time.
+    /// CPU features for which engines in Rust were compiled; ours detects them at run time.
     compiled_for: &'static str,
     /// What else ran, in the measurer's words.
     note: String,
@@ -59,8 +66,8 @@ impl Facts {
 fn command() -> String {
     std::env::var("SDOP_COMMAND").unwrap_or_else(|_| {
         let arguments: Vec<_> = std::env::args().skip(1).map(quoted).collect();
-        let arguments = arguments.join(" ");
-        format!("cargo run --release -p sdop-peers{FEATURES} -- {arguments}")
+        let (features, arguments) = (features(), arguments.join(" "));
+        format!("cargo run --release -p sdop-peers{features} -- {arguments}")
     })
 }
 

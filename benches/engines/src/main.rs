@@ -1,6 +1,8 @@
 //! `sdop-peers`: other engines on the same frames as sdop, checked to find the same pairs and
 //! timed.
 
+#[cfg(feature = "box3d")]
+mod box3d;
 mod boxes;
 mod broccoli;
 #[cfg(feature = "debian")]
@@ -13,14 +15,18 @@ mod control;
 mod embree;
 mod entry;
 mod facts;
+mod incremental;
 mod kernels;
 mod memory;
+mod movers;
 mod narrow;
 #[cfg(feature = "debian")]
 mod native;
+mod obvhs;
 mod oracle;
 mod ours;
 mod parry;
+mod partners;
 #[cfg(feature = "physx")]
 mod physx;
 mod rapier;
@@ -90,6 +96,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum OtherCommand {
     Narrow(narrow::Args),
+    Movers(movers::Args),
     Control(control::Args),
     Kernels(kernels::Args),
     Verdicts(verdicts::Args),
@@ -101,6 +108,7 @@ fn main() -> miette::Result<()> {
     threads::claim_caller()?;
     match &cli.other {
         Some(OtherCommand::Narrow(args)) => return narrow::run(args),
+        Some(OtherCommand::Movers(args)) => return movers::run(args),
         Some(OtherCommand::Control(args)) => {
             return threads::outside_of_pools(|| control::run(args));
         }
@@ -140,7 +148,7 @@ fn chosen(wished: Option<&[String]>) -> miette::Result<Vec<Entry>> {
         if !known.iter().any(|known| known.starts_with(name.as_str())) {
             return Err(miette!(
                 help = format!(
-                    "compiled in: {}; others need --features physx,debian",
+                    "compiled in: {}; others need --features physx,debian,box3d",
                     known.join(", ")
                 ),
                 "no engine's name begins with `{name}`"

@@ -132,7 +132,7 @@ impl Contestant<Frame> for AllPairs {
 /// Repeats of each timing; the median counts.
 const REPEATS: usize = 3;
 
-/// Prints the table, and writes it if asked to.
+/// Prints the table, and writes it if requested.
 pub fn run(args: &Args) -> miette::Result<()> {
     let mut rows = Vec::new();
     for file in &args.scenes {

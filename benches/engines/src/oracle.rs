@@ -6,7 +6,7 @@
 
 use crate::boxes::{Slabs, meet};
 
-/// Columns on a side, for so many boxes.
+/// The number of columns per side for this many boxes.
 fn columns(boxes: usize) -> usize {
     ((boxes as f64 / 4.0).cbrt() as usize).clamp(1, 512)
 }

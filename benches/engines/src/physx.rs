@@ -1,7 +1,7 @@
 //! PhysX's broad phase, driven alone through its low-level interface: automatic box pruning (ABP).
 //!
-//! Objects are dynamic, each in a separate group, without a contact distance. Results are what
-//! began and what ended. ABP compares ends as they are.
+//! Objects are dynamic, each in a separate group, without a contact distance. Results are the pairs
+//! that began and ended. ABP compares ends as they are.
 
 #![allow(unsafe_code, reason = "PhysX is C++")]
 
@@ -21,6 +21,7 @@ use sdop_judge::contestant::Contestant;
 use crate::boxes::{Frame, Slabs};
 use crate::changes::Changes;
 use crate::entry::{Entry, Setup, Work};
+use crate::incremental::{Change, Extras, Found, Incremental, MoverEntry, Moves};
 
 const VERSION: &str = "5 (physx-sys 0.11.5)";
 
@@ -34,6 +35,18 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     new: |setup| Ok(Box::new(PhysX::new(setup)?)),
 }];
 
+/// Given what has changed.
+pub const MOVERS: [MoverEntry; 1] = [MoverEntry {
+    name: "PhysX ABP",
+    version: VERSION,
+    margin: 0.0,
+    extras: Extras::None,
+    work: Work::Boxes,
+    only: None,
+    most_bodies: usize::MAX,
+    new: |setup| Ok(Box::new(PhysX::new(setup)?)),
+}];
+
 struct PhysX {
     broad_phase: *mut PxBroadPhase,
     /// One element more than there are objects: PhysX reads past the end.
@@ -42,6 +55,8 @@ struct PhysX {
     distances: Vec<f32>,
     objects: Vec<u32>,
     results: PxBroadPhaseResults,
+    /// Those of the last frame, read.
+    read: Vec<Change>,
     changes: Changes,
 }
 
@@ -76,13 +91,16 @@ impl PhysX {
             bounds: Vec::new(),
             groups,
             distances: vec![0.0; objects.len() + 1],
-            objects,
+            objects: Vec::new(),
             results,
+            read: Vec::new(),
             changes: Changes::default(),
         };
         physx.take(setup.first);
-        physx.update(true);
+        physx.update(&objects, &[]);
+        physx.objects = objects;
         physx.settle();
+        physx.read_results();
         Ok(physx)
     }
 
@@ -92,55 +110,84 @@ impl PhysX {
         self.bounds.push(bounds(&[[0.0; 2]; 3]));
     }
 
-    fn update(&mut self, first: bool) {
-        let (all, count) = (self.objects.as_ptr(), self.objects.len() as u32);
-        let (created, updated) = if first { (count, 0) } else { (0, count) };
+    fn update(&mut self, created: &[u32], updated: &[u32]) {
         // SAFETY: the columns have as many elements as there are objects, and one more where PhysX
         // reads past the end; they stay in place until the next call.
         unsafe {
             let data = PxBroadPhaseUpdateData_new(
-                all,
-                created,
-                all,
-                updated,
-                all,
+                created.as_ptr(),
+                created.len() as u32,
+                updated.as_ptr(),
+                updated.len() as u32,
+                updated.as_ptr(),
                 0,
                 self.bounds.as_ptr(),
                 self.groups.as_ptr(),
                 self.distances.as_ptr(),
-                count,
+                self.groups.len() as u32,
             );
             PxBroadPhase_update_mut_1(self.broad_phase, &mut self.results, &data);
         }
+    }
+
+    /// What the last update has changed.
+    fn changed(&self) -> impl Iterator<Item = Change> {
+        let results = &self.results;
+        let lists = [
+            (results.mDeletedPairs, results.mNbDeletedPairs, false),
+            (results.mCreatedPairs, results.mNbCreatedPairs, true),
+        ];
+        lists.into_iter().flat_map(|(pairs, count, begins)| {
+            let pairs: &[PxBroadPhasePair] = match count {
+                0 => &[],
+                // SAFETY: PhysX keeps its lists until the next update.
+                _ => unsafe { std::slice::from_raw_parts(pairs, count as usize) },
+            };
+            let change = move |pair: &PxBroadPhasePair| ([pair.mID0, pair.mID1], begins);
+            pairs.iter().map(change)
+        })
+    }
+
+    fn read_results(&mut self) {
+        let mut read = std::mem::take(&mut self.read);
+        read.clear();
+        read.extend(self.changed());
+        self.read = read;
     }
 }
 
 impl Contestant<Frame> for PhysX {
     fn frame(&mut self, frame: &Frame) {
         self.take(frame);
-        self.update(false);
+        let objects = std::mem::take(&mut self.objects);
+        self.update(&[], &objects);
+        self.objects = objects;
     }
 
     fn settle(&mut self) {
-        let results = &self.results;
-        let lists = [
-            (results.mDeletedPairs, results.mNbDeletedPairs, false),
-            (results.mCreatedPairs, results.mNbCreatedPairs, true),
-        ];
-        for (pairs, count, begins) in lists {
-            if count > 0 {
-                // SAFETY: PhysX keeps its lists until the next update.
-                let pairs: &[PxBroadPhasePair] =
-                    unsafe { std::slice::from_raw_parts(pairs, count as usize) };
-                for pair in pairs {
-                    self.changes.note([pair.mID0, pair.mID1], begins);
-                }
-            }
+        let mut changes = std::mem::take(&mut self.changes);
+        for (pair, begins) in self.changed() {
+            changes.note(pair, begins);
         }
+        self.changes = changes;
     }
 
     fn pairs(&self) -> Vec<[u32; 2]> {
         self.changes.pairs()
+    }
+}
+
+impl Incremental for PhysX {
+    fn frame(&mut self, moves: &Moves) {
+        for (body, slabs) in moves.iter() {
+            self.bounds[body as usize] = bounds(slabs);
+        }
+        self.update(&[], &moves.bodies);
+        self.read_results();
+    }
+
+    fn found(&self) -> Found<'_> {
+        Found::Changes(&self.read)
     }
 }
 

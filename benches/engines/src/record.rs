@@ -6,7 +6,7 @@ use std::path::Path;
 use miette::IntoDiagnostic as _;
 use serde::Serialize;
 
-use crate::compare::{Case, CaseTimings, EngineTiming, LeftOut};
+use crate::compare::{Case, CaseTimings, EngineTiming, ExcludedEngine};
 use crate::facts::{self, Facts};
 use crate::scenes::{Order, Spread};
 
@@ -16,7 +16,7 @@ pub struct Record {
     #[serde(flatten)]
     facts: Facts,
     rows: Vec<EngineTiming>,
-    left_out: Vec<LeftOut>,
+    left_out: Vec<ExcludedEngine>,
 }
 
 impl Record {
@@ -165,7 +165,7 @@ impl Record {
     }
 
     fn list_left_out(&self, out: &mut String, (spread, order, threads): (Spread, Order, usize)) {
-        let of_table = |left: &&LeftOut| {
+        let of_table = |left: &&ExcludedEngine| {
             (left.case.spread, left.case.order, left.case.threads) == (spread, order, threads)
         };
         for left in self.left_out.iter().filter(of_table) {

@@ -1,8 +1,8 @@
 //! The scenes of the comparison, built by the bench's scene code: the same frames for all engines.
 //!
-//! Bodies are balls about their origins with 1.5 overlaps each in the mean, moving a tenth of a
-//! unit radius per frame, mirrored at walls. The paper's scene, 500 bodies in a box of 16.1, is
-//! used as the smallest uniform one.
+//! Bodies are balls around their origins with 1.5 overlaps each on average. They move a tenth of a
+//! unit radius per frame and are reflected at walls. The paper's scene, 500 bodies in a box of
+//! 16.1, is used as the smallest uniform one.
 
 use std::path::Path;
 
@@ -32,7 +32,7 @@ pub enum Spread {
 }
 
 impl Spread {
-    /// Whether its bodies are more than boxes, or boxes are all that is asked for.
+    /// Whether its bodies can be used for this work: those of long boxes have no other volumes.
     pub fn has(self, work: Work) -> bool {
         self != Self::Long || work == Work::Boxes
     }
@@ -62,7 +62,7 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// What a scene of so many bodies gets.
+    /// The numbers of frames for a scene of this many bodies.
     pub fn of(bodies: usize) -> Self {
         let [warm_up, timed, turn, checked] = match bodies {
             0..=10_000 => [300, 200, 20, 20],
@@ -104,7 +104,7 @@ pub const EXPECTED: [(Spread, usize, usize); 19] = [
 
 /// A scene and where it is.
 pub struct Course {
-    /// The scene, its bodies in the wished order.
+    /// The scene, with its bodies in the given order.
     pub scene: Scene,
     effects: Effects,
     bodies: Bodies,
@@ -113,7 +113,7 @@ pub struct Course {
 }
 
 impl Course {
-    /// The scene of so many bodies, numbered in the wished order; `timed_from` is the first timed
+    /// The scene of this many bodies, numbered in the given order; `timed_from` is the first timed
     /// frame.
     pub fn new(
         spread: Spread,

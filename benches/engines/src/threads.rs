@@ -1,4 +1,4 @@
-//! Threads for engines that work on rayon's.
+//! Threads for engines that work on rayon's pool.
 
 use miette::IntoDiagnostic as _;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -7,7 +7,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 pub struct Threads(Option<ThreadPool>);
 
 impl Threads {
-    /// So many threads.
+    /// A pool of this many threads.
     pub fn new(threads: usize) -> miette::Result<Self> {
         if threads <= 1 {
             return Ok(Self(None));
@@ -30,16 +30,16 @@ impl Threads {
     }
 }
 
-/// Makes the caller's thread all that rayon has outside of a pool: engines that ask it whatever the
-/// number of threads would else take every CPU, or hand each search to another thread.
+/// Makes the caller's thread the only thread of rayon's global pool. Otherwise engines that use
+/// this pool for any number of threads would use every CPU, or pass each search to another thread.
 pub fn claim_caller() -> miette::Result<()> {
     let alone = ThreadPoolBuilder::new().num_threads(1).use_current_thread();
     alone.build_global().into_diagnostic()
 }
 
-/// Does the work on a thread that is no pool's. [`claim_caller`] makes the caller's one of rayon's,
-/// and on such a thread a culler with its own threads starts another one for each section of a
-/// frame, lest it take up the pool's other jobs while it waits.
+/// Does the work on a thread that belongs to no pool. [`claim_caller`] makes the caller's one of
+/// rayon's, and on such a thread a culler with its own threads starts another one for each section
+/// of a frame, because otherwise it would start other jobs of the pool while it waits.
 pub fn outside_of_pools<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let done = std::thread::scope(|scope| scope.spawn(work).join());
     done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))

@@ -30,9 +30,8 @@ impl TimedEngine {
         }
     }
 
-    /// The mean of each turn of so many frames. An engine that does something now and then, a list
-    /// of neighbours or a balanced tree, pays for it in the frame where it happens, which a median
-    /// over frames would hide.
+    /// The mean of each turn of `turn` frames. Some engines do work in only some frames (they build
+    /// a list of neighbours, or balance a tree). A median over frames would hide that.
     pub fn turns(&self, turn: usize) -> Vec<f64> {
         means(&self.ms, turn)
     }

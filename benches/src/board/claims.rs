@@ -54,7 +54,7 @@ pub struct Adapter {
     /// Whether it is part of the short run.
     #[serde(default)]
     pub quick: bool,
-    /// Other properties of the same use, each of which becomes an adapter of its own.
+    /// Other properties of the same use, each of which becomes a separate adapter.
     #[serde(default, skip_serializing)]
     pub also: Vec<FurtherClaim>,
     /// The name of the adapter whose further claim this is, or its own.

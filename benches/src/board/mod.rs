@@ -4,8 +4,8 @@
 //! > page ([`page`])
 //!
 //! An adapter is a program that answers the judge's cases with another library
-//! (`benches/adapters/`). Its cells are the families of its claim's cases: the first word of a
-//! case's name, so that a new family automatically gets a column.
+//! (`benches/adapters/`). It has one cell for each family of its claim's cases. A family is the
+//! first word of a case's name, so that a new family automatically gets a column.
 
 mod claims;
 mod page;

@@ -1,7 +1,7 @@
 //! The board as one HTML page that opens from disk.
 //!
-//! `board.html` is its template. The page has the viewer's page once and only the data of each
-//! counter-example; the browser joins the two when one is opened.
+//! `board.html` is its template. The page contains the viewer once, and for each counter-example
+//! only its data. The browser joins the two when a reader opens a counter-example.
 
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};

@@ -30,7 +30,7 @@ const ONLY_TOUCHING: &str = "pairs that only touch, which it does not claim to r
 /// run.
 const TRIES: usize = 20;
 
-/// The verdict on a library in one family of cases, or in all of them.
+/// The verdict on a library in one family of cases, or in all families.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CellVerdict {

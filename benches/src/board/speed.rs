@@ -17,7 +17,7 @@ pub(super) const SELF_REPORTED: &str = "self-reported";
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Speed {
-    /// Who.
+    /// The library's name.
     pub name: String,
     /// The claim.
     pub claim: Claim,

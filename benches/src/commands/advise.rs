@@ -11,12 +11,12 @@ use super::scene_args::{MachineArgs, SceneArgs};
 /// The default price of a narrow-phase check, in nanoseconds.
 const DEFAULT_CHECK_NANOSECONDS: f64 = 1000.0;
 
-/// Which volume, axes and finder to use for a scene, with the settings to paste
+/// Recommend a volume, axes and a finder for a scene, with the settings to paste
 ///
 /// Measures every finder, then spheres, boxes, S-DOP at each k with both kinds of axes, and hulls,
 /// on the scene's first frames. For each volume it adds the culling time and the narrow phase's
 /// time for the pairs that are left. Every volume reports all pairs that meet; they differ in time
-/// and in false pairs. --pairs and --axes restrict what is tried.
+/// and in false pairs. With --pairs or --axes, only that finder or these axes are tried.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop advise data/scenes/paper-500.toml --narrow-ns 200")]
 pub struct Args {

@@ -16,8 +16,8 @@ use super::{Outcome, one_of};
 /// Compare the time of a program with ours on a scene's frames
 ///
 /// Every frame is judged before its time counts. A program's time is the `ns` that it reports with
-/// each answer, which the table marks as self-reported. Ours is the wall time of the call. The two
-/// take turns.
+/// each answer; the table marks it as self-reported. Our time is the wall time of the call. The two
+/// programs take turns.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop bench data/scenes/paper-500.toml --exec ./mine --wire text --claims sphere --frames 50"

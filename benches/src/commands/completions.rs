@@ -1,4 +1,4 @@
-//! `sdop completions`: a script with which a shell completes commands and flags.
+//! `sdop completions`: writes a script with which a shell completes commands and flags.
 
 use clap::CommandFactory as _;
 use clap_complete::{Shell, generate};

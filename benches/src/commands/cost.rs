@@ -1,4 +1,4 @@
-//! `sdop cost`: the formula's predicted time and the measured time, per strategy.
+//! `sdop cost`: prints the formula's predicted time and the measured time per strategy.
 
 pub mod lines;
 
@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use comfy_table::Table;
-use miette::miette;
+use miette::{IntoDiagnostic, miette};
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::cost::design;
 use sdop_bench::cost::level::CacheLevel;
@@ -35,14 +35,21 @@ const EFFORT: Effort = Effort {
 /// no F. Counts come from the scene's runs. Prices belong to the machine, the volume and the
 /// regime: warm frames, which follow one another, or cold ones, before which other cullers ran, and
 /// the cache that holds the working set. They come from calibration scenes that are made from the
-/// scene's shapes alone, so that T is a true prediction, and are the same for all scenes of one
-/// kind. The residual is measured / predicted - 1; above 5 %, the assumption that fails is named.
-/// Without --strategy, all strategies are measured for which the scene has settings.
+/// scene's shapes alone, so that T is a true prediction; scenes named by --also have the same
+/// prices. The residual is measured / predicted - 1; if it exceeds 5 %, the row names the
+/// assumption that fails. Without --strategy, all strategies for which the scene has settings are
+/// measured.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
+    /// Another scene with the same meshes and [cull], predicted by the same prices; repeatable
+    #[arg(long, value_name = "SCENE")]
+    also: Vec<PathBuf>,
+    /// Write each scene's result to SCENE.json in this directory
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Passes to measure, at different times: with the scene's seed and those after it
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: u64,
@@ -61,21 +68,41 @@ pub struct Args {
 /// # Errors
 /// A bad scene, settings that it can't have.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let report = measure(args)?;
+    let reports = measure(args)?;
+    let [first, others @ ..] = &*reports else {
+        return Ok(Outcome::Passed);
+    };
     if let Some(path) = &args.plot {
-        let warm: Vec<&Cost> = of(&report, Regime::Warm).collect();
-        write(path, &draw_costs(&report.scene, &warm)?)?;
+        let warm: Vec<&Cost> = of(first, Regime::Warm).collect();
+        write(path, &draw_costs(&first.scene, &warm)?)?;
+    }
+    for report in args.out.iter().flat_map(|_| &reports) {
+        let json = serde_json::to_string_pretty(report).into_diagnostic()?;
+        let name = format!("{}.json", report.scene);
+        write(
+            &args.out.iter().collect::<PathBuf>().join(name),
+            &(json + "\n"),
+        )?;
     }
     match args.format {
-        Format::Csv => emit(Format::Csv, &lines::of_report(&report), |_| String::new())?,
-        format => emit(format, &report, text)?,
+        Format::Csv => {
+            let lines: Vec<_> = reports.iter().flat_map(lines::of_report).collect();
+            emit(Format::Csv, &lines, |_| String::new())?;
+        }
+        Format::Json if others.is_empty() => emit(Format::Json, first, text)?,
+        format => emit(format, &reports, |reports| {
+            reports.iter().map(text).collect::<Vec<_>>().join("\n\n")
+        })?,
     }
     Ok(Outcome::Passed)
 }
 
-fn measure(args: &Args) -> miette::Result<CostReport> {
-    let file = args.scene.read()?;
-    let scene = file.build()?;
+/// The report of each scene.
+fn measure(args: &Args) -> miette::Result<Vec<CostReport>> {
+    let also = args.also.iter().map(|path| args.scene.read_other(path));
+    let mut files = vec![args.scene.read()?];
+    files.extend(also.collect::<miette::Result<Vec<_>>>()?);
+    let scene = files[0].build()?;
     let strategies = match args.scene.strategy() {
         Some(strategy) if !strategy.scheme().culls() => {
             return Err(miette!(
@@ -96,10 +123,10 @@ fn measure(args: &Args) -> miette::Result<CostReport> {
         effort: EFFORT,
         tier: args.machine.tier(),
     };
-    let bar = progress(args.seeds, &scene.name);
-    let report = study(&file, &plan, || bar.inc(1))?;
+    let bar = progress(args.seeds * files.len() as u64, &scene.name);
+    let reports = study(&files, &plan, || bar.inc(1))?;
     bar.finish_and_clear();
-    Ok(report)
+    Ok(reports)
 }
 
 fn of(report: &CostReport, regime: Regime) -> impl Iterator<Item = &Cost> {

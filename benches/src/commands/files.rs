@@ -35,7 +35,7 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> miette::Result<()> {
         .wrap_err_with(|| format!("cannot write {}", path.display()))
 }
 
-/// Reads a text file of no more bytes than is usual.
+/// Reads a text file within the usual size limit.
 ///
 /// # Errors
 /// The system refuses; a file that is too large.

@@ -1,4 +1,4 @@
-//! `sdop man`: a manual page for the program and for each of its commands.
+//! `sdop man`: writes a manual page for the program and for each of its commands.
 
 use std::path::PathBuf;
 

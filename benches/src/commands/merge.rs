@@ -15,7 +15,7 @@ use super::{Outcome, reproduce, tradeoff, verify};
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop merge shards/verify-*.units -o target/verify")]
 pub struct Args {
-    /// The shards' files, all of them
+    /// All files of the shards
     #[arg(required = true)]
     shards: Vec<PathBuf>,
     /// Output directory

@@ -46,7 +46,7 @@ use sdop_judge::{Conclusion, Verdict};
 #[command(
     name = "sdop",
     version,
-    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input, 3 not all that was asked for was judged. Standard error says why."
+    after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input, 3 some requested cases were not judged. Standard error says why."
 )]
 struct Cli {
     #[command(subcommand)]

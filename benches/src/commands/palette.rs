@@ -1,6 +1,6 @@
-//! Colours of the figures. One colour means one thing in all of them and on the page of
-//! `sdop view`, whose style sheet is `view/web/src/style.css`: orange, blue and red are the page's
-//! pairs, bluish green its cells. Curves of anything else are black.
+//! Colours of the figures. A colour has the same meaning in all figures and on the page of `sdop
+//! view` (its style sheet is `view/web/src/style.css`): orange, blue and red are the page's pairs,
+//! bluish green is its cells. Other curves are black.
 
 use plotters::style::RGBColor;
 

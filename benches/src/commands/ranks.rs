@@ -1,4 +1,4 @@
-//! Programs started by `mpirun`: which commands support many ranks, and the error of the others.
+//! Starts by `mpirun`: which commands support many ranks, and the error of those that don't.
 
 use sdop_bench::mpi;
 

@@ -29,7 +29,7 @@ use super::sweep::SweepArgs;
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
-    mpirun -n 64 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, and for all: --merge"
+    mpirun -n 64 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, then once --merge"
 )]
 pub struct Args {
     /// The experiments; kernels and peers mean all experiments in their group
@@ -286,7 +286,7 @@ fn execute(args: &Args, experiment: &Experiment, out: &Path) -> miette::Result<(
     Ok(())
 }
 
-/// A step's command with what is asked of it here, and the file that its output becomes.
+/// A step's command with the arguments that this run adds, and the file for its output.
 fn complete(
     args: &Args,
     experiment: &Experiment,

@@ -57,7 +57,7 @@ pub struct Args {
 
 /// What is printed.
 #[derive(Serialize)]
-struct Report<'a> {
+struct RunReport<'a> {
     scene: &'a str,
     seed: u64,
     bodies: usize,
@@ -171,7 +171,7 @@ fn report<'a>(
     summary: &'a Summary,
     conditions: Conditions,
     shared: RankResults<'a>,
-) -> Report<'a> {
+) -> RunReport<'a> {
     let CullSettings {
         strategy,
         pairs,
@@ -183,7 +183,7 @@ fn report<'a>(
         budget,
         ..
     } = &scene.cull;
-    Report {
+    RunReport {
         scene: &scene.name,
         seed: scene.seed,
         bodies: scene.share().all,
@@ -249,7 +249,7 @@ fn counters(strategy: Strategy, counters: &Counters) -> Map<String, Value> {
     map
 }
 
-fn text(report: &Report<'_>, scene: &Scene, summary: &Summary) -> String {
+fn text(report: &RunReport<'_>, scene: &Scene, summary: &Summary) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write_text(&mut text, report, scene, summary);
@@ -258,7 +258,7 @@ fn text(report: &Report<'_>, scene: &Scene, summary: &Summary) -> String {
 
 fn write_text(
     out: &mut String,
-    report: &Report<'_>,
+    report: &RunReport<'_>,
     scene: &Scene,
     summary: &Summary,
 ) -> std::fmt::Result {

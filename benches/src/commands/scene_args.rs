@@ -103,7 +103,15 @@ impl SceneArgs {
     /// # Errors
     /// A scene that can't be read, or settings that no scene can have.
     pub fn read(&self) -> miette::Result<SceneFile> {
-        let mut file = SceneFile::read_within(&self.scene, self.files.max_bytes())?;
+        self.read_other(&self.scene)
+    }
+
+    /// The same of another scene.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_other(&self, scene: &Path) -> miette::Result<SceneFile> {
+        let mut file = SceneFile::read_within(scene, self.files.max_bytes())?;
         if let Some(frames) = self.frames.and_then(NonZeroU32::new) {
             file.spec.frames = frames;
         }
@@ -114,7 +122,7 @@ impl SceneArgs {
         Ok(file)
     }
 
-    /// The seed asked for, if any.
+    /// The requested seed, if any.
     pub fn seed(&self) -> Option<u64> {
         self.seed
     }
@@ -134,22 +142,22 @@ impl SceneArgs {
         (self.cull != CullArgs::default()).then_some("a culling flag")
     }
 
-    /// The frames asked for, if any.
+    /// The requested number of frames, if any.
     pub fn frames(&self) -> Option<u32> {
         self.frames
     }
 
-    /// The finder asked for, if any.
+    /// The requested finder, if any.
     pub fn finder(&self) -> Option<Finder> {
         self.cull.pairs
     }
 
-    /// The axes asked for, if any.
+    /// The requested axes, if any.
     pub fn axes(&self) -> Option<Axes> {
         self.cull.axes
     }
 
-    /// The strategy asked for, if any.
+    /// The requested strategy, if any.
     pub fn strategy(&self) -> Option<Strategy> {
         self.cull.strategy
     }
@@ -194,7 +202,7 @@ fn interest(text: &str) -> Result<Interest, String> {
 }
 
 impl MachineArgs {
-    /// The SIMD level: the one asked for, or the fastest.
+    /// The requested SIMD level, or the fastest.
     pub fn tier(&self) -> Tier {
         self.simd.unwrap_or_else(Tier::detect)
     }

@@ -1,4 +1,5 @@
-//! Work in units: done here, by the ranks of `mpirun`, or in part for `sdop merge`.
+//! Does work in units: all of it here, together with other ranks of `mpirun`, or a part for `sdop
+//! merge`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -52,12 +53,12 @@ pub fn enter(args: &SweepArgs) -> miette::Result<()> {
 }
 
 impl SweepArgs {
-    /// The part of the work that was asked for.
+    /// The requested part of the work.
     pub fn shard(&self) -> Option<Shard> {
         self.shard
     }
 
-    /// What was asked for, as arguments of another command.
+    /// The request, as arguments for another command.
     pub fn arguments(&self) -> Vec<String> {
         let [shard, share_cores] = SHARING.map(str::to_owned);
         let mut arguments = Vec::new();

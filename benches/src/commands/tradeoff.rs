@@ -1,4 +1,4 @@
-//! `sdop tradeoff`: what accuracy costs in time on one scene, and when it pays.
+//! `sdop tradeoff`: measures what accuracy costs in time on one scene, and when it pays.
 
 mod csv;
 mod plot;
@@ -145,7 +145,7 @@ impl RecordedTradeoff {
 }
 
 impl Args {
-    /// Writes and prints what was asked for.
+    /// Writes and prints the requested results.
     fn tell(&self, recorded: &RecordedTradeoff) -> miette::Result<Outcome> {
         if let Some(directory) = &self.out {
             let paper = self.paper.as_ref().unwrap_or(directory);

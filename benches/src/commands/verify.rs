@@ -34,7 +34,9 @@ use report::Report;
 /// crowd, for every k and axes), then the given scenes with their meshes. Strategies, overlap
 /// tests, finders, k, axes, update modes, SIMD tiers and numbers of threads are tested in every
 /// combination; the matrix at the end counts them. Each list is compared with the exact answers and
-/// with the list of all-pairs; lists of boxes are compared with their definition. The exit code is
+/// with the list of all-pairs; lists of boxes are compared with their definition. Long-lived worlds
+/// go through histories of changes, and their pairs and events are compared with the exact answers
+/// and with those of worlds made for the moment. The exit code is
 /// 1 for a missed pair, a list that differs from that of all-pairs, or an empty cell of the matrix;
 /// for the first two, the smallest scene that shows it is written. A run that --time cuts short is
 /// INCOMPLETE: exit code 3.
@@ -50,7 +52,8 @@ pub struct Args {
     /// One group of hard cases instead of all; may be repeated
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FILES.iter().map(|file| file.0)))]
     group: Vec<String>,
-    /// Judge all ways that make a claim by the cases of that claim, as `sdop judge` does a program
+    /// Judge every configuration that makes this claim by the claim's cases, as `sdop judge` judges
+    /// a program
     #[arg(long, value_name = "CLAIM", conflicts_with_all = ["scenes", "group", "shard"], value_parser = one_of::<Claim>(&EveryWay::CLAIMS.map(Claim::name)))]
     claims: Option<Claim>,
     /// Seeded rounds: each judges 8,192 near and 89,400 random pairs
@@ -223,18 +226,22 @@ impl UnitTotals {
             report.add(name.to_owned(), self.ledgers.get(&origin).unwrap_or(&none));
         }
         let none = Ledger::default();
-        let boxes = self.ledgers.get(&UnitOrigin::Boxes).unwrap_or(&none);
+        let of = |origin| self.ledgers.get(&origin).unwrap_or(&none);
+        let boxes = &of(UnitOrigin::Boxes).boxes;
+        let histories = &of(UnitOrigin::Histories).histories;
         let units = [run.units(), self.units];
-        report.finish(units, seconds, &boxes.boxes, run.rotation());
+        report.finish(units, seconds, (boxes, histories), run.rotation());
         let why = report.why();
         emit_with_reason(format, &report, why.as_deref(), Report::tables)?;
         let outcome = Outcome::new(report.conclusion(), why);
         if let Some((origin, &unit)) = self.failed.first_key_value() {
             let judged = run.judge(unit)?.into_iter().filter(|(of, _)| of == origin);
             let ledger = judged.map(|(_, ledger)| ledger).next().unwrap_or_default();
-            match (ledger.failures.first(), &ledger.boxes.failure) {
+            let told = ledger.boxes.failure.as_ref();
+            let told = told.or(ledger.histories.failure.as_ref());
+            match (ledger.failures.first(), told) {
                 (Some(failure), _) => show(failure, out)?,
-                (None, Some(boxes)) => print(boxes)?,
+                (None, Some(told)) => print(told)?,
                 (None, None) => print("the failure doesn't show on this machine")?,
             }
         }

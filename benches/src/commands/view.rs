@@ -18,9 +18,9 @@ use input::ViewInput;
 
 /// Write a page that shows a run: bodies, pairs, volumes and counts, frame by frame
 ///
-/// The page contains all of its data and opens from disk. Bodies change colour if a pair of theirs
-/// is reported, and have another colour if their meshes meet; a missed pair flashes and is listed.
-/// A record shows what any program reported.
+/// The page contains all of its data and opens from disk. Bodies of reported pairs change colour;
+/// the colour also shows whether their meshes meet. A missed pair flashes and is listed. A record
+/// shows what a program reported, ours or any other.
 #[derive(clap::Args)]
 #[command(
     mut_arg("scene", |arg| arg.value_name("SCENE|RECORD|CASE").help(
@@ -134,7 +134,7 @@ fn culled(args: &Args, show: &ShownRun) -> miette::Result<Vec<ShownStrategy>> {
     Ok(culled)
 }
 
-/// Writes the page, and opens it if asked to; returns where it is.
+/// Writes the page, opens it if requested, and returns its path.
 fn write(args: &Args, page: &Page, name: &str) -> miette::Result<PathBuf> {
     let own = || format!("{}.html", safe(name)).into();
     let path = args.out.clone().unwrap_or_else(own);

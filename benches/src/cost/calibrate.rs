@@ -73,6 +73,15 @@ impl PreparedVariant {
     }
 }
 
+/// What a round of calibration found.
+#[derive(Clone, Debug, Default)]
+pub struct CalibrationRound {
+    /// The prices of each variant for warm and for cold frames; empty without a calibration.
+    pub prices: [Vec<Prices>; 2],
+    /// How often a pass measures Co, once at least.
+    pub builds: usize,
+}
+
 /// The calibration of some variants for scenes of one kind.
 pub struct Calibration {
     /// The variants, followed by those whose prices they share.
@@ -131,17 +140,17 @@ impl Calibration {
         })
     }
 
-    /// The number of times that a pass measures Co.
+    /// The level of the working set for which the prices hold.
     #[must_use]
-    pub fn builds_of_a_pass(&self) -> usize {
-        self.effort.builds
+    pub fn level(&self) -> CacheLevel {
+        self.level
     }
 
-    /// Runs a round and returns the prices of each variant for warm and for cold frames.
+    /// Runs a round.
     ///
     /// # Errors
     /// The settings can't be carried out, or a body leaves the contract.
-    pub fn round(&mut self) -> Result<[Vec<Prices>; 2], SimulationError> {
+    pub fn round(&mut self) -> Result<CalibrationRound, SimulationError> {
         for prepared in &mut self.prepared {
             prepared.observed.iter_mut().for_each(Vec::clear);
             prepared.splits.clear();
@@ -154,7 +163,7 @@ impl Calibration {
             lanes: expected::lanes(self.tier),
             level: self.level,
         };
-        Ok(std::array::from_fn(|regime| {
+        let prices = std::array::from_fn(|regime| {
             let all: Vec<_> = self
                 .prepared
                 .iter()
@@ -163,7 +172,11 @@ impl Calibration {
             let mut prices = explain::prices(&all, round);
             prices.truncate(self.variants);
             prices
-        }))
+        });
+        Ok(CalibrationRound {
+            prices,
+            builds: self.effort.builds,
+        })
     }
 
     /// One turn of one calibration scene.

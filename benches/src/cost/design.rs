@@ -1,14 +1,14 @@
 //! The calibration scenes: which counts vary, and which stay the same.
 //!
-//! They are made of a scene's shapes and settings, and of the [level](super::level) of its working
-//! set. They depend on nothing else of the scene, neither its number of bodies nor its box, poses
-//! or seed, so that scenes of one kind share their prices and are independent of them. Every size
-//! is placed at every density. At one size all densities have the same updates, bodies and (with
-//! all pairs) tests, so that their times differ by the price of hits. At one density sizes differ
-//! in all counts, and tests grow faster than bodies. The smallest size is below every level: there
-//! the price per frame is most of the time, while with hundreds of bodies it is small compared with
-//! that of tests (without the smallest size, the price per frame would be known to ± 200 %, and
-//! that per body to ± 40 %, from times that scatter by 2 %).
+//! They depend on a scene's shapes and settings and on the [level](super::level) of its working
+//! set, but not on its number of bodies, box, poses or seed. Therefore scenes of one kind share
+//! their prices, and no price is measured on the scene that it predicts. Every size is placed at
+//! every density. At one size, all densities have the same updates, bodies and (with all pairs)
+//! tests, so that their times differ by the price of hits. At one density, sizes differ in all
+//! counts, and tests grow faster than bodies. The smallest size is below every level: there the
+//! price per frame is most of the time, while with hundreds of bodies it is small compared with the
+//! price of tests. (Without the smallest size, times that scatter by 2 % would determine the price
+//! per frame to ± 200 % and the price per body to ± 40 %.)
 
 use super::level::CacheLevel;
 use crate::effects::Velocities;

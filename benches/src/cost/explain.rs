@@ -1,13 +1,13 @@
 //! Prices from observed turns: each stage's seconds explained by its counts.
 //!
 //! An update stage follows Nu; finding follows frames, bodies, misses and hits; the second test
-//! follows its tests. Prices are therefore marginal: the price of a hit is that of one more hit
-//! among the misses around it, including the vector of lanes that it keeps busy. Volumes are priced
-//! alone: spheres with the strategy of spheres, or-DOPs with the sequential S-DOP of the same
-//! settings. What another strategy costs in addition is priced per frame, and per pair that it
-//! lists. The share of hits in a second test is always about the same, so that no choice of scenes
-//! could separate the price of a hit from that of a miss: lists with known shares do
-//! ([`HitPremium`]), and the frames determine the level.
+//! follows its tests. Prices are therefore marginal: the price of a hit is what one more hit costs
+//! among the misses around it, including the lanes of the vector that it keeps busy. Each volume is
+//! priced separately: spheres with the strategy of spheres, or-DOPs with the sequential S-DOP of
+//! the same settings. What another strategy costs in addition is priced per frame, and per pair
+//! that it lists. The share of hits in a second test is always about the same, so no choice of
+//! scenes could separate the price of a hit from that of a miss. Lists with known shares separate
+//! them ([`HitPremium`]), and the frames determine the level of both prices.
 
 use super::VolumeCosts;
 use super::expected;

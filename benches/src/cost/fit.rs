@@ -2,8 +2,8 @@
 //!
 //! A measured stage took Σ countⱼ·priceⱼ. Each row is divided by the seconds of its stage, so that
 //! the fit minimises the sum of squared *relative* residuals: a scene of fifty bodies weighs as
-//! much as one of six hundred. Prices can't be negative, and there are at most six of them: every
-//! subset of them is fitted without constraint, and the best fit with positive prices is taken.
+//! much as one of six hundred. Prices can't be negative. There are at most six, so every subset of
+//! them is fitted without constraint, and the best fit with positive prices is used.
 
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;

@@ -1,5 +1,5 @@
-//! The cache that holds the data of a frame: the part of a price's regime that follows from the
-//! number of bodies.
+//! The cache that holds the data of a frame. It follows from the number of bodies, and is part of a
+//! price's regime.
 
 use std::fs::read_to_string;
 use std::path::Path;

@@ -3,9 +3,9 @@
 //! Nu and Nv are [counted](crate::measure::counts) in the run that is predicted. A price belongs to
 //! a machine, a volume (with the shapes that it bounds) and a declared regime: warm or cold frames,
 //! and the [cache level](level) of the working set. It is [calibrated](calibrate) on calibration
-//! scenes ([`design`]), none of which is ever predicted, and is the same wherever it is printed:
-//! for spheres in every strategy that begins with them, for or-DOPs in every strategy that refines
-//! by them. The costs of a strategy in addition to its volumes are separate prices, in F.
+//! scenes ([`design`]), which are never predicted. It is the same wherever it is printed: for
+//! spheres in every strategy that begins with them, for or-DOPs in every strategy that refines by
+//! them. What a strategy costs in addition to its volumes has separate prices, in F.
 //!
 //! | price | identified by | in which stage |
 //! |---|---|---|

@@ -1,8 +1,8 @@
-//! A pass: a round of calibration, then one run of a scene. Rounds and runs alternate, so that a
-//! drift of the machine affects the prices and the predicted times alike. Passes are separated in
-//! time, and each is one observation.
+//! A pass: a round of calibration, then one run of a scene, or of several. Rounds and runs
+//! alternate, so that a drift of the machine affects the prices and the predicted times alike.
+//! Passes are separated in time, and each is one observation.
 
-use super::calibrate::{Calibration, build};
+use super::calibrate::{CalibrationRound, build};
 use super::predict::Prices;
 use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;
@@ -121,7 +121,7 @@ pub fn pass(
     variants: &[Variant],
     tier: Tier,
     frames: &mut dyn Frames,
-    calibration: Option<&mut Calibration>,
+    calibration: Option<CalibrationRound>,
     observer: &mut dyn Observer,
 ) -> Result<Pass, SimulationError> {
     let mut culled = vec![VariantRun::default(); variants.len()];
@@ -136,10 +136,7 @@ pub fn pass(
         cullers.push(culler);
     }
     let (all, mut turn) = (frames.turns().max(1), 0);
-    let builds = calibration
-        .as_ref()
-        .map_or(1, |calibration| calibration.builds_of_a_pass());
-    let prices = calibration.map_or_else(|| Ok(Default::default()), Calibration::round)?;
+    let CalibrationRound { prices, builds } = calibration.unwrap_or_default();
     let mut turns = Turns::default();
     while let Some((first, poses)) = frames.next_turn()? {
         turns.round(&mut cullers, &poses, |timed| {

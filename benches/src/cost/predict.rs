@@ -2,10 +2,10 @@
 //!
 //! > T = Co + Nu·Cu + F + Nv·Cv, summed over a variant's volumes
 //!
-//! is the paper's equation 1 with F, pair finding, as a separate stage: a price per frame, one per
-//! body, one per body that has hits, and one per pair that is passed to a second test: it is
-//! listed, and with an object of interest selected and merged. Cv has two prices, for hits and for
-//! misses, and for world-aligned volumes a third, for slabs after the first.
+//! is the paper's equation 1 with F, pair finding, as a separate stage. F has a price per frame,
+//! per body, per body that has hits, and per pair that is passed to a second test. (Such a pair is
+//! listed; with an object of interest it is also selected and merged.) Cv has separate prices for
+//! hits and for misses, and for world-aligned volumes a third, for slabs after the first.
 
 use serde::{Deserialize, Serialize};
 
@@ -84,16 +84,16 @@ pub struct TermWidths {
     /// Half-width of the hits per frame.
     #[serde(deserialize_with = "or_infinite")]
     pub hits: f64,
-    /// Of Co.
+    /// Half-width of Co.
     #[serde(deserialize_with = "or_infinite")]
     pub construct: f64,
-    /// Of Nu·Cu.
+    /// Half-width of Nu·Cu.
     #[serde(deserialize_with = "or_infinite")]
     pub update: f64,
-    /// Of F.
+    /// Half-width of F.
     #[serde(deserialize_with = "or_infinite")]
     pub finding: f64,
-    /// Of Nv·Cv.
+    /// Half-width of Nv·Cv.
     #[serde(deserialize_with = "or_infinite")]
     pub test: f64,
 }

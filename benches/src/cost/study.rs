@@ -1,21 +1,26 @@
-//! The cost of each strategy on one scene: passes over seeds, each with its calibration, and the
-//! results.
+//! The cost of each strategy in scenes of one kind: passes over seeds, each with its calibration,
+//! and the results.
+
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 
 use miette::Diagnostic;
 use serde::Serialize;
 use thiserror::Error;
 
 use super::calibrate::{Calibration, Effort};
+use super::level::CacheLevel;
 use super::pass::{Pass, SceneFrames, pass};
 use super::table::{self, Cost, PriceRow};
 use crate::measure::conditions::Conditions;
 use crate::measure::machine::Machine;
-use crate::measure::turns::Regime;
+use crate::measure::turns::{FEWEST_TIMED_FRAMES, Regime};
 use crate::measure::variant::Variant;
 use crate::scene::{Scene, SceneError, SceneFile};
 use crate::simulate::SimulationError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
+use sdop::volume::Shape;
 
 /// The amount of measurement.
 #[derive(Clone, Debug)]
@@ -24,7 +29,7 @@ pub struct CostPlan {
     pub strategies: Vec<Strategy>,
     /// Number of passes. The first has the scene's seed, and each one the next seed.
     pub passes: u64,
-    /// Frames of a pass.
+    /// Frames of a pass, or all of a scene that has fewer.
     pub frames: u32,
     /// How long to calibrate in each pass.
     pub effort: Effort,
@@ -66,6 +71,73 @@ pub enum CostError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
+    /// Prices hold for scenes of one kind.
+    #[error("{scene} and {first} can't have the same prices: their {differ} differ")]
+    #[diagnostic(help("run `sdop cost` for each kind of scene by itself"))]
+    OtherKind {
+        /// The scene.
+        scene: String,
+        /// The first scene.
+        first: String,
+        /// What differs.
+        differ: &'static str,
+    },
+}
+
+/// A scene, and its passes so far.
+struct Subject {
+    file: SceneFile,
+    scene: Scene,
+    frames: u32,
+    passes: Vec<Pass>,
+}
+
+impl Subject {
+    fn new(file: &SceneFile, plan: &CostPlan) -> Result<Self, CostError> {
+        let scene = file.build()?;
+        let frames = plan.frames.min(scene.frames);
+        Ok(Self {
+            file: file.clone(),
+            frames: frames.max(FEWEST_TIMED_FRAMES.get()),
+            scene,
+            passes: Vec::new(),
+        })
+    }
+
+    /// Whether calibration scenes that are made of this scene are made as well of the first one.
+    fn is_like(&self, first: &Self) -> Result<(), CostError> {
+        let differ = if self.scene.cull != first.scene.cull {
+            "`[cull]` tables"
+        } else if self.kinds() != first.kinds() {
+            "meshes or radii"
+        } else {
+            return Ok(());
+        };
+        Err(CostError::OtherKind {
+            scene: self.scene.name.clone(),
+            first: first.scene.name.clone(),
+            differ,
+        })
+    }
+
+    /// The shapes by the bits of their balls and their numbers of vertices, each once.
+    fn kinds(&self) -> BTreeSet<([u32; 4], usize)> {
+        let kind = |shape: &Shape| {
+            let ([x, y, z], r) = (shape.ball.centre, shape.ball.radius);
+            ([x, y, z, r].map(f32::to_bits), shape.vertices.len())
+        };
+        self.scene.shapes.iter().map(kind).collect()
+    }
+
+    /// The scene of pass number `n`, which has the nth next seed.
+    fn of_pass(&mut self, n: u64) -> Result<Scene, CostError> {
+        self.file.spec.seed = self.scene.seed.wrapping_add(n);
+        Ok(self.file.build()?)
+    }
+
+    fn level(&self) -> CacheLevel {
+        CacheLevel::of(self.scene.bodies.len())
+    }
 }
 
 /// The strategies for which a scene has all settings, without the control.
@@ -81,44 +153,60 @@ pub fn possible(scene: &Scene) -> Vec<Strategy> {
     Strategy::ALL.iter().copied().filter(has).collect()
 }
 
-/// Measures, and calls `done` after each pass.
+/// Measures scenes of one kind, and calls `done` after each pass. In each pass all of them have the
+/// same prices, as far as their working sets are of one level. The report of each scene.
 ///
 /// # Errors
-/// The scene can't be built, simulated or culled.
+/// A scene can't be built, simulated or culled, or is of another kind than the first.
 pub fn study(
-    file: &SceneFile,
+    files: &[SceneFile],
     plan: &CostPlan,
     mut done: impl FnMut(),
-) -> Result<CostReport, CostError> {
-    let mut file = file.clone();
-    let scene = file.build()?;
-    let variants: Vec<Variant> = plan
-        .strategies
-        .iter()
-        .map(|&strategy| Variant::strategy(&scene.cull, strategy))
-        .collect();
-    let before = Conditions::before();
-    let mut calibration = Calibration::new(&scene, &variants, plan.tier, plan.effort)?;
-    let seeds: Vec<u64> = (0..plan.passes)
-        .map(|n| scene.seed.wrapping_add(n))
-        .collect();
-    let mut passes: Vec<Pass> = Vec::new();
-    for &seed in &seeds {
-        file.spec.seed = seed;
-        let scene = file.build()?;
-        let mut frames = SceneFrames::new(&scene, plan.frames)?;
-        let calibration = Some(&mut calibration);
-        passes.push(pass(
-            &scene,
-            &variants,
-            plan.tier,
-            &mut frames,
-            calibration,
-            &mut (),
-        )?);
-        done();
+) -> Result<Vec<CostReport>, CostError> {
+    let subjects = files.iter().map(|file| Subject::new(file, plan));
+    let mut subjects = subjects.collect::<Result<Vec<_>, _>>()?;
+    let Some(first) = subjects.first() else {
+        return Ok(Vec::new());
+    };
+    subjects.iter().try_for_each(|other| other.is_like(first))?;
+    let of_strategy = |&strategy| Variant::strategy(&first.scene.cull, strategy);
+    let variants: Vec<Variant> = plan.strategies.iter().map(of_strategy).collect();
+    let mut calibrations: BTreeMap<CacheLevel, Calibration> = BTreeMap::new();
+    for subject in &subjects {
+        if let Entry::Vacant(free) = calibrations.entry(subject.level()) {
+            let (tier, effort) = (plan.tier, plan.effort);
+            free.insert(Calibration::new(&subject.scene, &variants, tier, effort)?);
+        }
     }
-    let passes: Vec<&Pass> = passes.iter().collect();
+    let before = Conditions::before();
+    for n in 0..plan.passes {
+        for (&level, calibration) in &mut calibrations {
+            let round = calibration.round()?;
+            for subject in subjects
+                .iter_mut()
+                .filter(|subject| subject.level() == level)
+            {
+                let scene = subject.of_pass(n)?;
+                let mut frames = SceneFrames::new(&scene, subject.frames)?;
+                let round = Some(round.clone());
+                let pass = pass(&scene, &variants, plan.tier, &mut frames, round, &mut ())?;
+                subject.passes.push(pass);
+                done();
+            }
+        }
+    }
+    let report = |subject| report(subject, &variants, plan, before);
+    Ok(subjects.into_iter().map(report).collect())
+}
+
+fn report(
+    subject: Subject,
+    variants: &[Variant],
+    plan: &CostPlan,
+    before: Conditions,
+) -> CostReport {
+    let Subject { scene, frames, .. } = subject;
+    let passes: Vec<&Pass> = subject.passes.iter().collect();
     let mut costs = Vec::new();
     for of in variants.iter().enumerate() {
         for &regime in Regime::ALL {
@@ -133,15 +221,17 @@ pub fn study(
     let prices = Regime::ALL
         .iter()
         .flat_map(|&regime| table::prices(&passes, regime));
-    Ok(CostReport {
+    CostReport {
         bodies: scene.bodies.len(),
-        frames: plan.frames,
+        frames,
         scene_frames: scene.frames,
-        seeds,
+        seeds: (0..plan.passes)
+            .map(|n| scene.seed.wrapping_add(n))
+            .collect(),
         machine: Machine::here(plan.tier),
         conditions: before.after(costs.iter().map(|cost: &Cost| cost.frame.measured)),
         prices: prices.collect(),
         costs,
         scene: scene.name,
-    })
+    }
 }

@@ -1,5 +1,5 @@
 //! T of each variant in each regime: the formula's terms, at the mean prices of all rounds of
-//! calibration, and the times of runs. A term is the printed count times the printed price.
+//! calibration, and the measured times. A term is the printed count times the printed price.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! [`BodyColumns`]: the bodies that a rank holds, its own and its ghosts (copies of bodies that
-//! others own), in the order of their numbers in the scene. Because of that order a pair's test is
-//! the same on every rank: the lower number is always first.
+//! other ranks own), in the order of their numbers in the scene. In that order the lower number is
+//! always first, so a pair's test is the same on every rank.
 
 use crate::effects::Velocities;
 use sdop::bodies::Bodies;

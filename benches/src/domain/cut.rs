@@ -5,12 +5,11 @@
 //! the lower ranks. A plane is one of the f32 coordinates, found digit by digit from counts that
 //! are summed over ranks (a radix selection). No rank sees another's bodies, and the planes depend
 //! only on the set of centres, not on which rank holds them. A centre below a plane belongs to the
-//! lower side, one on or above it to the upper side, which is the same comparison of two f32 on
-//! every rank.
+//! lower side, and one on or above it to the upper side. Every rank compares the same two f32.
 //!
-//! Maintained partitioners (coupe, the METIS family) need a mesh or points in one memory, and those
-//! with MPI are C libraries with their own installation. Selection over ranks is shorter than a
-//! binding to them.
+//! Maintained partitioners (coupe, the METIS family) need a mesh, or all points in one memory;
+//! those that use MPI are C libraries which have to be installed separately. Selection over ranks
+//! takes less code than a binding to them.
 
 use super::float_key::{key, of_key};
 use crate::network::Network;

@@ -1,4 +1,4 @@
-//! Errors on one of many ranks, and how the others learn of them.
+//! Errors on one of many ranks, and how they are sent to the others.
 
 use miette::Diagnostic;
 use thiserror::Error;
@@ -34,8 +34,8 @@ pub enum DomainError {
     },
 }
 
-/// The outcome on which all ranks agree: an error of one is an error of all. Collective; returns
-/// the largest `number` of all ranks besides.
+/// The outcome on which all ranks agree (an error of one is an error of all), and the largest
+/// `number` of all ranks. All ranks have to call it.
 pub(super) fn agree<T>(
     network: &impl Network,
     outcome: Result<T, DomainError>,

@@ -1,4 +1,4 @@
-//! [`Rank`]: one of many ranks, which culls its frames in step with the others.
+//! [`Rank`]: one of many ranks, which culls frames in step with the others.
 
 use std::time::Instant;
 
@@ -48,7 +48,7 @@ pub struct BorderSeconds {
     pub waiting: f64,
 }
 
-/// What borders cost a rank, besides what its culler counts. Sums over frames.
+/// What borders cost a rank, in addition to what its culler counts; sums over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct BorderCosts {
     pub seconds: BorderSeconds,

@@ -125,7 +125,7 @@ impl<N: Network> Rank<'_, N> {
         }
     }
 
-    /// Has effects and culler take up the bodies now held.
+    /// Gives the bodies that the rank holds now to the effects and the culler.
     fn take_up(&mut self) {
         let held = &mut self.held;
         let movers: Vec<bool> = held

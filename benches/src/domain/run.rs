@@ -12,8 +12,8 @@ use crate::simulate::Summary;
 use sdop::counters::{Counters, Seconds};
 use sdop::settings::{TestedVolume, Updates};
 
-/// Up to so many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted;
-/// beyond, there is the digest alone.
+/// Up to this many bodies, rank 0 gathers all pairs for `pairs_sha256`, which needs them sorted.
+/// With more bodies there is only `pairs_digest`.
 const MOST_GATHERED_BODIES: usize = 1 << 20;
 
 /// What one rank says of a run. Sums over frames, except for bodies.
@@ -25,8 +25,8 @@ pub struct RankLine {
     pub bodies: u64,
     /// Ghosts held, summed over frames.
     pub ghosts: u64,
-    /// Volumes updated of ghosts, besides those in the counters; with lazy updates those of the
-    /// first test alone.
+    /// Updated volumes of ghosts, in addition to those in the counters; with lazy updates those of
+    /// the first test alone.
     pub ghost_updates: u64,
     /// Pairs found here and reported by another rank.
     pub others_pairs: u64,
@@ -58,8 +58,8 @@ pub struct RankSeconds {
     pub border: BorderSeconds,
 }
 
-/// What a finished run says of itself, the same on every rank but for the hash of all pairs, which
-/// rank 0 alone has.
+/// The results of a finished run. They are the same on every rank, except for the hash of all
+/// pairs, which rank 0 alone has.
 #[derive(Clone, Debug)]
 pub struct DomainSummary {
     /// As of one process. Counters are sums over ranks: updates are those of owned bodies, tests

@@ -32,7 +32,7 @@ struct Brownian {
     /// precede it.
     runs: Vec<(Range<usize>, usize)>,
     dynamic: u32,
-    /// The numbers in the scene of the bodies at hand, if they are not all.
+    /// The scene's numbers of the bodies that are held, unless all are.
     numbers: Option<Vec<u32>>,
 }
 
@@ -55,7 +55,7 @@ pub(super) fn new(settings: &Settings, start: &InitialState<'_>) -> BuiltEffect 
 }
 
 impl Brownian {
-    /// The place among the bodies at hand of the scene's dynamic body `chosen`.
+    /// The place of the scene's dynamic body `chosen` among the bodies that are held.
     fn place(&self, chosen: u32) -> Option<usize> {
         let chosen = chosen as usize;
         let after = self.runs.partition_point(|(_, before)| *before <= chosen);

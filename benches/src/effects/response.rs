@@ -4,9 +4,9 @@
 //!
 //! With n = cj − ci, the relative approach a = (vi − vj)·n / |n|² > 0 changes vi by −2mj/(mi +
 //! mj)·a·n and vj by 2mi/(mi + mj)·a·n: momentum and kinetic energy stay. The paper's bodies pass
-//! through one another; this is for scenes that shouldn't. Contacts are those of the spheres in
-//! f64, found here and charged to this effect, so that trajectories never depend on the culling
-//! under test. Pairs are treated in index order.
+//! through one another; this effect is for scenes in which they shouldn't. Contacts are those of
+//! the spheres in f64, found here and charged to this effect, so that trajectories never depend on
+//! the culling under test. Pairs are treated in index order.
 
 use std::ops::Range;
 

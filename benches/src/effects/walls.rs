@@ -1,5 +1,5 @@
-//! Elastic walls of the box: a body whose bounding sphere reaches beyond a wall is mirrored back,
-//! w ← 2(wall − r) − w for its centre w, and turned round (paper, section 5).
+//! Elastic walls of the box: a body whose bounding sphere reaches beyond a wall is mirrored back, w
+//! ← 2(wall − r) − w for its centre w, and its velocity is reversed (paper, section 5).
 //!
 //! `specular` reverses the velocity component across the wall. `reverse` is the paper's equation 3,
 //! v' = −v, read literally: the whole velocity turns. Both keep the speed.

@@ -19,7 +19,7 @@ pub struct Conditions {
     pub others: [Option<f64>; 2],
     /// How many of the quoted times have an interval of more than ± 10 %.
     pub wide: usize,
-    /// Of how many.
+    /// The number of all quoted times.
     pub of: usize,
 }
 

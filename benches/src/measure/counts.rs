@@ -1,4 +1,4 @@
-//! The counters of a run per volume: the Nu and Nv of the formula.
+//! The counters of a run per volume: Nu and Nv of the formula.
 
 use sdop::choice::choices;
 use sdop::counters::{Counters, VolumeCounters};

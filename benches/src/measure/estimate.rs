@@ -1,8 +1,8 @@
 //! Means with confidence intervals over seeds.
 //!
 //! Frames of one run are correlated: at the paper's speeds a body needs about a hundred frames to
-//! travel its own diameter. So a run counts as one observation, whatever its number of frames, and
-//! intervals are Student's over the runs' means.
+//! travel its own diameter. Therefore a run counts as one observation, whatever its number of
+//! frames, and intervals are Student's over the runs' means.
 
 use serde::{Deserialize, Deserializer, Serialize};
 use special::{Beta as _, Gamma as _};

@@ -1,21 +1,22 @@
 //! The protocol of all timing: contestants take turns on the same frames, on one thread.
 //!
-//! In its turn a contestant takes several consecutive frames, then the next one does. Other load
-//! (other processes, clock changes) therefore affects all contestants alike. The order of turns is
-//! random in each round, because a contestant that always followed the same one would always find
-//! that one's data in the caches. The first frame of a turn is *cold*, because others ran in
-//! between. The following ones are *warm*: frames of one culler in sequence, as in a simulation.
+//! In its turn a contestant culls several consecutive frames, then the next contestant does. Other
+//! load (other processes, clock changes) therefore affects all contestants alike. The order of
+//! turns is random in each round, because otherwise a contestant would always follow the same other
+//! one and find its data in the caches. The first frame of a turn is *cold*, because others ran
+//! before it. The following ones are *warm*: frames of one culler in sequence, as in a simulation.
 //! Every number says which of the two it is.
 //!
 //! The position of the stack also affects a frame's time: loads and stores whose addresses agree
 //! modulo a page wait for each other, and an access that crosses a page is slow. That position is
-//! drawn once per process and differs by contestant. Each frame therefore begins [at another part
-//! of a page](displaced), so that a median is taken over many positions.
+//! drawn once per process and differs by contestant. Each frame therefore begins [at a different
+//! part of a page](displaced), so that a median is taken over many positions.
 //!
 //! Other load may interrupt a frame, with a probability that grows with its length. Time that a
 //! thread waited for a processor is subtracted if the system reports it ([`WaitingTime`]), and is
 //! recorded.
 
+use std::num::NonZeroU32;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -78,7 +79,7 @@ pub struct Turns {
     displacement: usize,
 }
 
-/// Works with so many pads on the stack beneath.
+/// Runs the work below this many pads on the stack.
 #[inline(never)]
 fn displaced(pads: usize, work: &mut dyn FnMut()) {
     let pad = std::hint::black_box([0_u8; DISPLACEMENT]);
@@ -153,6 +154,10 @@ impl Turns {
         order
     }
 }
+
+/// The fewest frames of a run that is timed: one is cold and one warm. A scene that has fewer is
+/// simulated further.
+pub const FEWEST_TIMED_FRAMES: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 
 /// How many consecutive frames a turn has for a scene with `bodies` bodies: at least two, one of
 /// which is warm.

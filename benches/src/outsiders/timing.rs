@@ -1,5 +1,5 @@
-//! Timing a program and ours on the same frames: first both are judged, then they take turns and
-//! each frame is timed.
+//! Times a program and our culler on the same frames: first both are judged, then they take turns
+//! and each frame is timed.
 //!
 //! Our culler is timed from outside, around its call. A program's time is what it reports as `ns`
 //! (*self-reported*), because a time measured from outside would include its pipes and its parser.
@@ -40,17 +40,17 @@ pub enum TimingError {
 /// One contestant's line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContestantTiming {
-    /// Who.
+    /// The program's name.
     pub name: String,
     /// How its answers were judged, on every frame.
     #[serde(flatten)]
     pub outcome: Outcome,
     /// Pairs reported, over all frames.
     pub reported: u64,
-    /// Who held the clock.
+    /// Which side measured the time.
     pub clock: &'static str,
     /// Median over all frames and rounds but the first frame of each, in nanoseconds; none for
-    /// answers without a time, and for any that are no pass.
+    /// answers without a time, and unless all of them passed.
     pub median_ns: Option<u64>,
 }
 

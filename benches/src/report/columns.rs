@@ -1,12 +1,13 @@
-//! The kinds of columns in a recorded table: names of rows, counts, measurements.
+//! The kinds of columns in a recorded table: row names, counts, measurements.
 
 use serde_json::Value;
 
 use super::table::Table;
 
 /// Whole numbers that name a row instead of being counted in it.
-const NAMING_NUMBERS: [&str; 16] = [
+const NAMING_NUMBERS: [&str; 17] = [
     "bodies",
+    "movers",
     "statics",
     "threads",
     "seed",

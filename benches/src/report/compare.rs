@@ -37,9 +37,9 @@ pub struct MeasuredChange {
     pub row: String,
     /// The column.
     pub column: String,
-    /// In the first record.
+    /// The value in the first record.
     pub first: f64,
-    /// In the second record.
+    /// The value in the second record.
     pub second: f64,
     /// Second over first.
     pub ratio: f64,

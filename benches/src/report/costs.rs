@@ -3,23 +3,28 @@
 
 use super::step::ExperimentStep;
 
-/// The same steps for each scene, which are named once.
+/// One run for all scenes, and one step for each of them.
 macro_rules! costs {
-    ($($scene:literal),+) => {
-        /// Nothing else runs.
-        pub(super) const QUIET: &[ExperimentStep] = &[$(ExperimentStep::SdopPrints(
-            concat!($scene, ".json"),
-            &["cost", concat!("data/scenes/", $scene, ".toml"), "--seeds", "15", "--format", "json"],
-        )),+];
+    ($first:literal, $($other:literal),+) => {
+        /// Nothing else runs. All scenes have the same prices.
+        pub(super) const QUIET: &[ExperimentStep] = &[ExperimentStep::Sdop(&[
+            "cost", concat!("data/scenes/", $first, ".toml"), "--seeds", "15",
+            $("--also", concat!("data/scenes/", $other, ".toml")),+
+        ])];
 
-        /// As many other processes as processors.
-        pub(super) const LOADED: &[ExperimentStep] = &[$(ExperimentStep::Script(
+        /// The same scenes with as many other processes as processors.
+        pub(super) const LOADED: &[ExperimentStep] = &[
+            costs!(loaded $first), $(costs!(loaded $other)),+
+        ];
+    };
+    (loaded $scene:literal) => {
+        ExperimentStep::Script(
             concat!($scene, ".json"),
             &[
                 ".ci/beside_load", "cargo", "run", "--release", "--quiet", "--",
                 "cost", concat!("data/scenes/", $scene, ".toml"), "--seeds", "15", "--format", "json",
             ],
-        )),+];
+        )
     };
 }
 

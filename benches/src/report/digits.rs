@@ -8,7 +8,7 @@ use crate::measure::estimate::Estimate;
 /// The pages on which each recorded number is, and its form there.
 #[derive(Debug, Default)]
 pub struct Quantities {
-    /// By the bits of the number: its texts, each with the pages that have it.
+    /// The texts of each number, which is stored as its bits, and the pages that have each text.
     shown: Mutex<BTreeMap<u64, BTreeMap<String, BTreeSet<String>>>>,
 }
 
@@ -81,7 +81,7 @@ impl std::fmt::Display for Quantity {
     }
 }
 
-/// So many digits that count, without an exponent.
+/// Writes a number with this many significant digits, without an exponent.
 pub(super) fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();
@@ -159,7 +159,7 @@ pub fn number(value: f64) -> String {
     format!("{value:.*}", places(value, 4.0))
 }
 
-/// Decimal places that show so many significant digits.
+/// The decimal places that show this many significant digits.
 fn places(value: f64, significant: f64) -> usize {
     (significant - 1.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize
 }

@@ -1,4 +1,4 @@
-//! Filling of paragraphs that templates give, since numbers and names have any length.
+//! Wraps the paragraphs of rendered templates, because their numbers and names have any length.
 
 /// Columns of a line of prose. `.ci/prose` checks the same width.
 const WIDTH: usize = 100;

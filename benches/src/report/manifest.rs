@@ -31,9 +31,9 @@ pub struct Manifest {
     pub command: String,
     /// Day of the measurement, `YYYY-MM-DD`, UTC.
     pub date: String,
-    /// The code that was measured; absent where no repository was at hand.
+    /// The code that was measured; absent if there was no repository.
     pub code: Option<CodeVersion>,
-    /// The machine; absent in records taken up from files that don't say.
+    /// The machine; absent in records that were made from files without it.
     pub machine: Option<Machine>,
     /// Data caches of one core, smallest first, as the system names them.
     #[serde(default)]
@@ -43,7 +43,7 @@ pub struct Manifest {
     /// Seconds that the measurement took.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-    /// What a reader should know besides, for example that the files are older than this manifest.
+    /// A note for readers, for example that the files are older than this manifest.
     #[serde(default)]
     pub note: Option<String>,
     /// Digests of the scenes and meshes that were read, by their paths.

@@ -1,25 +1,26 @@
 //! Pages whose numbers come from records.
 //!
-//! A page that is mostly tables is what a template below `paper/templates/pages/` gives:
-//! `pages/benches/README.md` gives `benches/README.md`. A page that people write carries whole
+//! A page that is mostly tables is rendered from a template below `paper/templates/pages/`:
+//! `pages/benches/README.md` becomes `benches/README.md`. A page that people write has rendered
 //! blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a separate line, from the
-//! template `paper/templates/NAME.md`. Templates are Jinja's; macros that they share are in one
-//! file, `q` in expressions. Paragraphs are filled ([`super::fill`]).
+//! template `paper/templates/NAME.md`. Templates are in Jinja's language. The macros that they
+//! share are in one file, and expressions call them as `q`. Paragraphs are wrapped
+//! ([`super::fill`]).
 //!
 //! | function or filter | gives |
 //! |---|---|
 //! | `csv("experiment/file.csv")` | rows, objects of cells; a column `a.b` is `row.a.b` |
-//! | `md("experiment/file.md", n)` | the same of the table that comes n-th in a Markdown file, from 0 |
+//! | `md("experiment/file.md", n)` | the same for the n-th table of a Markdown file, counted from 0 |
 //! | `json("experiment/file.json")`, `text(…)` | the value; the file as it is |
-//! | `is_recorded("experiment/file.csv")` | whether the file is there: a part of a page may wait for its record |
-//! | `record("experiment")`, `records(…)` | the manifest, with `id` and `place`; every machine's |
+//! | `is_recorded("experiment/file.csv")` | whether the file exists; a part of a page may be omitted until its record exists |
+//! | `record("experiment")`, `records(…)` | the manifest, with `id` and `place`; the manifests of all machines |
 //! | `rows \| where(column=value, …)`, `rows \| one(column=value, …)` | the rows with these cells; the only one, or an error |
 //! | `x \| fixed(2)`, `x \| sig(3)`, `n \| thousands`, `x \| percent(1)` | digits after the point; digits that count; 12,345; 12.3 |
 //! | `e \| interval(1e6)`, `x \| number`, `x \| signed(1)` | an estimate times 10⁶ as mean ± half-width; four digits that count; +1.2 |
 //! | `values \| in_order`, `x \| shortest` | an estimate from values in the order of time; the shortest text that reads back |
 //!
-//! `experiment` is that of the machine that `data/record/quoted.toml` names, `machine/experiment`
-//! that of any.
+//! `experiment` is the record of the machine that `data/record/quoted.toml` names,
+//! `machine/experiment` that of any machine.
 
 use std::collections::BTreeMap;
 use std::path::Path;

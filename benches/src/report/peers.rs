@@ -45,6 +45,8 @@ peers! {
             "a million boxes, the other engines within 4 s";
         "sorted-1m"    "--sizes 1000000 --scenes uniform --order sorted --threads 1 --peers sdop,parry3d refit,Embree",
             "a million boxes in sorted order";
+        "movers"       "movers",
+            "engines that are given what has changed, where few boxes move";
         "spreads-1m"   "--sizes 1000000 --scenes mixed,clustered --order random --threads 1 --peers sdop,parry3d refit,Embree",
             "a million of mixed radii and in clusters";
     }

@@ -1,4 +1,4 @@
-//! What an experiment is: its steps, each a program that runs.
+//! The steps of an experiment. Each step runs a program.
 
 /// One program that runs for an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

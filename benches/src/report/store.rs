@@ -1,6 +1,6 @@
 //! All records of the repository, each read and checked once.
 //!
-//! A path is `machine/experiment/file`, or `experiment/file`: then it is the machine's that
+//! A path is `machine/experiment/file` or `experiment/file`. The latter means the machine that
 //! `quoted.toml` names, so that every page quotes the same record of an experiment.
 
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ pub struct Store {
     manifests: Mutex<BTreeMap<String, Manifest>>,
 }
 
-/// A value that can't be had.
+/// A value that can't be read from the records.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum StoreError {
     /// The record is none, or was changed.

@@ -1,4 +1,4 @@
-//! Each sentence of the paper's sections 6 and 7 that claims something, with our numbers.
+//! The claims of the paper's sections 6 and 7, sentence by sentence, with our numbers.
 //!
 //! Frame rates are compared as ratios, seed by seed, for its 500 objects in the small and in the
 //! usual box and for both F.

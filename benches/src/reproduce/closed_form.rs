@@ -5,9 +5,9 @@
 //! > P(s) = (4/3)πs³ − (3/2)πs⁴ + (8/5)s⁵ − s⁶/6, s = 2r/L ≤ 1
 //!
 //! (the cube's distance distribution; Philip 2007). A body turns round when its sphere reaches a
-//! wall, so centres live in L = side − 2r; straight motion with elastic walls keeps them uniform
-//! there, and static bodies are placed so. N plays no part: a box that stays the same for all N has
-//! one sphere percentage.
+//! wall, so centres are in a cube with L = side − 2r. Straight motion with elastic walls keeps them
+//! uniform there, and static bodies are placed uniformly. N does not occur in the formula: a box
+//! that stays the same for all N has one sphere percentage.
 
 use std::f64::consts::PI;
 

@@ -6,7 +6,7 @@ use super::immediate::HandingTimes;
 use super::plan::{ExperimentPlan, PaperScene};
 use super::sensitivity::Interpretation;
 use super::survival::Survival;
-use crate::cost::calibrate::Calibration;
+use crate::cost::calibrate::CalibrationRound;
 use crate::cost::pass::{Observer, Pass, SceneFrames, VariantRun, pass};
 use crate::cost::table::{self, Cost};
 use crate::hash::PairsHash;
@@ -69,7 +69,7 @@ pub struct Results {
     pub variants: Vec<(PaperScene, Vec<Variant>)>,
     /// One an or-DOP and test.
     pub survival: Vec<Survival>,
-    /// What the paper doesn't state, swept; of none unless that was asked for.
+    /// Interpretations of what the paper doesn't state; empty unless requested.
     pub interpretations: Vec<Interpretation>,
     /// Hash of the calibrated scene's volumes.
     pub volumes_sha256: String,
@@ -121,7 +121,7 @@ pub(super) fn run_pass(
     variants: &[Variant],
     frames: u32,
     tier: Tier,
-    calibration: Option<&mut Calibration>,
+    calibration: Option<CalibrationRound>,
 ) -> Result<(Vec<StrategyRun>, Pass), SimulationError> {
     let mut hashing = VariantHashes {
         hashes: vec![PairsHash::default(); variants.len()],

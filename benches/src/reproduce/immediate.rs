@@ -3,8 +3,8 @@
 //!
 //! The culler's sequential strategy passes on blocks of 256 pairs. With 50 or 150 objects, one
 //! block is the whole list, so it cannot show whether testing at once beats listing first, as the
-//! paper claims. Here a pair loop in scalar code passes pairs on singly, sixteen at a time, or
-//! all at the end; nothing else differs.
+//! paper claims. Here a pair loop in scalar code passes pairs on one by one, sixteen at a time, or
+//! all at the end, and differs in nothing else.
 
 use super::plan::PaperScene;
 use crate::measure::turns::{Regime, Turns, median, next_turn};

@@ -1,5 +1,6 @@
-//! The paper's experiments: the same seeded trajectories culled by each of its strategies, for each
-//! of its numbers of objects, and what that says of its results and of our own reading of them.
+//! The paper's experiments. Each of its strategies culls the same seeded trajectories, for each of
+//! its numbers of objects. From these runs follow verdicts about the paper's results and about our
+//! reading of them.
 //!
 //! > [`ExperimentPlan`] → [`StrategyRun`]s → Table 1 ([`readings`]), frame rates ([`rates`]),
 //! > T ([`Results::costs`]), [`claims`], [`study`]

@@ -37,9 +37,9 @@ pub fn pairs() -> [f64; 4] {
     TABLE_1_BODIES.map(|n| (n * (n - 1) / 2) as f64)
 }
 
-/// A row taken as counts of one frame: is it one percentage in all columns? χ² on three degrees of
-/// freedom, its probability, and the pooled percentage. `tests` are the tests per frame in each
-/// column.
+/// Tests whether a row, taken as counts of one frame, has the same percentage in all columns: χ² on
+/// three degrees of freedom, its probability, and the pooled percentage. `tests` are the tests per
+/// frame in each column.
 #[must_use]
 pub fn constant_row(row: &[f64; 4], tests: &[f64; 4]) -> (f64, f64, f64) {
     let hits: Vec<f64> = row

@@ -1,4 +1,5 @@
-//! What is run: the paper's strategies and scenes, with how many seeds and frames.
+//! The plan of the experiments: the paper's strategies and scenes, and the numbers of seeds and
+//! frames.
 
 use std::path::{Path, PathBuf};
 

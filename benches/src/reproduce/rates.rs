@@ -1,8 +1,8 @@
-//! Frame rates (Figs 12 and 13): fps = 1/(F + t) with t the culling of a frame and F all else that
-//! a frame costs.
+//! Frame rates (Figs 12 and 13): fps = 1/(F + t), where t is the time of culling a frame and F the
+//! time of everything else in it.
 //!
-//! The paper's frames included rendering at an unknown price, so rates are shown for stated F:
-//! none, and a whole frame of 60 Hz, which hides all but the slowest culling.
+//! The paper's frames included rendering at an unknown price. Rates are therefore shown for two
+//! values of F: zero, and a whole frame of 60 Hz, which hides all but the slowest culling.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! Table 1: collisions detected over tests, under every plausible reading of "tests".
 //!
-//! The paper says "percentage of detected collision over total number of testing" and no more. A
+//! The paper only says "percentage of detected collision over total number of testing". A
 //! strategy's own test is the last one that it makes; an entry written to the list of sphere hits
 //! may have been counted as a test as well.
 

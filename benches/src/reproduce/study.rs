@@ -1,4 +1,4 @@
-//! Our own reading of Table 1, checked: what its rows can and cannot be.
+//! Checks our reading of Table 1: what its rows can and cannot be.
 
 use super::check::{ClaimCheck, PaperClaim};
 use super::closed_form::{inverse, probability, relative_reach};

@@ -1,4 +1,4 @@
-//! The share of the sphere hits that or-DOPs do not separate, by k and overlap test.
+//! The share of sphere hits that or-DOPs do not separate, by k and overlap test.
 
 use crate::measure::variant::Variant;
 use crate::scene::Scene;

@@ -1,6 +1,6 @@
-//! The experiments cut into units: a scene with one seed, a seed's survivors, a way to read what
-//! the paper leaves open. Joined in their order they are the results of one process: counts to the
-//! bit, times as they were measured.
+//! The experiments divided into units: a scene with one seed, the survivors of one seed, or one
+//! interpretation of what the paper leaves open. Joined in their order, they give the results of
+//! one process: the same counts to the bit, and the times as they were measured.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -27,8 +27,7 @@ pub const NAME: &str = "reproduce";
 /// The input that says what the compared scene's volumes are.
 const VOLUMES: &str = "volumes";
 
-/// What the experiments are asked for, and on what kind of machine: times of different ones don't
-/// go together.
+/// The requested experiments, and the kind of machine: times from different kinds can't be joined.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExperimentSettings {
@@ -48,7 +47,7 @@ pub struct Experiments {
     compared: SceneFile,
     prepared: Vec<PreparedScene>,
     inputs: BTreeMap<String, String>,
-    /// By scene, from its first unit in this process on.
+    /// The calibration of each scene, made with its first unit in this process.
     calibrations: Mutex<BTreeMap<PaperScene, Calibration>>,
 }
 
@@ -75,7 +74,7 @@ enum ReproduceUnit {
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum UnitResult {
-    /// Of a scene with one seed.
+    /// A scene with one seed.
     Scene {
         /// Which.
         name: PaperScene,
@@ -215,7 +214,7 @@ impl Experiments {
             None => Calibration::new(&file.build()?, variants, tier, effort)?,
         };
         let scene = with_seed(file, seed)?;
-        let (runs, pass) = run_pass(&scene, variants, frames, tier, Some(&mut calibration))?;
+        let (runs, pass) = run_pass(&scene, variants, frames, tier, Some(calibration.round()?))?;
         held.insert(*name, calibration);
         let immediacy = largest.then(|| immediate::measure(&scene, *name, tier));
         Ok(UnitResult::Scene {

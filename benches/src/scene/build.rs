@@ -1,4 +1,5 @@
-//! Building a scene from its file: groups are checked, shapes built, and bodies placed by the seed.
+//! Builds a scene from its file: checks the groups, builds the shapes, and places the bodies by the
+//! seed.
 
 use std::ops::Range;
 
@@ -159,7 +160,7 @@ impl SceneFile {
         Ok(())
     }
 
-    /// The box's side: given, or from the seeded bodies' radii and the wished density.
+    /// The box's side: as given, or from the seeded bodies' radii and the requested density.
     fn side(
         &self,
         groups: &[BodyGroup<'_>],
@@ -330,7 +331,7 @@ fn add_pose(pose: [f64; 7], bodies: &mut Bodies, fine: &mut FineTranslations) {
 /// What is known of radii once all shapes are made.
 #[derive(Default)]
 struct RadiusSums {
-    /// Of bodies that are spread uniformly.
+    /// The sums over bodies that are spread uniformly.
     uniform: PowerSums,
     /// The largest of each group.
     widest: Vec<f32>,

@@ -1,10 +1,10 @@
 //! The side of the box that gives a requested density.
 //!
-//! Spheres of radii r, uniform in a volume V, edges ignored: body i overlaps Σ_{j≠i} (4/3)π(rᵢ +
-//! rⱼ)³/V others in the mean. The mean over bodies is `partners`, so V =
+//! Let spheres of radii r be uniform in a volume V, and ignore its edges. Then body i overlaps
+//! Σ_{j≠i} (4/3)π(rᵢ + rⱼ)³/V others on average. The mean over bodies is `partners`, so V =
 //! (4/3)π/(N·partners)·Σ_{i≠j}(rᵢ + rⱼ)³, and by power sums Sₖ = Σ rᵢᵏ the double sum is 2N·S₃ +
-//! 6·S₁S₂ − 8·S₃. In a finite box fewer overlap near the walls, but centres keep r off them: the
-//! two nearly cancel.
+//! 6·S₁S₂ − 8·S₃. In a finite box, fewer overlap near the walls, but centres stay at least r away
+//! from the walls; these two effects nearly cancel.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! The errors of scenes: where, what, and how to mend it.
+//! The errors of scenes: where the mistake is, what it is, and how to fix it.
 
 use std::io::ErrorKind;
 use std::ops::Range;

@@ -155,7 +155,7 @@ impl SceneFile {
         Self::read_within(path, files::MAX_BYTES)
     }
 
-    /// The same for a file, and meshes, of at most so many bytes each.
+    /// The same for a file and meshes of at most `max_bytes` each.
     ///
     /// # Errors
     /// As [`SceneFile::read`], and a file with more bytes.

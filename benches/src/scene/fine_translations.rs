@@ -1,8 +1,8 @@
 //! [`FineTranslations`]: the translations of a scene that f32 can't represent.
 //!
-//! A scene's poses have f64 translations, its trajectories f32 ones. A body whose f32 translation
-//! is still that of the start has not moved, and its position is that of its pose, to the last bit.
-//! The position of any other body is its f32 translation.
+//! A scene's poses have f64 translations, its trajectories f32 ones. A body that still has its
+//! first f32 translation has not moved, and its position is the f64 translation of its pose, to the
+//! last bit. The position of any other body is its f32 translation.
 
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::{ContractError, check_pose};

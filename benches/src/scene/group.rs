@@ -113,7 +113,7 @@ impl BodyDraws {
 }
 
 impl SceneFile {
-    /// Checks each group's keys against each other, of a scene that so many ranks share.
+    /// Checks each group's keys against each other, for a scene that this many ranks share.
     pub(super) fn groups(&self, ranks: usize) -> Result<Vec<BodyGroup<'_>>, SceneError> {
         let mut groups = Vec::new();
         let mut total = 0_usize;

@@ -19,11 +19,11 @@ use sdop::volume::{Origin, Shape, ShapeSpec};
 #[derive(Default)]
 pub(super) struct ShapeLibrary {
     meshes: Vec<TriangleMesh>,
-    /// By path and scale.
+    /// Mesh files by path and scale.
     files: HashMap<(PathBuf, Option<[u64; 3]>), usize>,
     procedural: Vec<(ProceduralShape, Option<[u64; 3]>, usize)>,
     shapes: Vec<Shape>,
-    /// By mesh, origin and radius (its bits).
+    /// The shapes that were built, by mesh, origin and radius (its bits).
     built: HashMap<(usize, Origin, Option<u32>), u32>,
     seconds: f64,
 }

@@ -8,7 +8,7 @@ use sdop::bodies::Bodies;
 /// A run of a scene's bodies, by their numbers in the whole scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Share {
-    /// The numbers of the bodies at hand.
+    /// The numbers of the bodies that are held.
     pub held: Range<usize>,
     /// How many bodies the whole scene has.
     pub all: usize,
@@ -17,7 +17,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Of a scene that is at hand as a whole.
+    /// The share of a process that holds the whole scene.
     #[must_use]
     pub fn whole(bodies: &Bodies) -> Self {
         Self::of_rank(0, 1, bodies.len(), runs(&bodies.dynamic))
@@ -35,7 +35,7 @@ impl Share {
         }
     }
 
-    /// The part of a run of bodies that is at hand, counted from the run's first.
+    /// The part of a run of bodies that is held, counted from the run's first body.
     pub(super) fn within(&self, run: &Range<usize>) -> Range<usize> {
         let clamp = |number: usize| number.clamp(run.start, run.end) - run.start;
         clamp(self.held.start)..clamp(self.held.end)

@@ -138,11 +138,11 @@ pub struct Summary {
     pub counters: Counters,
     /// Sums over frames, with construction (shapes and culler) and effects.
     pub seconds: Seconds,
-    /// Of single frames' culling.
+    /// The time of culling a single frame.
     pub frame_seconds: Percentiles,
     /// Every effect, listed or not.
     pub effects: Vec<EffectReport>,
-    /// The pair finder at work: the one asked for, or what `auto` picked.
+    /// The pair finder in use: the requested one, or the one that `auto` picked.
     pub finder: Finder,
     /// The hash of all volumes.
     pub volumes_sha256: String,
@@ -196,7 +196,7 @@ impl<'a> Simulation<'a> {
         Self::with_threads(scene, tier, 1)
     }
 
-    /// The same culling on so many threads; nothing but seconds depends on their number.
+    /// The same culling on several threads; only seconds depend on their number.
     ///
     /// # Errors
     /// As [`Self::new`], and threads that the system refuses to start.

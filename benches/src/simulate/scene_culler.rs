@@ -1,4 +1,4 @@
-//! What culls a scene: a culler, or a world where f32 doesn't hold some translation.
+//! Culls a scene: by a culler, or by a world if f32 doesn't hold some translation.
 
 use std::time::Instant;
 

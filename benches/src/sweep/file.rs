@@ -6,8 +6,8 @@
 //! end 12.5 5f70bf18…                                seconds, and SHA-256 of all before
 //! ```
 //!
-//! The file appears when it is whole. One that lacks its end was damaged, and
-//! [`merge`](super::merge()) refuses it.
+//! The file appears when it is complete. A file without its last line was damaged, and
+//! [`merge`](super::merge()) rejects it.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -24,7 +24,7 @@ use sdop::files::{self, MAX_BYTES, WholeFile};
 /// Finished units, as a file has them.
 #[derive(Clone, Debug)]
 pub struct Units {
-    /// Of which work.
+    /// The work to which the file belongs.
     pub header: Header,
     /// Results by unit.
     pub done: BTreeMap<usize, String>,

@@ -24,13 +24,14 @@ pub struct Header {
     pub command: String,
     /// The version of the code, and a digest of its sources.
     pub code: String,
-    /// What the command was asked for.
+    /// The request: the command's arguments.
     pub settings: Map<String, Value>,
     /// Digests of what it reads, by name.
     pub inputs: BTreeMap<String, String>,
     /// How many units there are.
     pub units: usize,
-    /// The command as a reader types it, for pages. Other places for files make no other work.
+    /// The command as a reader types it, for pages. Other paths of files do not make it different
+    /// work.
     pub line: String,
     /// The part that this file is of, if it is one.
     pub shard: Option<Shard>,

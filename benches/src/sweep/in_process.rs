@@ -65,7 +65,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
-    /// Unit 5 fails, unit 7 panics when asked to, unit 3 is too late.
+    /// Unit 5 fails, unit 7 panics if requested, and unit 3 is too late.
     struct Squares {
         units: usize,
         timed: bool,

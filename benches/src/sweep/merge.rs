@@ -10,7 +10,7 @@ use super::{Header, Shard, Units};
 /// All units of a work.
 #[derive(Clone, Debug)]
 pub struct MergedUnits {
-    /// Of which work.
+    /// The work to which the units belong.
     pub header: Header,
     /// Results by unit.
     pub done: BTreeMap<usize, String>,
@@ -31,13 +31,13 @@ pub enum MergeError {
         /// The file.
         path: PathBuf,
     },
-    /// Of different works.
+    /// Shards belong to different works.
     #[error("{} and {} are shards of different runs: {difference}", first.display(), other.display())]
     #[diagnostic(help(
         "`here` is the first file; run one of them again with the other's code, settings and scenes"
     ))]
     Different {
-        /// The file that others are held against.
+        /// The file that others are compared with.
         first: PathBuf,
         /// Another.
         other: PathBuf,

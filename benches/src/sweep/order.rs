@@ -11,7 +11,7 @@ pub struct OrderedResults<'a> {
 }
 
 impl<'a> OrderedResults<'a> {
-    /// For these units, in this order.
+    /// Passes on the results of these units, in this order.
     pub fn new(
         units: Vec<usize>,
         take: &'a mut dyn FnMut(usize, &str) -> miette::Result<()>,

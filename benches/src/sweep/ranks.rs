@@ -88,7 +88,7 @@ fn turn(machines: &[Vec<u8>], rank: usize) -> usize {
     before.filter(|other| **other == machines[rank]).count()
 }
 
-/// On rank 0, which has the headers of all ranks, that they are of one work.
+/// Checks on rank 0, which has the headers of all ranks, that they belong to the same work.
 fn same_work(header: &Header, headers: &[Vec<u8>], rank: usize) -> miette::Result<()> {
     for (other, text) in headers.iter().enumerate().filter(|_| rank == 0) {
         let other_header: Header = serde_json::from_slice(text).into_diagnostic()?;

@@ -1,4 +1,4 @@
-//! Parts of the units, for schedulers that start processes which know nothing of each other.
+//! Shards: parts of the units, for schedulers that start independent processes.
 
 use std::fmt;
 use std::str::FromStr;
@@ -26,7 +26,7 @@ pub enum ShardError {
 }
 
 impl Shard {
-    /// This part of so many units.
+    /// The units of this part, among `units` in total.
     #[must_use]
     pub fn units(self, all: usize) -> Vec<usize> {
         (self.index - 1..all).step_by(self.of).collect()

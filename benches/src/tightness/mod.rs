@@ -1,4 +1,4 @@
-//! The size of every volume compared with that of the convex hull, the smallest that is possible.
+//! The size of every volume compared with that of the convex hull, the smallest convex volume.
 
 mod polytope;
 

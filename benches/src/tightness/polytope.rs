@@ -1,9 +1,9 @@
 //! The sizes of volumes, for tables of volume over hull volume.
 //!
-//! In the coordinates u_j = column_j·x a k-DOP is lo ≤ c·u ≤ hi with integer normals c, and
-//! ‖column‖³ times as large. Its volume is the sum over its faces of area·distance/3 from any one
-//! point (divergence theorem); a face is a large square in the face's plane, clipped by all other
-//! half-spaces. A half-space that touches nowhere leaves no polygon.
+//! In the coordinates u_j = column_j·x, a k-DOP is lo ≤ c·u ≤ hi with integer normals c, and its
+//! volume is ‖column‖³ times as large. Its volume is the sum over its faces of area·distance/3 from
+//! any one point (divergence theorem); a face is a large square in the face's plane, clipped by all
+//! other half-spaces. A half-space that touches nowhere leaves no polygon.
 
 use glam::DVec3;
 use rand_chacha::{

@@ -78,7 +78,7 @@ impl Tally {
         })
     }
 
-    /// The same without a truth: none of the reported pairs counts as found.
+    /// The same without a truth: no reported pair counts as true.
     ///
     /// # Errors
     /// The settings can't be carried out.

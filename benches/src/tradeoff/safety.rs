@@ -1,5 +1,5 @@
-//! The price of safety, in time and extra pairs: with and without margins, f32 and f64, in each
-//! tier.
+//! The price of safety, in time and in extra pairs: culling with and without margins, in f32 and in
+//! f64, in each tier.
 //!
 //! Margins are in the volumes, not in the tests. "No margins" is therefore the same culler on
 //! volumes that are shrunk by the margins it will add, so that it tests the true ones to within a

@@ -1,8 +1,8 @@
 //! Time: the formula's prices for each variant, and its seconds per frame, measured in turns with
 //! all others.
 //!
-//! Each sample frame with the frames after it is a turn. Turns of the judged scene take turns with
-//! those of its calibration ([`pass`](crate::cost::pass)): the same protocol as everywhere.
+//! A turn is a sample frame with the frames after it. Turns of the judged scene alternate with
+//! those of its calibration ([`pass`](crate::cost::pass)), by the same protocol as everywhere.
 
 use super::truth::windows;
 use crate::cost::pass::{Frames, Pass, pass};

@@ -287,9 +287,9 @@ impl ExactJudge {
 /// Cp: seconds of the exact narrow phase per pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct NarrowPhase {
-    /// Of a pair that doesn't meet, which culling saves.
+    /// The price of a pair that doesn't meet, which culling saves.
     pub miss: f64,
-    /// Of a pair that meets.
+    /// The price of a pair that meets.
     pub hit: f64,
 }
 

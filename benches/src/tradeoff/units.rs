@@ -1,7 +1,7 @@
-//! A comparison divided into units: counts, which depend only on the scene and can be made on any
-//! machine, and times, which need a machine without other load. Joined in their order they are the
-//! results of one process: the same counts to the bit, and the times of the machine that measured
-//! them.
+//! A comparison divided into units: counts, which depend only on the scene and can be taken on any
+//! machine, and times, which need a machine without other load. Joined in their order, they give
+//! the results of one process: the same counts to the bit, and the times of the machine that
+//! measured them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -24,6 +24,7 @@ use super::{Estimate, TradeoffError};
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::{Pass, pass};
 use crate::measure::machine::Machine;
+use crate::measure::turns::FEWEST_TIMED_FRAMES;
 use crate::scene::{Scene, SceneFile};
 use crate::sweep::{Header, Sweep, digest};
 use sdop::simd::Tier;
@@ -170,6 +171,8 @@ impl Comparison {
     /// # Errors
     /// The scene can't be built, run or culled.
     pub fn new(file: &SceneFile, plan: &TradeoffPlan) -> Result<Self, TradeoffError> {
+        let mut file = file.clone();
+        file.spec.frames = file.spec.frames.max(FEWEST_TIMED_FRAMES);
         let scene = Scene {
             construct_seconds: 0.0,
             ..file.build()?
@@ -182,10 +185,10 @@ impl Comparison {
             .chain(shapes::builtin()?)
             .collect();
         Ok(Self {
-            file: file.clone(),
             plan: plan.clone(),
             variants: variant::all(&scene, hits.round() as u64),
-            units: units(&seeds(file, plan), shapes.len()),
+            units: units(&seeds(&file, plan), shapes.len()),
+            file,
             scene,
             hits,
             shapes,
@@ -317,7 +320,7 @@ impl Comparison {
         };
         let scene = with_seed(&self.file, seed)?;
         let mut frames = Windows::new(&scene, self.plan.samples)?;
-        let own = Some(&mut calibration);
+        let own = Some(calibration.round()?);
         let pass = pass(&scene, &self.variants, tier, &mut frames, own, &mut ())?;
         *held = Some(calibration);
         Ok(pass)

@@ -1,5 +1,5 @@
-//! Verification of the optimised culler by the exact reference ([`sdop_judge::ours`]), on scenes,
-//! and divided among processes.
+//! Verifies the optimised culler by the exact reference ([`sdop_judge::ours`]) on scenes, and
+//! divides the work among processes.
 //!
 //! If a pair is missed, [`shrink`] makes the smallest scene that shows it.
 

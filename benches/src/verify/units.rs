@@ -1,6 +1,6 @@
 //! A verification run divided into units: a group of hard cases for one or-DOP, a seed's rounds for
-//! one or-DOP, or a block of a scene's frames. Ledgers are passed as text without the failed
-//! frames: a unit with failures can be repeated.
+//! one or-DOP, or a block of a scene's frames. Ledgers are passed as text, without the failed
+//! frames, because a unit with failures can be repeated.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -14,13 +14,14 @@ use crate::scene::Scene;
 use crate::sweep::{Header, Sweep, digest};
 use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
 use sdop::simd::Tier;
-use sdop_judge::every_way::rounds::{SeedSource, boxes, group, round};
+use sdop_judge::every_way::rounds::{SeedSource, boxes, group, histories, round};
 use sdop_judge::every_way::{Ledger, LedgerKey};
 use sdop_judge::ours::answers::Predicate;
 use sdop_judge::ours::boxes::BoxCell;
 use sdop_judge::ours::compare::ListCount;
 use sdop_judge::ours::configurations::{Rotation, variants};
 use sdop_judge::ours::hard::{FILES, HardCaseGroup};
+use sdop_judge::ours::histories::HistoryCell;
 use sdop_judge::ours::matrix::Cell;
 
 /// The name in its files.
@@ -54,6 +55,7 @@ pub struct Verification {
     cells: Vec<Cell>,
     places: BTreeMap<Cell, usize>,
     box_cells: Vec<BoxCell>,
+    history_cells: Vec<HistoryCell>,
     /// No round starts after this time.
     deadline: Option<Instant>,
 }
@@ -79,6 +81,8 @@ pub enum UnitOrigin {
     Random,
     /// Given boxes.
     Boxes,
+    /// Long-lived worlds.
+    Histories,
     /// A scene, by its number.
     Scene(usize),
 }
@@ -119,6 +123,7 @@ impl Verification {
             variants: variants().collect(),
             places: cells.iter().copied().zip(0..).collect(),
             box_cells: BoxCell::all(&rotation).map(|(cell, _)| cell).collect(),
+            history_cells: HistoryCell::all(&rotation),
             cells,
             rotation,
             settings,
@@ -188,12 +193,15 @@ impl Verification {
             }
             VerifyUnit::Rounds(seed, variant) => {
                 let judge = |source| round(source, seed, variant, rotation).into_diagnostic();
-                let draw = self.variants.iter().position(|&known| known == variant);
-                let draw = draw.map_or(0, |at| seed.wrapping_mul(64).wrapping_add(at as u64));
+                let number = self.variants.iter().position(|&known| known == variant);
+                let number = number.unwrap_or(0);
+                let draw = seed.wrapping_mul(64).wrapping_add(number as u64);
+                let lived = histories(seed, number, variant, rotation).into_diagnostic()?;
                 Ok(vec![
                     (UnitOrigin::Near, judge(SeedSource::Near)?),
                     (UnitOrigin::Random, judge(SeedSource::Random)?),
                     (UnitOrigin::Boxes, boxes(draw, rotation).into_diagnostic()?),
+                    (UnitOrigin::Histories, lived),
                 ])
             }
             VerifyUnit::Frames(n, number) => {
@@ -217,7 +225,12 @@ impl Verification {
         let texts: Vec<LedgerText> = serde_json::from_str(result).into_diagnostic()?;
         let origins = match self.unit(unit) {
             VerifyUnit::Hard(..) => vec![UnitOrigin::Hard, UnitOrigin::Boxes],
-            VerifyUnit::Rounds(..) => vec![UnitOrigin::Near, UnitOrigin::Random, UnitOrigin::Boxes],
+            VerifyUnit::Rounds(..) => vec![
+                UnitOrigin::Near,
+                UnitOrigin::Random,
+                UnitOrigin::Boxes,
+                UnitOrigin::Histories,
+            ],
             VerifyUnit::Frames(n, _) => vec![UnitOrigin::Scene(n)],
         };
         let wrong = || miette!("the result of unit {unit} was not written by `sdop verify`");
@@ -247,7 +260,18 @@ impl Verification {
                 .filter_map(|(place, cell)| Some((place, *ledger.boxes.cells.get(cell)?)))
                 .collect(),
             box_pairs: ledger.boxes.required,
-            failures: ledger.failures.len() + usize::from(ledger.boxes.failure.is_some()),
+            histories: (self.history_cells.iter().enumerate())
+                .filter_map(|(place, cell)| Some((place, *ledger.histories.cells.get(cell)?)))
+                .collect(),
+            history_pairs: [
+                ledger.histories.lists,
+                ledger.histories.required,
+                ledger.histories.missed,
+                ledger.histories.differ,
+            ],
+            failures: ledger.failures.len()
+                + usize::from(ledger.boxes.failure.is_some())
+                + usize::from(ledger.histories.failure.is_some()),
         }
     }
 
@@ -277,6 +301,17 @@ impl Verification {
                 .insert(*self.box_cells.get(place)?, judged);
         }
         ledger.boxes.required = text.box_pairs;
+        let histories = &mut ledger.histories;
+        for (place, lists) in text.histories {
+            let cell = *self.history_cells.get(place)?;
+            histories.cells.insert(cell, lists);
+        }
+        [
+            histories.lists,
+            histories.required,
+            histories.missed,
+            histories.differ,
+        ] = text.history_pairs;
         Some(ledger)
     }
 }
@@ -294,6 +329,10 @@ struct LedgerText {
     boxes: Vec<(usize, [u64; 2])>,
     /// Pairs of given boxes that meet.
     box_pairs: u64,
+    /// Lists of long-lived worlds, by the index of their cell.
+    histories: Vec<(usize, u64)>,
+    /// Their lists, and pairs that had to be reported, were missed, or differ.
+    history_pairs: [u64; 4],
     /// Number of failures, which only the process that ran the unit has in full.
     failures: usize,
 }

@@ -1,11 +1,11 @@
-//! A run as a page: one HTML file that shows it without network, `sdop view`.
+//! `sdop view`: a run as one HTML file, which works without a network.
 //!
 //! > record, scene or hard case → [`ShownRun`] → pairs with their flags ([`pairs`]), meshes to
 //! > draw ([`detail`]), T ([`terms`]) → [`Page`]
 //!
-//! The page is `web/dist/page.html`, made from the TypeScript in `web/` and committed, with a run's
-//! data at its mark: a JSON header and blocks of little-endian numbers in base64 ([`page`]). Poses
-//! are the record's f32 to the bit.
+//! The page is `web/dist/page.html`, which is made from the TypeScript in `web/` and committed. A
+//! run's data is inserted at a mark in it: a JSON header and blocks of little-endian numbers in
+//! base64 ([`page`]). Poses are the record's f32 to the bit.
 
 mod detail;
 mod header;

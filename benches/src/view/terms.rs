@@ -66,7 +66,7 @@ pub fn prices(
         construct_seconds: 0.0,
     };
     let mut calibration = Calibration::new(&scene, &[variant], tier, EFFORT)?;
-    let [warm, _cold] = calibration.round()?;
+    let [warm, _cold] = calibration.round()?.prices;
     Ok(warm.into_iter().next())
 }
 

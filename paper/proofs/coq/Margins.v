@@ -164,7 +164,7 @@ Proof.
   assert (Small : tiny64 <= / 1000000000000000000 * (norm d * margin)).
   { apply Rle_trans with (/ 1000000000000000000 * (/ IZR (2 ^ 200) * / IZR (2 ^ 150))).
     - unfold tiny64. rewrite <- !Rinv_mult, <- !mult_IZR.
-      apply Rinv_le_contravar; [now apply IZR_lt | now apply IZR_le].
+      apply Rinv_le_contravar; [apply IZR_lt | apply IZR_le]; vm_compute; easy.
     - apply Rmult_le_compat_l; [lra |]. apply Rmult_le_compat; lra. }
   assert (Pl : 0 <= length).
   { apply Rle_trans with (2 := L0). apply Rmult_le_pos; lra. }

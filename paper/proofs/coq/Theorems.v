@@ -2,8 +2,8 @@
    for all of them, since each takes Coq a second. *)
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
   Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody
-  SameOrDop OrDopRun Cubes CubeLists Binning Above Reach Rows Swept Query Examples
-  ExamplesOrDop.
+  SameOrDop OrDopRun Cubes CubeLists Binning Above Reach Rows Swept Query InBody QueryBody
+  QuerySupport QueryPair QueryLine Kept Parts Examples ExamplesOrDop.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -60,7 +60,20 @@ Definition theorems := (
   Refit.refit_contains,
   Query.crossing_contains,
   Query.beyond_is_certain,
+  InBody.into_body_near,
+  QueryBody.balls_are_touched,
+  QueryBody.boxes_are_touched,
+  QuerySupport.support_covers,
+  QueryPair.support_bounds_mesh,
+  QueryPair.pairs_are_touched,
+  QueryLine.lines_are_crossed,
   Swept.swept_contains,
+  Kept.kept_verdicts,
+  Kept.changes_noted_once,
+  Kept.bound_exceeds_sides,
+  Kept.partner_in_near_cells,
+  Parts.product_turns,
+  Parts.part_near,
   Examples.spheres_are_rejected,
   Examples.spheres_are_reported,
   ExamplesOrDop.ordops_are_rejected,

@@ -246,8 +246,22 @@ def margin_classes(wrong):
     return given, all_of(less(a, up(a)), less(up(a), up(b)))
 
 
+def size_numbers(wrong):
+    """levels.rs: size_number, size_of_number. A size is no greater than that of its number. Numbers
+    are of biased exponents here; positive floats are ordered as their bits."""
+    size = word("size", 64)
+    exponent, fraction = size >> 52, size & ((1 << 52) - 1)
+    one = lambda condition: Word(TM.mk_term(Kind.ITE, [condition, number(1, 64).term,
+                                                       number(0, 64).term]), 64)
+    numbered = exponent + exponent + one(fraction > 0)
+    if not wrong:
+        numbered = numbered + one(fraction > 1 << 51)
+    given = [number(1, 64) <= exponent, exponent <= 2045]
+    return given, size <= ((numbered >> 1) << 52) | ((numbered & 1) << 51)
+
+
 CLAIMS = [number_of_cell, clamped_cells, wrapped_table, wrapped_runs, box_runs, codes, page,
-          page_of_a_block, spare_entries, own_cell, margin_classes]
+          page_of_a_block, spare_entries, own_cell, margin_classes, size_numbers]
 
 
 def decide(claim, wrong):
@@ -272,7 +286,7 @@ def main():
             print(f"{claim.__name__}: {found[0]}, its control {found[1]}")
             fine = False
     if fine:
-        print(f"{len(CLAIMS)} claims on slots and runs: proved, their controls refuted, "
+        print(f"{len(CLAIMS)} claims on slots, runs and sizes: proved, their controls refuted, "
               f"{time.time() - start:.1f} s")
     return 0 if fine else 1
 

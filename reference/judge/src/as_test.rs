@@ -1,5 +1,5 @@
-//! A counter-example as a unit test for the suite of the culler that misses the pair. It names one
-//! function that its user supplies, `your_culler`, and needs nothing else.
+//! A counter-example as a unit test for the suite of the culler that misses the pair. The test
+//! calls one function that the user supplies, `your_culler`, and needs nothing else.
 
 use std::fmt::Write as _;
 

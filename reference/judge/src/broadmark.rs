@@ -1,8 +1,8 @@
-//! Broadmark's recordings, `.aabbs`: boxes frame by frame, for the claim about given boxes.
+//! Reads Broadmark's recordings, `.aabbs`: boxes frame by frame, for the claim about given boxes.
 //!
-//! Numbers are little endian. A head of 304 bytes has two names in 128 bytes each, i32 bodies, i32
-//! frames, two i32 of zero, and the world's box in 2 × 4 f32. Then follow, 1 + frames times, the
-//! bodies' boxes in 2 × 4 f32 each. The fourth f32 has no meaning.
+//! Numbers are little endian. The head has 304 bytes: two names in 128 bytes each, the numbers of
+//! bodies and of frames as i32, two i32 of zero, and the world's box in 2 × 4 f32. Then the bodies'
+//! boxes follow 1 + frames times, each in 2 × 4 f32. The fourth f32 has no meaning.
 
 use super::case::{Case, Frame};
 use super::catalogue::{CatalogueError, of_boxes};

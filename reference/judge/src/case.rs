@@ -17,7 +17,7 @@ pub struct Frame {
     /// If the set of bodies differs from the frame before: each body's former number, `None` for a
     /// new body.
     pub was: Option<Vec<Option<u32>>>,
-    /// Which pairs are not asked for, for the claim `filter`.
+    /// Which pairs must not be reported, for the claim `filter`.
     pub filter: Option<Filter>,
     /// How far each body reaches beyond its box, for the claim `margin`.
     pub margins: Option<Vec<f32>>,
@@ -114,9 +114,9 @@ pub struct Case {
     pub name: String,
     /// The bug it looks for.
     pub flag: String,
-    /// Where it comes from.
+    /// The source of the case.
     pub source: String,
-    /// What it is judged by.
+    /// The claim by which it is judged.
     pub claim: Claim,
     /// All claims that it is about.
     pub claims: Vec<Claim>,

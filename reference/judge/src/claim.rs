@@ -1,4 +1,4 @@
-//! Claims: the pairs that a culler never misses.
+//! Claims: which pairs a culler says that it never misses.
 
 use sdop::choice::choices;
 
@@ -16,7 +16,8 @@ choices! {
         Hull = "hull",
         /// The meshes share a point, or a part of one lies inside of a closed part of the other.
         Mesh = "mesh",
-        /// As `aabb`, without the pairs that the frame's filter parts: none of those is reported.
+        /// As `aabb`, without the pairs that the frame's filter excludes, which must not be
+        /// reported.
         Filter = "filter",
         /// As `aabb`, and the same pairs in whatever order the bodies come.
         Order = "order",
@@ -28,7 +29,7 @@ choices! {
 }
 
 impl Claim {
-    /// The claims about one volume each, with nothing asked on top.
+    /// The claims about a single volume, without additional input.
     pub const PLAIN: &'static [Self] = &[
         Self::Sphere,
         Self::Aabb,

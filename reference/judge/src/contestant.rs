@@ -1,14 +1,14 @@
-//! A culler under measurement or judgement, ours or anyone's: bodies in, pairs out.
+//! A culler that is measured or judged, ours or anyone's: bodies in, pairs out.
 
 use sdop::bodies::Bodies;
 
 /// A box on the world axes: the lower corner x, y, z, then the upper one.
 pub type WorldBox = [f32; 6];
 
-/// Which pairs of a frame are not asked for, and must not be reported.
+/// Which pairs of a frame must not be reported.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Filter {
-    /// Of each body: the groups that it is in, and those that it meets, a bit each.
+    /// For each body, the groups that it is in, and those that it meets, one bit per group.
     pub groups: Vec<[u32; 2]>,
     /// Pairs i < j, sorted.
     pub excluded: Vec<[u32; 2]>,
@@ -63,7 +63,8 @@ pub trait Contestant<Frame: ?Sized = Bodies> {
         false
     }
 
-    /// Keeps its state after the last frame, in place of one kept before. False when it can't.
+    /// Saves its state after the last frame, and drops a state that was saved before. Returns false
+    /// if it can't.
     fn save(&mut self) -> bool {
         false
     }

@@ -1,9 +1,9 @@
 //! Judges any culler, in any language, by the exact reference.
 //!
-//! A culler states a [`Claim`]: what it never misses. The [`catalogue`] has the cases for it; a
-//! [`subject`] answers them, be it a Rust type ([`judge`]) or a program ([`process`], over a
-//! [`wire`]); a case's answers are compared with the exact [`truth`], and a missed pair becomes the
-//! smallest scene that shows it ([`shrink`]), with a certificate ([`witness`]).
+//! A culler states a [`Claim`]: which pairs it never misses. The [`catalogue`] has the cases for
+//! that claim. A [`subject`] answers them: a Rust type ([`judge`]) or a program ([`process`], over
+//! a [`wire`]). The answers are compared with the exact [`truth`], and a missed pair is reduced to
+//! the smallest scene that shows it ([`shrink`]), with a certificate ([`witness`]).
 //!
 //! ```
 //! use sdop::bodies::Bodies;

@@ -21,7 +21,7 @@ pub struct Program {
     pub command: String,
     /// How cases are written for it.
     pub wire: Wire,
-    /// What it has for a case, on top of a second for each megabyte of it.
+    /// The time for a case, in addition to a second per megabyte of it.
     pub timeout: Duration,
 }
 
@@ -44,7 +44,7 @@ impl Program {
         RunningProgram::start(&self.command).map_err(start)
     }
 
-    /// What it has for a case of so many bytes.
+    /// The time that a program has for a case of this many bytes.
     fn time(&self, bytes: usize) -> Duration {
         self.timeout + Duration::from_micros(bytes as u64)
     }
@@ -61,7 +61,7 @@ impl Subject for Program {
 }
 
 /// A program whose processes outlive a case: the next header follows on the last frame. As many run
-/// as cases are judged at once. One that fails, or has not answered what it was asked, is ended and
+/// as cases are judged at once. A process that fails, or has not answered every frame, is ended and
 /// replaced, so that a case's end is never taken for the next one's beginning.
 pub struct Service {
     program: Program,

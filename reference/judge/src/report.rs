@@ -21,7 +21,7 @@ pub type NamedFile = (String, Vec<u8>);
 /// its meshes).
 ///
 /// # Errors
-/// A mesh that can't be written: none that was read.
+/// A mesh can't be written. This does not happen for meshes that were read.
 pub fn counter_example(smallest: &SmallestCase) -> std::io::Result<Vec<NamedFile>> {
     let mut files = vec![case_file(smallest)?];
     if let Some(axes) = axes_of_scene(&smallest.case) {

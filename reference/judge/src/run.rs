@@ -57,7 +57,7 @@ pub struct Options {
     pub claim: Claim,
     /// Which cases, by name.
     pub pattern: String,
-    /// Fresh cases of this seed on top of the published ones.
+    /// Fresh cases of this seed, in addition to the published ones.
     pub seed: Option<u64>,
     /// No case starts after this time.
     pub time: Option<Duration>,

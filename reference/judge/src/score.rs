@@ -15,11 +15,11 @@ use crate::ours::reference_shapes::InvalidInput;
 pub struct Count {
     /// Pairs judged, over all frames.
     pub judged: u64,
-    /// Pairs of which the claim holds.
+    /// Pairs for which the claim holds.
     pub required: u64,
-    /// Of those, not reported: the claim is broken.
+    /// Required pairs that were not reported: the claim is broken.
     pub missed: u64,
-    /// Reported although the claim doesn't hold, in all.
+    /// The number of all reported pairs for which the claim doesn't hold.
     pub extra: u64,
     /// Of those: it would hold if the bodies were nearer by 2⁻¹⁸ of their size and distance. The
     /// price of rounding.

@@ -81,7 +81,7 @@ pub struct GroupVerdict {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
-    /// All that was asked for was judged, and nothing speaks against the claim.
+    /// All requested cases were judged, and nothing speaks against the claim.
     Pass,
     /// Nothing speaks against the claim, but some cases were skipped or not run.
     Incomplete,
@@ -108,7 +108,7 @@ pub struct Verdict {
     pub seed: Option<u64>,
     /// Every case that was run.
     pub cases: Vec<CaseVerdict>,
-    /// Cases that time or an earlier failure left no room for.
+    /// The number of cases that were not run, because time was up or an earlier case failed.
     pub not_run: usize,
     /// Known failures that pass: the list is stale.
     pub stale: Vec<String>,
@@ -137,7 +137,7 @@ impl Verdict {
         }
     }
 
-    /// Whether all that was asked for was judged and nothing speaks against the claim: some cases
+    /// Whether all requested cases were judged and nothing speaks against the claim: some cases
     /// passed, and all others are known to fail.
     #[must_use]
     pub fn passed(&self) -> bool {
@@ -177,7 +177,7 @@ impl Verdict {
         }
     }
 
-    /// Cases that were asked for.
+    /// The number of requested cases.
     #[must_use]
     pub fn asked(&self) -> usize {
         self.cases.len() + self.not_run

@@ -1,4 +1,4 @@
-//! What shows a person that a pair really meets: a common point as exact fractions, and how deep
+//! Evidence for a person that a pair really meets: a common point as exact fractions, and how deep
 //! the bodies are in one another.
 
 use serde::Serialize;

@@ -1,7 +1,8 @@
-//! Triangles whose planes do not tell: coplanar ones, segments, points. Integers only.
+//! Triangles that their planes cannot decide: coplanar ones, segments and points. All numbers are
+//! integers.
 //!
 //! Two such convex sets meet iff an edge of one pierces the other's interior, or two edges share a
-//! point, or one contains the other in its plane, which any one corner shows.
+//! point, or one contains the other in its plane; for the last, testing a single corner is enough.
 
 use std::cmp::Ordering;
 

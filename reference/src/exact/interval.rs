@@ -1,8 +1,8 @@
 //! Intervals of f64 with outward rounding: the middle of the cascade.
 //!
-//! Each bound is one rounded operation moved to the next float outward, so the true result lies
-//! between them whatever the rounding, underflow or overflow did. Where a bound would be NaN the
-//! interval is the whole line, which has no sign.
+//! Each bound is the result of one rounded operation, moved outward to the next float, so the true
+//! result lies between the bounds whatever rounding, underflow or overflow did. Where a bound would
+//! be NaN the interval is the whole line, which has no sign.
 
 use std::cmp::Ordering;
 

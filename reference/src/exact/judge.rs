@@ -1,4 +1,4 @@
-//! Whole scenes, exactly: each strategy's pairs, and the pairs whose meshes intersect.
+//! Judges whole scenes exactly: the pairs of each strategy, and the pairs whose meshes intersect.
 
 use std::cell::{Cell, OnceCell};
 

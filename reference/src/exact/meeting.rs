@@ -1,9 +1,9 @@
-//! Do two posed meshes intersect? The design's definition, exactly: their surfaces meet, or a
-//! component of one lies inside a closed component of the other.
+//! Decides exactly whether two posed meshes intersect: whether their surfaces meet, or a component
+//! of one lies inside a closed component of the other.
 //!
-//! Two trees are descended together in A's frame; a pair of boxes is dropped when one of six face
-//! normals separates it in f64 by more than the rounding. When no triangles meet, every component
-//! is wholly inside or wholly outside of each closed one, so one vertex decides
+//! Both meshes' trees are descended together in A's frame. A pair of boxes is skipped if one of six
+//! face normals separates it in f64 by more than the rounding error. If no triangles meet, every
+//! component is entirely inside or entirely outside of each closed component, so one vertex decides
 //! ([`super::parity`]).
 
 use super::parity::inside_closed;
@@ -13,7 +13,7 @@ use super::{Path, Record, Tally};
 use crate::linear::{Vector, apply, largest, sub, transpose};
 use crate::shape::Body;
 
-/// Whether two meshes intersect, and what it took.
+/// Whether two meshes intersect, and which stages decided it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Meeting {
     /// The answer, true in exact arithmetic.

@@ -1,8 +1,8 @@
 //! A mesh prepared for exact judgement: its tree, its components and which of them are closed.
 //!
-//! A component is what shared vertex indices join. It is closed when each edge of its faces is
-//! shared by exactly two of them; triangles that name a vertex twice are surface, but no faces.
-//! Only closed components have an inside.
+//! A component is a set of triangles that shared vertex indices join. It is closed if each edge of
+//! its faces is shared by exactly two of them. Triangles that name a vertex twice belong to the
+//! surface but do not count as faces. Only closed components have an inside.
 
 use dashu_int::IBig;
 

@@ -8,8 +8,8 @@
 //! 2. **interval**: the generic formula in outward-rounded intervals,
 //! 3. **exact**: the same generic formula in big integers.
 //!
-//! [`Path`] says which stage it was. A stage that cannot tell stays silent, so overflow, underflow
-//! and NaN fall through.
+//! [`Path`] says which stage decided. A stage that is not certain returns nothing, so after an
+//! overflow, an underflow or a NaN the next stage decides.
 
 pub mod axes;
 pub mod common;
@@ -159,7 +159,7 @@ pub(crate) fn either(p: Option<bool>, q: impl FnOnce() -> Option<bool>) -> Optio
     }
 }
 
-/// Whether any is true, as far as it is known; the rest is not asked once one is.
+/// Whether any is true, as far as it is known. The rest is not evaluated after one that is true.
 pub(crate) fn any(answers: impl IntoIterator<Item = Option<bool>>) -> Option<bool> {
     let mut found = Some(false);
     for answer in answers {

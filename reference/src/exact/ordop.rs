@@ -1,11 +1,11 @@
 //! or-DOP against or-DOP, exactly, with a certificate either way: a common point or a separating
 //! axis.
 //!
-//! Both are convex polytopes given by slabs, so "all axes fail to separate" is "they have a common
-//! point": the full test, the oriented boxes' 15 axes included. A linear program in f64 guesses the
-//! point or the axis ([`super::simplex`]), and the cascade only has to verify it: the point against
-//! the slabs, the axis against the corners. When neither f64 with an error bound nor intervals can,
-//! the program is solved again in integers from where f64 ended.
+//! Both are convex polytopes given by slabs, so they have a common point iff no axis separates
+//! them. This is the full test, which includes the 15 axes of oriented boxes. A linear program in
+//! f64 guesses the point or the axis ([`super::simplex`]), and the cascade only has to verify it:
+//! the point against the slabs, the axis against the corners. If neither f64 with an error bound
+//! nor intervals can verify it, the program is solved again in integers, starting where f64 ended.
 
 use std::cmp::Ordering;
 
@@ -142,7 +142,7 @@ fn rows<N: Number>(
     rows
 }
 
-/// The program in f64, to no more digits than it has.
+/// The program in f64, within the precision of f64.
 fn guess(a: Posed, b: Posed) -> Option<Optimum<f64>> {
     let Approximate { matrix, offset, .. } = Approximate::over(b, a);
     let map = Relative {

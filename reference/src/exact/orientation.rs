@@ -1,8 +1,8 @@
-//! On which side of a plane does a point lie? The one predicate that triangles, segments and rays
-//! are decided by.
+//! On which side of a plane does a point lie? Triangles, segments and rays are decided by this one
+//! predicate.
 //!
 //! orient3d(a, b, c, d) = (d − a)·((b − a) × (c − a)), degree 3 in the coordinates. [`Side`] is its
-//! sign at one stage of the cascade; what is built on it ([`super::triangle`], [`super::parity`])
+//! sign at one stage of the cascade. The code that uses it ([`super::triangle`], [`super::parity`])
 //! is written once for all stages.
 
 use std::cmp::Ordering;

@@ -1,10 +1,10 @@
-//! Is a point inside a closed component? Odd parity of the crossings of a segment that ends
-//! outside.
+//! Is a point inside a closed component? It is if a segment from it to a point outside crosses the
+//! surface an odd number of times.
 //!
 //! A mesh in which every edge has two faces is a cycle modulo 2, so the parity is the same for
-//! every segment that misses all edges and corners. One that does not is thrown away for the next
-//! of a fixed sequence. A face of no area would touch every segment in its plane; as a chain it is
-//! zero and is left out, and where a segment runs through it, its neighbours' edges show that.
+//! every segment that misses all edges and corners. If a segment hits one, the next segment of a
+//! fixed sequence is tried. A face of no area would touch every segment in its plane. As a chain it
+//! is zero, so it is skipped; if a segment runs through it, the edges of its neighbours show that.
 
 use super::Record;
 use super::mesh::Mesh;

@@ -3,9 +3,9 @@
 //! With an orthogonal basis b_j of one norm, ξ_j = b_j·x are Cartesian coordinates up to a scale,
 //! and every slab reads lo_i ≤ c_i·ξ ≤ hi_i with the integer coefficients c_i. A corner solves
 //! three of these with equality; the determinant of three coefficient rows is 0 to ±4, so 12ξ is an
-//! integer combination of the slab ends. Enumerating all triples and keeping the feasible ones is
-//! slow, plain and done once per shape. Supports from these corners are the or-DOP's true supports;
-//! slabs that bound nothing (lo > hi) have no corner and overlap nothing.
+//! integer combination of the slab ends. We enumerate all triples and keep the feasible corners;
+//! that is slow but simple, and is done once per shape. Supports from these corners are the
+//! or-DOP's true supports; slabs that bound nothing (lo > hi) have no corner and overlap nothing.
 
 use std::collections::BTreeSet;
 

@@ -1,8 +1,8 @@
 //! Queries in exact fractions: does a ball, a segment or a ray meet a box on the world's axes, or a
 //! posed mesh, and where does a line meet it first?
 //!
-//! Plain loops over the triangles. A mesh is its surface and what its closed components enclose, as
-//! in [`meeting`]. Touching counts.
+//! These are plain loops over the triangles. A mesh is its surface and the space that its closed
+//! components enclose, as in [`meeting`]. Touching counts.
 
 use dashu_int::IBig;
 use dashu_ratio::RBig;

@@ -38,7 +38,7 @@ const STEEPEST: usize = 24;
 
 /// When to be content.
 pub struct Effort<N> {
-    /// Violations of no more than this are none. Zero for numbers that do not round.
+    /// Violations up to this size are ignored. Zero for numbers that do not round.
     pub tolerance: N,
     /// Pivots at most.
     pub pivots: usize,

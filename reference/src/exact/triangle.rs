@@ -1,8 +1,8 @@
-//! Do two triangles share a point? Closed, and as degenerate as they like: a segment, a point.
+//! Do two closed triangles share a point? They may be degenerate: a segment or a point.
 //!
 //! Two triangles in different planes meet iff an edge of one pierces the other (Guigue & Devillers
-//! 2003 order the same signs). With all three corners of A on B's plane the two are coplanar or B
-//! is degenerate; that is left to [`super::flat`], in integers, as no rounded number can tell it.
+//! 2003 order the same signs). If all three corners of A are on B's plane, the two are coplanar or
+//! B is degenerate. [`super::flat`] decides that case in integers, because no rounded number can.
 
 use std::cmp::Ordering;
 

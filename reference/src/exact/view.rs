@@ -16,7 +16,7 @@ use crate::pose::Pose;
 /// A mesh and where it is.
 pub type Posed<'a> = (&'a Mesh, &'a Pose);
 
-/// A in its own frame, B mapped into it; intervals and integers only when asked for.
+/// A in its own frame, with B mapped into it. Intervals and integers are computed only when needed.
 pub struct View<'a> {
     /// Body A's mesh.
     pub a: &'a Mesh,

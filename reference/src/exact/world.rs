@@ -1,8 +1,9 @@
 //! World-aligned k-DOPs re-fitted from the vertices, exactly: `aabb` is k = 6.
 //!
 //! Along an integer direction d, A's highest vertex |qB|² d·R(qA)v is compared with B's lowest
-//! |qA|² d·R(qB)v + |qA|²|qB|² d·(tB − tA). In f64 every body is fitted once, about its own origin; only vertices that
-//! may be the extreme one are looked at again in intervals and integers.
+//! |qA|² d·R(qB)v + |qA|²|qB|² d·(tB − tA). In f64 every body is fitted once,
+//! about its own origin. Intervals and integers then examine only the vertices that may be the
+//! extreme one.
 
 use std::cmp::Ordering;
 

@@ -1,5 +1,5 @@
-//! Common points against the second formulation: they lie in both bodies, and there is one whenever
-//! the bodies meet.
+//! Common points, judged by the second formulation: they lie in both bodies, and one is found
+//! whenever the bodies meet.
 
 use dashu_ratio::RBig;
 

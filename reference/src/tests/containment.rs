@@ -1,5 +1,5 @@
-//! Containment: what fits to the bit is inside, one float less is not, in the body frame and under
-//! poses.
+//! Containment: a volume that fits to the bit contains its mesh, one that is a float smaller does
+//! not, in the body frame and under poses.
 
 use proptest::prelude::*;
 

@@ -1,5 +1,5 @@
-//! The f64 maps of the filter against rationals: how much of the error bound do the worst cases
-//! use?
+//! Compares the f64 maps of the filter with rationals: how much of the error bound do the worst
+//! cases use?
 
 use super::rational::{Rational3, posed, rational, rational3, unposed};
 use super::shapes::{Draws, exact_basis, slabs};

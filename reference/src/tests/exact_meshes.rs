@@ -1,4 +1,4 @@
-//! Triangles and meshes against brute force in rationals, and the stages against each other.
+//! Compares triangles and meshes with brute force in rationals, and the stages with each other.
 
 use dashu_int::IBig;
 

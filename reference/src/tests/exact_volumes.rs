@@ -1,4 +1,4 @@
-//! The exact volume decisions against rationals, and their stages against each other.
+//! Compares the exact decisions about volumes with rationals, and their stages with each other.
 
 use dashu_int::IBig;
 use dashu_ratio::RBig;

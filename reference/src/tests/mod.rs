@@ -1,4 +1,4 @@
-//! Suites that need whole shapes; what one formula can show is tested next to it.
+//! Suites that need whole shapes. Tests of a single formula are next to that formula.
 #![allow(
     clippy::unwrap_used,
     reason = "a test that cannot build its input has failed"

@@ -1,5 +1,5 @@
-//! Whole scenes: the exact judge against the plain one, the promise, and world-aligned volumes
-//! against rationals.
+//! Whole scenes: compares the exact judge with the plain one, checks the promise, and compares
+//! world-aligned volumes with rationals.
 
 use super::rational::{self, posed, rational3};
 use super::shapes::{Draws, cuboid, exact_basis, shape, torus, wedge};

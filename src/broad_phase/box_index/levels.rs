@@ -3,9 +3,9 @@
 //!
 //! A box is in the cell of its lower corner. Let b be a level's bound, no less than any side of its
 //! boxes, and q a box. A box t of the level that meets q has q.min − b ≤ t.min ≤ q.max on each
-//! axis. The cell of a coordinate is a monotone function of it, ⌊fl(x·w)⌋, so t is in the cells
-//! from that of a number no greater than q.min − b to that of q.max. Everything is monotone, so
-//! rounding costs at most a cell; q.min − b is rounded to a number below it.
+//! axis. The cell of a coordinate x is ⌊fl(x·w)⌋, which never decreases as x grows. Therefore t is
+//! in a cell between that of q.min − b, rounded down, and that of q.max. Rounding adds at most one
+//! cell to that range.
 
 use crate::bodies::Aabb;
 

@@ -69,7 +69,7 @@ pub(crate) struct BoxIndex {
     cells: Vec<Cell>,
     taken: usize,
     boxes: Runs<CellEntry>,
-    /// By slot.
+    /// The cell of each slot's box.
     homes: Vec<HomeCell>,
     len: usize,
 }

@@ -181,8 +181,8 @@ mod tests {
         }
     }
 
-    /// So many bodies, the widest of that radius, in cells of at least its size and so many of them
-    /// each way.
+    /// A level of this many bodies, the widest of radius `widest`, with this many cells along each
+    /// axis, which are at least as wide as that body.
     fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: TableLayout) -> GridLevel {
         let mut level = GridLevel::new(0..bodies, layout);
         let hi = cells.map(|count| 2.0 * widest * (f32::from(count) - 1.0));

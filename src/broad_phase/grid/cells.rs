@@ -1,9 +1,10 @@
 //! Cells: which cell a ball's centre is in, and where the cells around it are in the table.
 //!
-//! A coordinate x is in the cell k = round((x − o)/c), in f64. Centres of balls that the first test
-//! can report differ by less than the cell size c, and so by at most one cell per coordinate: with
-//! c ≥ 2R(1 + 2⁻¹⁶), where R is the largest radius, [widened](crate::rounding::widen), quotients
-//! differ by less than 1 − 2⁻¹⁷, and below 2³⁰ the three roundings of a quotient take 2⁻²² each.
+//! A coordinate x is in the cell k = round((x − o)/c), in f64. If the first test can report two
+//! balls, their centres differ by less than the cell size c, and therefore by at most one cell per
+//! coordinate: with c ≥ 2R(1 + 2⁻¹⁶), where R is the largest radius,
+//! [widened](crate::rounding::widen), quotients differ by less than 1 − 2⁻¹⁷, and below 2³⁰ the
+//! three roundings of a quotient take 2⁻²² each.
 //!
 //! The table has cells in rows along x, and rows in layers: index = k_x + A·k_y + B·k_z. If the
 //! bodies' box has few cells, A and B leave one empty cell after each row and one empty row after
@@ -40,7 +41,7 @@ pub const WRAPPED_SPAN: u32 = 3;
 pub enum TableLayout {
     /// Every cell of the bodies' box has its own entry.
     Box,
-    /// Modulo the table's length.
+    /// Table entries are cells modulo the table's length.
     Wrapped,
 }
 

@@ -2,8 +2,8 @@
 //! of three cells.
 //!
 //! These are half of the 27 cells around it. Bodies in the other half find this body instead. Each
-//! row of three cells is one contiguous run of slots, which one load of four neighbouring table
-//! entries gives.
+//! row of three cells is one contiguous run of slots, found by one load of four neighbouring table
+//! entries.
 
 use std::ops::Range;
 

@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     impl SearchEffort {
-        /// Of a search that never ends early.
+        /// The effort of a search that never ends early.
         pub fn unlimited() -> Self {
             Self::new(SearchLimits {
                 pairs: u64::MAX,

@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     impl NeighbourList {
-        /// Of one part.
+        /// A list with a single part.
         pub(in crate::broad_phase) fn of(mut chunk: Chunk) -> Self {
             chunk.close();
             Self {

@@ -1,12 +1,12 @@
 //! Neighbour lists: pairs within a skin of each other, found by the grid once and tested frame
 //! after frame.
 //!
-//! Bodies that are near each other in one frame are mostly so in the next. A list has the pairs
+//! Bodies that are near each other in one frame usually still are in the next. A list has the pairs
 //! whose balls touch when each is grown by a skin. It is valid until some ball has drifted by its
 //! skin ([`drift`]), which is measured in every frame and never extrapolated. Then the grid builds
-//! a new list. Meanwhile slots and places stay: nothing is sorted, and updates write in the order
-//! in which the list reads. A body that jumps has drifted, so that a new list is built. Static
-//! bodies have no skin.
+//! a new list. While a list is valid, slots and places stay: nothing is sorted, and updates write
+//! in the order in which the list reads. A body that jumps has drifted, too, so a new list is
+//! built. Static bodies have no skin.
 //!
 //! A skin is a fraction of each ball's radius, or one length for all. If small bodies move as fast
 //! as large ones, one length is better: a fraction of a small radius would be used up in the first
@@ -17,7 +17,7 @@
 //! a box leaves its grown box ([`EndSlots`]).
 //!
 //! Lists don't pay if bodies move by a large part of their radius per frame or have many
-//! neighbours. Such frames are left to the grid, decided by counts alone ([`policy`]).
+//! neighbours. Counts alone decide that ([`policy`]); the grid then handles the frame.
 
 mod chunk;
 mod collect;

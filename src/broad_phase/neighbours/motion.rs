@@ -22,9 +22,9 @@ const LEAST_RADIUS: f32 = SKIN_FLOOR as f32;
 /// growth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LargestDrift {
-    /// In the ball's own radii.
+    /// The drift in the ball's own radii.
     pub own: f64,
-    /// In typical radii.
+    /// The drift in typical radii.
     pub typical: f64,
 }
 

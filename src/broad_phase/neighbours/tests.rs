@@ -37,7 +37,7 @@ impl FirstTest for &mut Candidates<'_> {
     }
 }
 
-/// Of the list, or of the grid.
+/// Finds the pairs of the list, or those of the grid.
 struct FindPairs<'a>(&'a Neighbours, bool);
 
 impl<'a> Kernel for FindPairs<'a> {

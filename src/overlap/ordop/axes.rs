@@ -307,7 +307,7 @@ mod tests {
     }
 
     impl BoxPair {
-        /// How far, in plain f64, the best axis long enough to be asked separates the two.
+        /// How far, in plain f64, the best axis that is long enough to be tried separates the two.
         fn gap(&self) -> f64 {
             let Self(halves, turn, way) = self;
             let [a, b] = halves.map(|half| half.map(f64::from));

@@ -1,5 +1,5 @@
-//! [`PosedOrDops`]: the or-DOPs of one frame, outside of a culler. Studies and benches test listed
-//! pairs with it.
+//! [`PosedOrDops`]: the or-DOPs of one frame, without a culler, with which studies and benches test
+//! listed pairs.
 
 use super::kernel::OrDopColumns;
 use super::table::SlabTables;

@@ -2,10 +2,9 @@
 //!
 //! If e = Σ λᵢdᵢ with λ ≥ 0, then h(e) ≤ Σ λᵢhᵢ, the dual of the linear program that maximises e·x
 //! over the slabs. The multipliers below are the optimal ones for a DOP whose slabs are all tight
-//! against a centrally placed ball, written in
-//! |e| = (a, b, c) and without sorting, so that lanes never diverge; a slab whose turn it is not gets λ = 0.
-//! No vertices are needed, rounding keeps λ ≥ 0, and the bound reports .9 % more pairs than the
-//! vertices would.
+//! against a centrally placed ball. They are functions of (a, b, c) = |e| without sorting, so that
+//! lanes never diverge; a slab that has no part in the optimum gets λ = 0. No vertices are needed,
+//! rounding keeps λ ≥ 0, and the bound reports 0.9 % more pairs than the vertices would.
 
 use super::slabs::{DirectionSigns, LaneSlabs};
 use crate::simd::Lanes;

@@ -12,7 +12,7 @@ use crate::entry::Setup;
 pub struct Boxes(BoxCuller);
 
 impl Boxes {
-    /// On so many threads.
+    /// Runs on this many threads.
     pub fn new(setup: &Setup<'_>) -> miette::Result<Self> {
         let culler = BoxCuller::builder().threads(setup.threads).build();
         Ok(Self(culler.or_report()?))

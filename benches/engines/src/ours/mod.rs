@@ -3,6 +3,7 @@
 
 mod boxes;
 mod culler;
+pub mod movers;
 
 use sdop::settings::Strategy;
 

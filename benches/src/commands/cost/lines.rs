@@ -1,4 +1,4 @@
-//! The formula's numbers as CSV: one number per line, with what it is, its unit and its interval.
+//! The formula's numbers as CSV: one number per line, with its meaning, unit and interval.
 
 use sdop_bench::cost::predict::{TermWidths, Terms};
 use sdop_bench::cost::study::CostReport;

@@ -45,7 +45,7 @@ pub struct Args {
     /// Encoding of the program's input and output
     #[arg(long, value_name = "WIRE", default_value_t = Wire::Ndjson, value_parser = one_of::<Wire>(Wire::NAMES))]
     wire: Wire,
-    /// Keep the processes: the program reads the next case after the last frame of one
+    /// Keep the program running: after the last frame of a case it reads the next case
     #[arg(long)]
     keep: bool,
     /// Time limit per case, in seconds, plus one second per megabyte of the case

@@ -1,6 +1,6 @@
 //! Records of work in units: measured by the ranks of `mpirun`, or put together from shards.
 //!
-//! Each rank runs the experiment's command as a rank; the first alone keeps what it writes. A shard
+//! Each rank runs the experiment's command as a rank; only the output of the first is kept. A shard
 //! is stored next to the future record until all shards are merged.
 
 use std::path::{Path, PathBuf};

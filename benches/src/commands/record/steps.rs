@@ -115,7 +115,7 @@ const PEERS: [&str; 8] = [
     "-p",
     "sdop-peers",
     "--features",
-    "physx,debian",
+    "physx,debian,box3d",
     "--",
 ];
 

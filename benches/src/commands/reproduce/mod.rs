@@ -1,4 +1,4 @@
-//! `sdop reproduce`: the paper's experiments, from the runs to their tables and figures.
+//! `sdop reproduce`: runs the paper's experiments and writes their tables and figures.
 
 mod figures;
 mod rows;
@@ -42,8 +42,8 @@ pub struct Args {
     /// Runs of each scene [default: 64, with --quick 5]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: Option<u64>,
-    /// Frames per run [default: 400, with --quick 100]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    /// Frames per run, of which the first is cold [default: 400, with --quick 100]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     frames: Option<u32>,
     #[command(flatten)]
     sweep: SweepArgs,

@@ -1,8 +1,8 @@
-//! The result files: each CSV file is one table, and `results.json` holds all but the two of single
-//! runs.
+//! The result files. Each CSV file is one table, and `results.json` holds all tables but the two of
+//! single runs.
 //!
-//! Of those, `counts` has the numbers that are the same on every machine, whose hash is in the
-//! summary; `times` has the others.
+//! Of these two, `counts` has the numbers that are the same on every machine, and the summary has
+//! its hash; `times` has the others.
 
 use miette::IntoDiagnostic as _;
 use sdop::settings::Strategy;
@@ -44,7 +44,7 @@ pub struct Tables {
     pub survival: Vec<SurvivalRow>,
     pub claims: Vec<PaperClaim>,
     pub study: Vec<PaperClaim>,
-    /// What the paper doesn't state, swept; none of a quick look.
+    /// Interpretations of what the paper doesn't state; empty with `--quick`.
     pub interpretations: Vec<Interpretation>,
     #[serde(skip)]
     pub counts: Vec<CountRow>,

@@ -1,4 +1,4 @@
-//! `mpirun -n R sdop run`: each rank builds its share of the scene, rank 0 prints.
+//! `mpirun -n R sdop run`: each rank builds its share of the scene, and rank 0 prints the results.
 //!
 //! An error on one rank reaches all ranks before any of them ends, so that none waits for a rank
 //! that has ended.
@@ -72,7 +72,7 @@ fn frames(args: &Args, network: &MpiNetwork, scene: Scene) -> Option<(Scene, Dom
     Some((about, agreed(network, summary)?))
 }
 
-/// On rank 0, prints what all say of the run.
+/// Prints the results of all ranks, on rank 0.
 fn tell(
     args: &Args,
     network: &MpiNetwork,

@@ -314,7 +314,7 @@ pub fn interest(result: &Tradeoff) -> Table {
     })
 }
 
-/// A line a density, a column an S-DOP.
+/// One line per density, one column per S-DOP.
 pub fn break_even(result: &Tradeoff) -> Table {
     let names = result.densities.first().map_or(Vec::new(), |density| {
         density.break_even.iter().map(|b| b.name.as_str()).collect()

@@ -8,6 +8,7 @@ use sdop_judge::every_way::{Ledger, LedgerKey};
 use sdop_judge::ours::Predicate;
 use sdop_judge::ours::boxes::BoxLedger;
 use sdop_judge::ours::configurations::Rotation;
+use sdop_judge::ours::histories::HistoryLedger;
 use sdop_judge::ours::matrix::Matrix;
 use serde::Serialize;
 
@@ -19,9 +20,9 @@ use coverage::Coverage;
 pub struct Report {
     /// The verdict in one word.
     conclusion: Conclusion,
-    /// Units of work that were asked for.
+    /// The number of requested units of work.
     asked: usize,
-    /// Those that were judged: `--time` may have left no room for the others.
+    /// The number of units that were judged before `--time` was over.
     judged: usize,
     /// Tiers that took part.
     simd: Vec<String>,
@@ -30,7 +31,8 @@ pub struct Report {
     /// Pairs missed, over all sources.
     missed: u64,
     /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list
-    /// and their definition.
+    /// and their definition; of long-lived worlds, a list or its events and those of a world made
+    /// for the moment.
     differ: u64,
     sources: Vec<SourceReport>,
     coverage: Coverage,
@@ -64,7 +66,7 @@ struct StrategyReport {
     required: u64,
     reported: u64,
     missed: u64,
-    /// On which a list and that of all-pairs differ.
+    /// Pairs on which a list differs from that of all-pairs.
     differ: u64,
     /// Reported although the exact volumes are apart, but not those wider by the rounding margins;
     /// per million judged.
@@ -115,18 +117,20 @@ impl Report {
         });
     }
 
-    /// Concludes, once all sources are there: so many units were asked for, and so many judged.
+    /// Draws the conclusion when all sources are there, from the numbers of requested and of judged
+    /// units.
     pub fn finish(
         &mut self,
         [asked, judged]: [usize; 2],
         seconds: f64,
-        boxes: &BoxLedger,
+        (boxes, histories): (&BoxLedger, &HistoryLedger),
         rotation: &Rotation,
     ) {
         [self.asked, self.judged] = [asked, judged];
         self.seconds = seconds;
-        self.differ += boxes.wrong();
-        self.coverage = Coverage::of(&self.matrix, boxes, rotation);
+        self.missed += histories.missed;
+        self.differ += boxes.wrong() + histories.differ;
+        self.coverage = Coverage::of(&self.matrix, (boxes, histories), rotation);
         self.conclusion = self.conclude();
     }
 
@@ -269,7 +273,8 @@ mod tests {
             let mut report = Report::new(&[]);
             [report.missed, report.differ] = wrong;
             let rotation = Rotation::new(&[Tier::detect()]);
-            report.finish([4, judged], 1.0, &BoxLedger::default(), &rotation);
+            let (boxes, histories) = (BoxLedger::default(), HistoryLedger::default());
+            report.finish([4, judged], 1.0, (&boxes, &histories), &rotation);
             assert_eq!(report.conclusion(), conclusion);
             assert_eq!(report.why().as_deref(), Some(why));
         }

@@ -1,5 +1,5 @@
-//! Slow approaches: a culler that keeps its list of candidates until a body has moved far keeps it
-//! too long if it measures that distance wrongly.
+//! Bodies that approach slowly. A culler may keep its list of candidates until a body has moved
+//! far; if it measures that distance wrongly, it keeps the list too long and misses a pair.
 
 use rand::{Rng, RngExt};
 
@@ -9,9 +9,9 @@ use crate::ours::forms::{self, Form, FormError};
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet};
 
-/// How bodies move.
+/// How the bodies of a pair move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ApproachKind {
     /// Two bodies approach each other, each by half of the distance.
     Both,
     /// One approaches, the other rests.
@@ -25,7 +25,11 @@ const FRAMES: usize = 33;
 
 /// Pairs of cubes, each with its own speed and gap. Speeds are from a 64th of the radius per frame,
 /// which no list notices from one frame to the next, to a quarter.
-pub fn approach(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, FormError> {
+pub fn approach(
+    kind: ApproachKind,
+    number: u32,
+    rng: &mut impl Rng,
+) -> Result<DrawnCase, FormError> {
     let form = Form::of("box", [0.0, 0.0]);
     let shapes = forms::build(&[form], 1, DirectionSet::K18, Axes::Model, rng)?.built;
     let axis = number as usize % 3;
@@ -43,13 +47,13 @@ pub fn approach(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase
             let way = step * n as f32; // few frames
             let turning = step * (FRAMES / 4) as f32;
             let [first, second] = match kind {
-                Kind::Both => [way / 2.0, way / 2.0],
-                Kind::One => [0.0, way],
-                Kind::Return if way <= turning => [0.0, -way],
-                Kind::Return => [0.0, 2.0 * (way - turning) - turning],
+                ApproachKind::Both => [way / 2.0, way / 2.0],
+                ApproachKind::One => [0.0, way],
+                ApproachKind::Return if way <= turning => [0.0, -way],
+                ApproachKind::Return => [0.0, 2.0 * (way - turning) - turning],
             };
             // A static body doesn't come: the other goes the whole way.
-            let is_static = kind != Kind::Both && row % 3 == 0;
+            let is_static = kind != ApproachKind::Both && row % 3 == 0;
             let [first, second] = if is_static {
                 [first + second, 0.0]
             } else {

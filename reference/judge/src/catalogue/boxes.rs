@@ -11,7 +11,7 @@ use sdop::volume::{Axes, DirectionSet, Shape};
 
 /// What the boxes are like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum BoxKind {
     /// On a lattice: neighbours touch exactly.
     Grid,
     /// Each end an ulp or none from another box's.
@@ -22,26 +22,26 @@ pub enum Kind {
     Range,
 }
 
-/// So many boxes of a kind, in one frame.
-pub fn boxes(kind: Kind, count: usize, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
+/// Draws `count` boxes of a kind, in one frame.
+pub fn boxes(kind: BoxKind, count: usize, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
     let mut boxes: Vec<WorldBox> = Vec::new();
     for n in 0..count {
         let drawn = match kind {
-            Kind::Grid => from_ends(|_| {
+            BoxKind::Grid => from_ends(|_| {
                 let lo = rng.random_range(-3..3);
                 [lo as f32, (lo + rng.random_range(1..=2)) as f32]
             }),
-            Kind::Ulp if n % 2 == 1 => beside(&boxes[n - 1], rng),
-            Kind::Ulp => from_ends(|_| {
+            BoxKind::Ulp if n % 2 == 1 => beside(&boxes[n - 1], rng),
+            BoxKind::Ulp => from_ends(|_| {
                 let lo = rng.random_range(-4.0..4.0_f32);
                 [lo, lo + rng.random_range(0.1..1.0)]
             }),
-            Kind::Flat => from_ends(|_| {
+            BoxKind::Flat => from_ends(|_| {
                 let lo = [-1.0, -0.0, 0.0, 1.0][rng.random_range(0..4)];
                 let hi = [-0.0, 0.0, 1.0, 1.0][rng.random_range(0..4)];
                 if lo <= hi { [lo, hi] } else { [lo, lo] }
             }),
-            Kind::Range => {
+            BoxKind::Range => {
                 let scale = [1e-45, 1e-39, 1e-20, 1.0, 1e9, 2.5e17][rng.random_range(0..6)];
                 from_ends(|_| {
                     let lo = rng.random_range(-2.0..2.0_f32) * scale;

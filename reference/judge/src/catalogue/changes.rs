@@ -1,4 +1,4 @@
-//! Changes along one axis: a culler that keeps a body's old place or extent along that axis alone
+//! Changes along a single axis: a culler that keeps a body's old place or extent along that axis
 //! misses a pair.
 //!
 //! Small bodies are in rows, far from one another. In each row a change brings one of them to its
@@ -6,7 +6,7 @@
 
 use rand::{Rng, RngExt};
 
-use super::crowds::Kind;
+use super::crowds::CrowdKind;
 use super::{CatalogueError, DrawnCase};
 use crate::case::{Frame, picked};
 use crate::ours::forms::Form;
@@ -18,19 +18,20 @@ use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 /// Rows of bodies: pairs of them, one on either side.
 const ROWS: usize = 6;
 const FRAMES: usize = 6;
-/// From a cube to another that it meets.
-pub(super) const NEAR: f32 = 1.2;
-/// From a cube to another that it doesn't meet.
-pub(super) const AWAY: f32 = 6.0;
-/// From a needle's centre to its tips.
-pub(super) const REACH: f32 = 4.0;
+/// The distance from a cube to another that it meets.
+pub(super) const MEETING_DISTANCE: f32 = 1.2;
+/// The distance from a cube to another that it doesn't meet.
+pub(super) const PARTED_DISTANCE: f32 = 6.0;
+/// The distance from a needle's centre to its tips.
+pub(super) const TIP_DISTANCE: f32 = 4.0;
 pub(super) const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 /// Quarter turns that lay a needle along each axis.
-pub(super) const ALONG: [[f32; 4]; 3] = [[0.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0], UNTURNED];
+pub(super) const QUARTER_TURNS: [[f32; 4]; 3] =
+    [[0.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0], UNTURNED];
 
 /// A case whose changes are along the axis of this number, modulo 3.
 pub fn along_an_axis(
-    kind: Kind,
+    kind: CrowdKind,
     number: u32,
     rng: &mut impl Rng,
 ) -> Result<DrawnCase, CatalogueError> {
@@ -44,7 +45,7 @@ pub fn along_an_axis(
         early,
     };
     let frames = (0..FRAMES).map(|n| match kind {
-        Kind::InsertRemove => rows.with_another_set(n, &shapes),
+        CrowdKind::InsertRemove => rows.with_another_set(n, &shapes),
         _ => Frame::fitted(rows.changed(kind, n), &shapes),
     });
     let frames = frames.collect();
@@ -73,8 +74,8 @@ pub(super) fn cube(rng: &mut impl Rng) -> Result<Shape, CatalogueError> {
 /// A thin tetrahedron along z.
 pub(super) fn needle() -> Result<Shape, CatalogueError> {
     let vertices = vec![
-        Vec3::new(0.0, 0.0, -REACH),
-        Vec3::new(0.0, 0.0, REACH),
+        Vec3::new(0.0, 0.0, -TIP_DISTANCE),
+        Vec3::new(0.0, 0.0, TIP_DISTANCE),
         Vec3::new(0.25, 0.0, 0.0),
         Vec3::new(0.0, 0.25, 0.0),
     ];
@@ -114,7 +115,7 @@ impl Rows {
 
     /// The bodies of the frame of this number. Each row's pair meets in every other frame, after a
     /// change.
-    fn changed(&self, kind: Kind, frame: usize) -> Bodies {
+    fn changed(&self, kind: CrowdKind, frame: usize) -> Bodies {
         let mut bodies = Bodies::default();
         for (row, &place) in self.places.iter().enumerate() {
             bodies.push(0, false, UNTURNED, place);
@@ -123,17 +124,31 @@ impl Rows {
                 bodies.push(shape, true, turn, self.beside(row, distance));
             };
             match kind {
-                Kind::Turn => {
+                CrowdKind::Turn => {
                     let axis = self.axis + if after { 0 } else { 2 };
-                    push(1, ALONG[axis % 3], REACH);
+                    push(1, QUARTER_TURNS[axis % 3], TIP_DISTANCE);
                 }
-                Kind::Swap => {
-                    let [first, second] = if after { [AWAY, NEAR] } else { [NEAR, AWAY] };
+                CrowdKind::Swap => {
+                    let [first, second] = if after {
+                        [PARTED_DISTANCE, MEETING_DISTANCE]
+                    } else {
+                        [MEETING_DISTANCE, PARTED_DISTANCE]
+                    };
                     push(0, UNTURNED, first);
                     push(0, UNTURNED, second);
                 }
-                Kind::Teleport => push(0, UNTURNED, if after { NEAR } else { 1e6 }),
-                _ => push(0, UNTURNED, if after { NEAR } else { AWAY }),
+                CrowdKind::Teleport => {
+                    push(0, UNTURNED, if after { MEETING_DISTANCE } else { 1e6 })
+                }
+                _ => push(
+                    0,
+                    UNTURNED,
+                    if after {
+                        MEETING_DISTANCE
+                    } else {
+                        PARTED_DISTANCE
+                    },
+                ),
             }
         }
         bodies
@@ -149,11 +164,18 @@ impl Rows {
         for (row, &place) in self.places.iter().enumerate() {
             bodies.push(0, false, UNTURNED, place);
             let (shape, distance) = match row / 2 % 3 {
-                1 => (u32::from(after), REACH),
-                _ => (0, if after { NEAR } else { AWAY }),
+                1 => (u32::from(after), TIP_DISTANCE),
+                _ => (
+                    0,
+                    if after {
+                        MEETING_DISTANCE
+                    } else {
+                        PARTED_DISTANCE
+                    },
+                ),
             };
             let place = self.beside(row, distance);
-            bodies.push(shape, true, ALONG[self.axis], place);
+            bodies.push(shape, true, QUARTER_TURNS[self.axis], place);
             stays.extend([true, row / 2 % 3 == 2]);
         }
         let order = |frame: usize| -> Vec<usize> {

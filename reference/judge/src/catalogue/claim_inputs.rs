@@ -3,16 +3,16 @@
 
 use rand::{Rng, RngExt};
 
-use super::boxes::{self, Kind as Boxes, of_boxes};
+use super::boxes::{self, BoxKind, of_boxes};
 use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use crate::contestant::{Filter, WorldBox};
 use crate::truth::boxes_meet;
 
-/// What is asked on top of boxes.
+/// The additional input of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Groups and masks part bodies, some of them one way only.
+pub enum ClaimInputKind {
+    /// Groups and masks filter pairs; in some pairs, only one of the two bodies excludes the other.
     Groups,
     /// A list of pairs is excluded.
     Excluded,
@@ -24,28 +24,37 @@ pub enum Kind {
     Margins,
     /// The state is saved, restored, and restored again.
     Restored,
-    /// The bodies come in other orders.
+    /// The bodies are inserted in different orders.
     Insertion,
 }
 
 const COUNT: usize = 48;
 
-/// A case.
-pub fn asked(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
+/// A case of boxes with this input.
+pub fn with_input(
+    kind: ClaimInputKind,
+    number: u32,
+    rng: &mut impl Rng,
+) -> Result<DrawnCase, CatalogueError> {
     match kind {
-        Kind::Margin | Kind::Margins => margins(kind, rng),
-        Kind::Restored => restored(rng),
-        Kind::Insertion => {
-            let of = [Boxes::Grid, Boxes::Ulp, Boxes::Flat][number as usize % 3];
+        ClaimInputKind::Margin | ClaimInputKind::Margins => margins(kind, rng),
+        ClaimInputKind::Restored => restored(rng),
+        ClaimInputKind::Insertion => {
+            let of = [BoxKind::Grid, BoxKind::Ulp, BoxKind::Flat][number as usize % 3];
             boxes::boxes(of, COUNT, rng)
         }
-        Kind::Groups | Kind::Excluded | Kind::AtRest => {
-            let DrawnCase { shapes, frames } = boxes::boxes(Boxes::Grid, COUNT, rng)?;
-            let (first, count) = (&frames[0], if kind == Kind::AtRest { 5 } else { 1 });
+        ClaimInputKind::Groups | ClaimInputKind::Excluded | ClaimInputKind::AtRest => {
+            let DrawnCase { shapes, frames } = boxes::boxes(BoxKind::Grid, COUNT, rng)?;
+            let (first, count) = (
+                &frames[0],
+                if kind == ClaimInputKind::AtRest { 5 } else { 1 },
+            );
             let frame = |n: usize| Frame {
                 filter: Some(match (kind, n) {
-                    (Kind::Groups, _) | (Kind::AtRest, 0 | 1 | 4) => groups(rng),
-                    (Kind::AtRest, 3) => admits(Vec::new()),
+                    (ClaimInputKind::Groups, _) | (ClaimInputKind::AtRest, 0 | 1 | 4) => {
+                        groups(rng)
+                    }
+                    (ClaimInputKind::AtRest, 3) => admits(Vec::new()),
                     _ => admits(excluded(first, rng)),
                 }),
                 ..first.clone()
@@ -56,7 +65,8 @@ pub fn asked(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, C
     }
 }
 
-/// One of eight groups each, the highest bit among them, and masks of any of them.
+/// Each body is in one of eight groups, including that of the highest bit, and has a mask of any of
+/// them.
 fn groups(rng: &mut impl Rng) -> Filter {
     let bit = |rng: &mut _| 1_u32 << [0, 1, 2, 3, 7, 15, 30, 31][RngExt::random_range(rng, 0..8)];
     let group = |_| {
@@ -96,14 +106,14 @@ fn excluded(frame: &Frame, rng: &mut impl Rng) -> Vec<[u32; 2]> {
 }
 
 /// Rows of two boxes, as far apart along an axis as their margins reach, or an ulp more or less.
-fn margins(kind: Kind, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
+fn margins(kind: ClaimInputKind, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
     const MARGINS: [f32; 6] = [0.0, 1e-3, 0.1, 0.25, 0.7, 3.0];
     let pick = |rng: &mut _| MARGINS[RngExt::random_range(rng, 0..MARGINS.len())];
     let all = MARGINS[rng.random_range(1..MARGINS.len())];
     let (mut boxes, mut margins): (Vec<WorldBox>, Vec<f32>) = (Vec::new(), Vec::new());
     for row in 0..COUNT / 2 {
         let own = match kind {
-            Kind::Margin => [all; 2],
+            ClaimInputKind::Margin => [all; 2],
             _ => [pick(rng), pick(rng)],
         };
         let axis = rng.random_range(0..3);
@@ -137,7 +147,7 @@ fn margins(kind: Kind, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> 
 /// Steps 0 and 1, after which the state is saved; 2 to 4; back, and the same steps again; back, and
 /// the last step alone. Half of the boxes move in each step.
 fn restored(rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
-    let DrawnCase { shapes, frames } = boxes::boxes(Boxes::Grid, COUNT, rng)?;
+    let DrawnCase { shapes, frames } = boxes::boxes(BoxKind::Grid, COUNT, rng)?;
     let mut steps = frames;
     for n in 1..5 {
         let mut next = steps[n - 1].clone();

@@ -6,7 +6,7 @@ use rand::{Rng, RngExt};
 
 use super::DrawnCase;
 use crate::case::Frame;
-use crate::ours::contact::Kind;
+use crate::ours::contact::ContactKind;
 use crate::ours::forms::{self, Form, FormError};
 use crate::ours::seeded_draws::{ContactSpec, TurnKind, probe};
 use sdop::volume::{Axes, DirectionSet};
@@ -50,7 +50,7 @@ pub fn volumes(number: u32) -> (DirectionSet, Axes) {
 
 /// A dynamic probe among static partners, each in contact with it.
 pub fn around_a_probe(
-    kind: Kind,
+    kind: ContactKind,
     turn: TurnKind,
     origin: Option<[f64; 2]>,
     number: u32,

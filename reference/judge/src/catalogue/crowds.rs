@@ -11,9 +11,9 @@ use crate::ours::seeded_draws::{crowd as uniform, rotation};
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet, Shape};
 
-/// What happens.
+/// What happens to the bodies of a crowd.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum CrowdKind {
     /// Nothing: one frame.
     Still,
     /// Bodies drift and turn.
@@ -45,18 +45,18 @@ pub enum Kind {
 }
 
 /// Draws a crowd.
-pub fn crowd(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, FormError> {
+pub fn crowd(kind: CrowdKind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, FormError> {
     let shapes = shapes(kind, rng)?;
     let bodies = match kind {
-        Kind::Growth => dense(&shapes.built, 96, rng),
-        Kind::NewPairs => dense(&shapes.built, 768, rng),
-        Kind::Hub => hub(&shapes.built, 384, rng),
-        Kind::Partners => hub(&shapes.built, 4500, rng),
-        Kind::Sizes => fix_some(uniform(&shapes, 96, 4.0, rng)),
+        CrowdKind::Growth => dense(&shapes.built, 96, rng),
+        CrowdKind::NewPairs => dense(&shapes.built, 768, rng),
+        CrowdKind::Hub => hub(&shapes.built, 384, rng),
+        CrowdKind::Partners => hub(&shapes.built, 4500, rng),
+        CrowdKind::Sizes => fix_some(uniform(&shapes, 96, 4.0, rng)),
         _ => fix_some(uniform(&shapes, 40, 4.0, rng)),
     };
     let (bodies, was): (Vec<Bodies>, Vec<_>) = match kind {
-        Kind::InsertRemove => changing(bodies, rng),
+        CrowdKind::InsertRemove => changing(bodies, rng),
         _ => frames(kind, number, bodies, rng)
             .into_iter()
             .map(|frame| (frame, None))
@@ -73,14 +73,14 @@ pub fn crowd(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, F
     })
 }
 
-fn shapes(kind: Kind, rng: &mut impl Rng) -> Result<Shapes, FormError> {
+fn shapes(kind: CrowdKind, rng: &mut impl Rng) -> Result<Shapes, FormError> {
     let forms = match kind {
-        Kind::Growth | Kind::NewPairs => vec![Form::of("tetrahedron", [0.0, 0.0])],
-        Kind::Hub | Kind::Partners => vec![
+        CrowdKind::Growth | CrowdKind::NewPairs => vec![Form::of("tetrahedron", [0.0, 0.0])],
+        CrowdKind::Hub | CrowdKind::Partners => vec![
             Form::of("tetrahedron", [-6.0, -6.0]),
             Form::of("box", [4.0, 4.0]),
         ],
-        Kind::Sizes => forms(rng, 5)
+        CrowdKind::Sizes => forms(rng, 5)
             .into_iter()
             .map(|form| Form {
                 radius: Some([-6.0, 2.0]),
@@ -123,9 +123,9 @@ fn hub(shapes: &[Shape], count: usize, rng: &mut impl Rng) -> Bodies {
     bodies
 }
 
-fn frames(kind: Kind, number: u32, first: Bodies, rng: &mut impl Rng) -> Vec<Bodies> {
+fn frames(kind: CrowdKind, number: u32, first: Bodies, rng: &mut impl Rng) -> Vec<Bodies> {
     match kind {
-        Kind::Moving => {
+        CrowdKind::Moving => {
             let velocities: Vec<[f32; 3]> = (0..first.len())
                 .map(|_| std::array::from_fn(|_| rng.random_range(-0.08..0.08)))
                 .collect();
@@ -141,7 +141,7 @@ fn frames(kind: Kind, number: u32, first: Bodies, rng: &mut impl Rng) -> Vec<Bod
             };
             (0..10).map(step).collect()
         }
-        Kind::Growth => {
+        CrowdKind::Growth => {
             let spread = |by: f32| {
                 let mut frame = first.clone();
                 for (i, t) in frame.translation.iter_mut().enumerate() {
@@ -153,7 +153,7 @@ fn frames(kind: Kind, number: u32, first: Bodies, rng: &mut impl Rng) -> Vec<Bod
             };
             vec![spread(1.5), spread(0.5), first.clone(), spread(1.5), first]
         }
-        Kind::NewPairs => {
+        CrowdKind::NewPairs => {
             // All are apart, or all but the first third.
             let apart = |kept: usize| {
                 let mut frame = first.clone();
@@ -170,7 +170,7 @@ fn frames(kind: Kind, number: u32, first: Bodies, rng: &mut impl Rng) -> Vec<Bod
                 _ => vec![apart(0), apart(some), first],
             }
         }
-        Kind::Repeated => {
+        CrowdKind::Repeated => {
             let second = permuted_places(&first, rng);
             vec![
                 first.clone(),
@@ -181,8 +181,8 @@ fn frames(kind: Kind, number: u32, first: Bodies, rng: &mut impl Rng) -> Vec<Bod
                 second,
             ]
         }
-        Kind::Renumbered => vec![renumbered(&first, rng)],
-        Kind::Swap => {
+        CrowdKind::Renumbered => vec![renumbered(&first, rng)],
+        CrowdKind::Swap => {
             let mut frames = vec![first];
             for _ in 0..5 {
                 let next = permuted_places(&frames[frames.len() - 1], rng);
@@ -190,7 +190,7 @@ fn frames(kind: Kind, number: u32, first: Bodies, rng: &mut impl Rng) -> Vec<Bod
             }
             frames
         }
-        Kind::Teleport => {
+        CrowdKind::Teleport => {
             let mut away = first.clone();
             for i in (0..first.len()).filter(|i| first.dynamic[*i] && i % 3 != 0) {
                 away.translation[i][i % 2] += (1_u64 << 30) as f32;
@@ -226,8 +226,8 @@ fn permutation(n: usize, rng: &mut impl Rng) -> Vec<usize> {
     order
 }
 
-/// The former number of each body of a frame, where it was there; `None` for a frame in which
-/// nothing changed.
+/// The former number of each body of a frame, if it existed; `None` for a frame in which no number
+/// changed.
 type FormerNumbers = Option<Vec<Option<u32>>>;
 
 /// Some bodies go, others come, numbers change: each frame's former numbers.

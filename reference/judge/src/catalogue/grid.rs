@@ -1,9 +1,9 @@
-//! Tips that touch across cells: when the cell's side is the bodies' diameter and cells are counted
-//! in f32, the partner's cell is two away.
+//! Tips that touch across cells. If a cell is as wide as the bodies and cells are counted in f32,
+//! the partner is two cells away, where a search of the next cells does not find it.
 //!
-//! A quotient x / c alone never does that: as far as floor(x / c) is rounded up at the further
-//! border, it is at the nearer one. A difference x − least before it does, and so does the product
-//! with a reciprocal.
+//! A quotient x / c alone does not cause that: if rounding moves floor(x / c) up at the farther
+//! border, it does so at the nearer one as well. A subtraction x − least before the division causes
+//! it, and so does a product with a reciprocal.
 
 use rand::{Rng, RngExt};
 
@@ -12,10 +12,10 @@ use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use sdop::bodies::Bodies;
 
-/// Pairs a case.
+/// Pairs per case.
 const PAIRS: usize = 16;
-/// Sizes that are tried until a case's pairs are found, and places for each pair: one in some ten
-/// and some hundred will do.
+/// Sizes that are tried until a case's pairs are found, and places for each pair. About one size in
+/// ten and one place in some hundred have such a pair.
 const SIZES: usize = 256;
 const PLACES: usize = 4096;
 
@@ -52,7 +52,7 @@ struct CellGrid {
 }
 
 impl CellGrid {
-    /// Two places at most `reach` apart, as exact numbers, whose cells have another between them.
+    /// Two places at most `reach` apart, as exact numbers, with another cell between their cells.
     fn pair_across(self, reach: f32, rng: &mut impl Rng) -> Option<[f32; 2]> {
         (0..PLACES).find_map(|_| {
             let [first, second] = self.near_border(reach, rng);
@@ -61,7 +61,7 @@ impl CellGrid {
         })
     }
 
-    /// A place about a cell's border, and the last one within reach of it.
+    /// A place near a cell's border, and the last place within its reach.
     fn near_border(self, reach: f32, rng: &mut impl Rng) -> [f32; 2] {
         let (least, side) = (f64::from(self.least), f64::from(self.side));
         let border = match self.counting {

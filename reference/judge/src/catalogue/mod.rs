@@ -1,9 +1,9 @@
-//! The cases that everyone is judged by: groups with a name, the bug that each looks for, and its
-//! source.
+//! The cases by which every culler is judged, in groups. Each group has a name, the bug that it
+//! looks for, and the source of that bug.
 //!
-//! A case is drawn from its group's name and its number alone, so `touch/edge-edge/0017` is the
-//! same bodies on every machine. With a seed the same group draws other bodies,
-//! `touch/edge-edge/0017@42`: nobody can prepare for those.
+//! A case depends only on its group's name and its number, so `touch/edge-edge/0017` has the same
+//! bodies on every machine. With a seed, as in `touch/edge-edge/0017@42`, the group draws other
+//! bodies, for which nobody can prepare.
 
 mod approaches;
 mod boxes;
@@ -20,14 +20,19 @@ use rand_chacha::ChaCha8Rng;
 
 use super::case::{Case, Frame, matches};
 use super::claim::Claim;
-use crate::ours::contact::Kind;
+use crate::ours::contact::ContactKind;
 use crate::ours::forms::FormError;
 use crate::ours::hard::{self, HardCaseError, Recipe};
 use crate::ours::seeded_draws::TurnKind;
 use sdop::mesh::MeshError;
 use sdop::volume::{Axes, DirectionSet, Shape, VolumeError};
 
+use approaches::ApproachKind;
+use boxes::BoxKind;
 pub use boxes::of_boxes;
+use claim_inputs::ClaimInputKind;
+use crowds::CrowdKind;
+use stale_data::StaleKind;
 
 /// A case that can't be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -57,25 +62,25 @@ pub(super) struct DrawnCase {
 #[derive(Clone, Copy, Debug)]
 enum CaseDraw {
     /// Bodies in contact with a probe.
-    Contact(Kind, TurnKind),
+    Contact(ContactKind, TurnKind),
     /// The same far from the world's origin.
-    Far(Kind),
+    Far(ContactKind),
     /// Cubes and octahedra on short binary coordinates.
     Exact(exact_touches::Touch),
     /// Tips that touch across the borders of cells.
     CellBorder,
     /// Crowds and what happens to them.
-    Crowd(crowds::Kind),
+    Crowd(CrowdKind),
     /// A few crowds, then as many changes along each axis.
-    Changes(crowds::Kind, u32),
+    Changes(CrowdKind, u32),
     /// Boxes without bodies.
-    Boxes(boxes::Kind),
+    Boxes(BoxKind),
     /// Changes of all kinds.
-    Stale(stale_data::Kind),
+    Stale(StaleKind),
     /// Slow approaches.
-    Listed(approaches::Kind),
-    /// Boxes with what one claim asks on top.
-    Asked(claim_inputs::Kind, &'static [Claim; 1]),
+    Approach(ApproachKind),
+    /// Boxes with the additional input of one claim.
+    ClaimInput(ClaimInputKind, &'static [Claim; 1]),
     /// A file of the hard cases.
     Hard(&'static str),
 }
@@ -89,7 +94,7 @@ pub struct CaseGroup {
     pub flag: &'static str,
     /// Where it comes from.
     pub source: &'static str,
-    /// How many cases are published.
+    /// The number of published cases.
     pub cases: u32,
     draw: CaseDraw,
 }
@@ -130,63 +135,63 @@ macro_rules! groups {
 }
 
 sdop_data::with_hard_cases! { groups! {
-    touch_ball_ball "touch/ball-ball", 12, CaseDraw::Contact(Kind::Ball, TurnKind::Any), "a radius or a distance rounded down";
-    touch_edge_edge "touch/edge-edge", 12, CaseDraw::Contact(Kind::Edges, TurnKind::Any), "an axis that is a rounded cross product";
-    touch_face_corner "touch/face-corner", 12, CaseDraw::Contact(Kind::FirstFace, TurnKind::Any), "a slab of the first body rounded inward";
-    touch_corner_face "touch/corner-face", 12, CaseDraw::Contact(Kind::SecondFace, TurnKind::Any), "a slab of the second body rounded inward";
-    touch_oriented_box "touch/oriented-box", 12, CaseDraw::Contact(Kind::Box, TurnKind::Any), "an oriented box smaller than its mesh";
-    touch_world_extent "touch/world-extent", 12, CaseDraw::Contact(Kind::World, TurnKind::Any), "a world-aligned extent rounded inward";
-    touch_vertex "touch/vertex", 12, CaseDraw::Contact(Kind::Mesh, TurnKind::Any), "vertices that only just meet";
-    touch_triangle "touch/triangle", 12, CaseDraw::Contact(Kind::Triangle, TurnKind::Any), "a vertex that only just meets a triangle";
-    touch_near_parallel "touch/near-parallel", 8, CaseDraw::Contact(Kind::Edges, TurnKind::NearlyParallel), "edges nearly parallel: a cross product of noise";
-    touch_quarter_turns "touch/quarter-turns", 8, CaseDraw::Contact(Kind::Mesh, TurnKind::Quarter), "coinciding faces and edges";
-    pose_norms "pose/norms", 8, CaseDraw::Contact(Kind::Mesh, TurnKind::Norm), "a quaternion taken for a unit one";
-    pose_signs "pose/signs", 8, CaseDraw::Contact(Kind::Mesh, TurnKind::Sign), "q and -q told apart, negative zeros";
-    pose_far "pose/far", 12, CaseDraw::Far(Kind::Mesh), "differences of large world coordinates";
+    touch_ball_ball "touch/ball-ball", 12, CaseDraw::Contact(ContactKind::Ball, TurnKind::Any), "a radius or a distance rounded down";
+    touch_edge_edge "touch/edge-edge", 12, CaseDraw::Contact(ContactKind::Edges, TurnKind::Any), "an axis that is a rounded cross product";
+    touch_face_corner "touch/face-corner", 12, CaseDraw::Contact(ContactKind::FirstFace, TurnKind::Any), "a slab of the first body rounded inward";
+    touch_corner_face "touch/corner-face", 12, CaseDraw::Contact(ContactKind::SecondFace, TurnKind::Any), "a slab of the second body rounded inward";
+    touch_oriented_box "touch/oriented-box", 12, CaseDraw::Contact(ContactKind::Box, TurnKind::Any), "an oriented box smaller than its mesh";
+    touch_world_extent "touch/world-extent", 12, CaseDraw::Contact(ContactKind::World, TurnKind::Any), "a world-aligned extent rounded inward";
+    touch_vertex "touch/vertex", 12, CaseDraw::Contact(ContactKind::Mesh, TurnKind::Any), "vertices that only just meet";
+    touch_triangle "touch/triangle", 12, CaseDraw::Contact(ContactKind::Triangle, TurnKind::Any), "a vertex that only just meets a triangle";
+    touch_near_parallel "touch/near-parallel", 8, CaseDraw::Contact(ContactKind::Edges, TurnKind::NearlyParallel), "edges nearly parallel: a cross product of noise";
+    touch_quarter_turns "touch/quarter-turns", 8, CaseDraw::Contact(ContactKind::Mesh, TurnKind::Quarter), "coinciding faces and edges";
+    pose_norms "pose/norms", 8, CaseDraw::Contact(ContactKind::Mesh, TurnKind::Norm), "a quaternion taken for a unit one";
+    pose_signs "pose/signs", 8, CaseDraw::Contact(ContactKind::Mesh, TurnKind::Sign), "q and -q told apart, negative zeros";
+    pose_far "pose/far", 12, CaseDraw::Far(ContactKind::Mesh), "differences of large world coordinates";
     exact_face_to_face "exact/face-to-face", 8, CaseDraw::Exact(exact_touches::Touch::Faces), "touching taken for apart: < in place of <=";
     exact_edge_to_edge "exact/edge-to-edge", 8, CaseDraw::Exact(exact_touches::Touch::Edges), "touching taken for apart: < in place of <=";
     exact_corner_to_corner "exact/corner-to-corner", 8, CaseDraw::Exact(exact_touches::Touch::Corners), "touching taken for apart: < in place of <=";
     exact_tip_on_face "exact/tip-on-face", 8, CaseDraw::Exact(exact_touches::Touch::TipOnFace), "touching taken for apart: < in place of <=";
     exact_tip_to_tip "exact/tip-to-tip", 8, CaseDraw::Exact(exact_touches::Touch::Tips), "touching taken for apart: < in place of <=";
     grid_cell_border "grid/cell-border", 12, CaseDraw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
-    buffer_growth "buffer/growth", 2, CaseDraw::Crowd(crowds::Kind::Growth), "a full buffer of pairs, and one that is never emptied";
-    buffer_hub "buffer/hub", 2, CaseDraw::Crowd(crowds::Kind::Hub), "a full buffer of one body's partners";
-    order_repeated "order/repeated", 4, CaseDraw::Crowd(crowds::Kind::Repeated), "answers that depend on the frames before";
-    order_renumbered "order/renumbered", 4, CaseDraw::Crowd(crowds::Kind::Renumbered), "answers that depend on the bodies' numbers";
-    churn_swap "churn/swap", 7, CaseDraw::Changes(crowds::Kind::Swap, 4), "stale places of bodies that jump";
-    churn_teleport "churn/teleport", 7, CaseDraw::Changes(crowds::Kind::Teleport, 4), "stale bounds of bodies that jump far";
-    churn_insert_remove "churn/insert-remove", 7, CaseDraw::Changes(crowds::Kind::InsertRemove, 4), "stale bodies that were removed, new ones not taken up";
-    churn_move "churn/move", 3, CaseDraw::Changes(crowds::Kind::Move, 0), "stale bounds of bodies that move";
-    churn_turn "churn/turn", 3, CaseDraw::Changes(crowds::Kind::Turn, 0), "stale bounds of bodies that turn in place";
-    random_crowd "random/crowd", 6, CaseDraw::Crowd(crowds::Kind::Still), "anything";
-    random_moving "random/moving", 6, CaseDraw::Crowd(crowds::Kind::Moving), "caches kept for too long";
-    random_sizes "random/sizes", 6, CaseDraw::Crowd(crowds::Kind::Sizes), "cells or trees for one size of body";
-    box_grid "box/grid", 8, CaseDraw::Boxes(boxes::Kind::Grid), "touching taken for apart: < in place of <=";
-    box_ulp "box/ulp", 8, CaseDraw::Boxes(boxes::Kind::Ulp), "ends rounded inward, centre and half size in place of ends";
-    box_flat "box/flat", 8, CaseDraw::Boxes(boxes::Kind::Flat), "boxes without a volume, zeros of both signs";
-    box_range "box/range", 8, CaseDraw::Boxes(boxes::Kind::Range), "overflow and underflow of areas and volumes";
-    crowd_new_pairs "crowd/new-pairs", 2, CaseDraw::Crowd(crowds::Kind::NewPairs), "a fixed buffer of new pairs", after "mujoco_warp #1461, newton #3702 and Box3D's \"ignoring this pair\"";
-    crowd_partners "crowd/partners", 1, CaseDraw::Crowd(crowds::Kind::Partners), "a fixed buffer of one body's partners, a fixed stack or pool of nodes", after "Jolt #1520 and #1235";
-    stale_reshape "stale/reshape", 6, CaseDraw::Stale(stale_data::Kind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";
-    stale_reorder "stale/reorder", 6, CaseDraw::Stale(stale_data::Kind::Reorder), "stale bounds of bodies that get another number", after "fcl #368";
-    stale_rebase "stale/rebase", 6, CaseDraw::Stale(stale_data::Kind::Rebase), "stale bounds after another origin", after "newton #4008";
-    stale_all_at_once "stale/all-at-once", 6, CaseDraw::Stale(stale_data::Kind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
-    list_both "list/both", 3, CaseDraw::Listed(approaches::Kind::Both), "a list kept until one body has moved as far as two together may", after "lammps #1701";
-    list_one "list/one", 3, CaseDraw::Listed(approaches::Kind::One), "a list kept for a number of frames", after "lammps #4239";
-    list_return "list/return", 3, CaseDraw::Listed(approaches::Kind::Return), "a list whose age is measured from frame to frame", after "lammps #1701";
-    filter_groups "filter/groups", 6, CaseDraw::Asked(claim_inputs::Kind::Groups, &[Claim::Filter]), "masks asked of one body alone, or of a few bits", after "newton #3713 and #990";
-    filter_excluded "filter/excluded", 6, CaseDraw::Asked(claim_inputs::Kind::Excluded, &[Claim::Filter]), "excluded pairs that are reported", after "newton #1553";
-    filter_at_rest "filter/at-rest", 6, CaseDraw::Asked(claim_inputs::Kind::AtRest, &[Claim::Filter]), "filters of bodies at rest that are not asked again", after "godot #54110";
-    order_insertion "order/insertion", 6, CaseDraw::Asked(claim_inputs::Kind::Insertion, &[Claim::Order]), "answers that depend on the order of insertion", after "fcl #368";
-    restore_replay "restore/replay", 6, CaseDraw::Asked(claim_inputs::Kind::Restored, &[Claim::Restore]), "a state that is not in the snapshot", after "parry #402 and rapier #966";
-    margin_global "margin/global", 6, CaseDraw::Asked(claim_inputs::Kind::Margin, &[Claim::Margin]), "a margin that only the later test knows of", after "coal #625 and #685";
-    margin_by_body "margin/by-body", 6, CaseDraw::Asked(claim_inputs::Kind::Margins, &[Claim::Margin]), "one body's margin taken for both, a rounded sum", after "avian #952 and coal #802";
+    buffer_growth "buffer/growth", 2, CaseDraw::Crowd(CrowdKind::Growth), "a full buffer of pairs, and one that is never emptied";
+    buffer_hub "buffer/hub", 2, CaseDraw::Crowd(CrowdKind::Hub), "a full buffer of one body's partners";
+    order_repeated "order/repeated", 4, CaseDraw::Crowd(CrowdKind::Repeated), "answers that depend on the frames before";
+    order_renumbered "order/renumbered", 4, CaseDraw::Crowd(CrowdKind::Renumbered), "answers that depend on the bodies' numbers";
+    churn_swap "churn/swap", 7, CaseDraw::Changes(CrowdKind::Swap, 4), "stale places of bodies that jump";
+    churn_teleport "churn/teleport", 7, CaseDraw::Changes(CrowdKind::Teleport, 4), "stale bounds of bodies that jump far";
+    churn_insert_remove "churn/insert-remove", 7, CaseDraw::Changes(CrowdKind::InsertRemove, 4), "stale bodies that were removed, new ones not taken up";
+    churn_move "churn/move", 3, CaseDraw::Changes(CrowdKind::Move, 0), "stale bounds of bodies that move";
+    churn_turn "churn/turn", 3, CaseDraw::Changes(CrowdKind::Turn, 0), "stale bounds of bodies that turn in place";
+    random_crowd "random/crowd", 6, CaseDraw::Crowd(CrowdKind::Still), "anything";
+    random_moving "random/moving", 6, CaseDraw::Crowd(CrowdKind::Moving), "caches kept for too long";
+    random_sizes "random/sizes", 6, CaseDraw::Crowd(CrowdKind::Sizes), "cells or trees for one size of body";
+    box_grid "box/grid", 8, CaseDraw::Boxes(BoxKind::Grid), "touching taken for apart: < in place of <=";
+    box_ulp "box/ulp", 8, CaseDraw::Boxes(BoxKind::Ulp), "ends rounded inward, centre and half size in place of ends";
+    box_flat "box/flat", 8, CaseDraw::Boxes(BoxKind::Flat), "boxes without a volume, zeros of both signs";
+    box_range "box/range", 8, CaseDraw::Boxes(BoxKind::Range), "overflow and underflow of areas and volumes";
+    crowd_new_pairs "crowd/new-pairs", 2, CaseDraw::Crowd(CrowdKind::NewPairs), "a fixed buffer of new pairs", after "mujoco_warp #1461, newton #3702 and Box3D's \"ignoring this pair\"";
+    crowd_partners "crowd/partners", 1, CaseDraw::Crowd(CrowdKind::Partners), "a fixed buffer of one body's partners, a fixed stack or pool of nodes", after "Jolt #1520 and #1235";
+    stale_reshape "stale/reshape", 6, CaseDraw::Stale(StaleKind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";
+    stale_reorder "stale/reorder", 6, CaseDraw::Stale(StaleKind::Reorder), "stale bounds of bodies that get another number", after "fcl #368";
+    stale_rebase "stale/rebase", 6, CaseDraw::Stale(StaleKind::Rebase), "stale bounds after another origin", after "newton #4008";
+    stale_all_at_once "stale/all-at-once", 6, CaseDraw::Stale(StaleKind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
+    list_both "list/both", 3, CaseDraw::Approach(ApproachKind::Both), "a list kept until one body has moved as far as two together may", after "lammps #1701";
+    list_one "list/one", 3, CaseDraw::Approach(ApproachKind::One), "a list kept for a number of frames", after "lammps #4239";
+    list_return "list/return", 3, CaseDraw::Approach(ApproachKind::Return), "a list whose age is measured from frame to frame", after "lammps #1701";
+    filter_groups "filter/groups", 6, CaseDraw::ClaimInput(ClaimInputKind::Groups, &[Claim::Filter]), "masks asked of one body alone, or of a few bits", after "newton #3713 and #990";
+    filter_excluded "filter/excluded", 6, CaseDraw::ClaimInput(ClaimInputKind::Excluded, &[Claim::Filter]), "excluded pairs that are reported", after "newton #1553";
+    filter_at_rest "filter/at-rest", 6, CaseDraw::ClaimInput(ClaimInputKind::AtRest, &[Claim::Filter]), "filters of bodies at rest that are not asked again", after "godot #54110";
+    order_insertion "order/insertion", 6, CaseDraw::ClaimInput(ClaimInputKind::Insertion, &[Claim::Order]), "answers that depend on the order of insertion", after "fcl #368";
+    restore_replay "restore/replay", 6, CaseDraw::ClaimInput(ClaimInputKind::Restored, &[Claim::Restore]), "a state that is not in the snapshot", after "parry #402 and rapier #966";
+    margin_global "margin/global", 6, CaseDraw::ClaimInput(ClaimInputKind::Margin, &[Claim::Margin]), "a margin that only the later test knows of", after "coal #625 and #685";
+    margin_by_body "margin/by-body", 6, CaseDraw::ClaimInput(ClaimInputKind::Margins, &[Claim::Margin]), "one body's margin taken for both, a rounded sum", after "avian #952 and coal #802";
 } }
 
 /// Every group: the catalogue's own, then the files of hard cases as `hard/…`.
 ///
 /// # Errors
-/// A file of hard cases that can't be read: none that is compiled in.
+/// A file of hard cases can't be read. This does not happen for the files that are compiled in.
 pub fn groups() -> Result<Vec<CaseGroup>, CatalogueError> {
     let mut groups = OWN.to_vec();
     for (&name, &(source, text)) in HARD.iter().zip(hard::FILES) {
@@ -224,9 +229,9 @@ impl CaseGroup {
     pub fn claims(&self) -> &'static [Claim] {
         match self.draw {
             CaseDraw::Boxes(_) => &[Claim::Aabb],
-            CaseDraw::Asked(_, claims) => claims,
+            CaseDraw::ClaimInput(_, claims) => claims,
             // So many bodies that meshes would take minutes.
-            CaseDraw::Crowd(crowds::Kind::NewPairs | crowds::Kind::Partners) => {
+            CaseDraw::Crowd(CrowdKind::NewPairs | CrowdKind::Partners) => {
                 &[Claim::Sphere, Claim::Aabb]
             }
             // Their balls are set, and don't contain the meshes.
@@ -254,7 +259,7 @@ impl CaseGroup {
     /// Draws a case, about the first of the group's claims.
     ///
     /// # Errors
-    /// Forms that can't be had.
+    /// A form can't be built.
     pub fn case(&self, number: u32, seed: Option<u64>) -> Result<Case, CatalogueError> {
         let mut rng = ChaCha8Rng::seed_from_u64(key(self.name) ^ seed.unwrap_or(0).rotate_left(17));
         rng.set_stream(u64::from(number) + (u64::from(seed.is_some()) << 32));
@@ -290,7 +295,8 @@ impl CaseGroup {
         }
     }
 
-    /// Draws bodies; so many partners near the first, or touching it exactly, or so many boxes.
+    /// Draws bodies. The count is that of partners near the first body or touching it exactly, or
+    /// of boxes.
     fn drawn(
         &self,
         number: u32,
@@ -317,8 +323,8 @@ impl CaseGroup {
             CaseDraw::Changes(kind, crowds) => changes::along_an_axis(kind, number - crowds, rng),
             CaseDraw::Boxes(kind) => boxes::boxes(kind, boxes, rng),
             CaseDraw::Stale(kind) => stale_data::changing(kind, number, rng),
-            CaseDraw::Listed(kind) => Ok(approaches::approach(kind, number, rng)?),
-            CaseDraw::Asked(kind, _) => claim_inputs::asked(kind, number, rng),
+            CaseDraw::Approach(kind) => Ok(approaches::approach(kind, number, rng)?),
+            CaseDraw::ClaimInput(kind, _) => claim_inputs::with_input(kind, number, rng),
             CaseDraw::Hard(text) => hard_case(text, number, seed),
         }
     }
@@ -353,7 +359,7 @@ pub struct CaseId {
     pub group: CaseGroup,
     /// Its number in the group.
     pub number: u32,
-    /// What draws it; absent: it is published.
+    /// The seed that draws it; absent if it is published.
     pub seed: Option<u64>,
     /// What it is judged by.
     pub claim: Claim,
@@ -377,8 +383,8 @@ impl CaseId {
     }
 }
 
-/// Which cases, in turns over the groups so that every bug is looked for early. Groups that are
-/// about this claim alone come first.
+/// The selected cases, alternating between groups so that every bug is looked for early. Groups
+/// that are only about this claim come first.
 ///
 /// # Errors
 /// As [`groups`].

@@ -1,5 +1,5 @@
-//! What can change about a body between two frames, one by one and all at once: its position, its
-//! shape, its number, and the origin of all positions.
+//! Changes of a body between two frames: its position, its shape, its number, or the origin of all
+//! positions, each alone and all at once.
 //!
 //! Each row has a static body and a moving one, far from each other. In each frame a change brings
 //! some of the moving bodies to their partners, from either side along one axis. A culler that
@@ -7,14 +7,16 @@
 
 use rand::Rng;
 
-use super::changes::{ALONG, AWAY, NEAR, REACH, UNTURNED, cube, needle, places};
+use super::changes::{
+    MEETING_DISTANCE, PARTED_DISTANCE, QUARTER_TURNS, TIP_DISTANCE, UNTURNED, cube, needle, places,
+};
 use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use sdop::bodies::Bodies;
 
 /// What changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum StaleKind {
     /// Bodies stay where they are and get another shape.
     Reshape,
     /// Bodies move, and all have other numbers.
@@ -42,7 +44,11 @@ struct RowBody {
 }
 
 /// A case whose changes are along the axis of this number, modulo 3.
-pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
+pub fn changing(
+    kind: StaleKind,
+    number: u32,
+    rng: &mut impl Rng,
+) -> Result<DrawnCase, CatalogueError> {
     let shapes = vec![cube(rng)?, needle()?];
     let axis = number as usize % 3;
     let places = places(axis, ROWS, rng);
@@ -52,7 +58,7 @@ pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase
         let mut all: Vec<RowBody> = (0..ROWS)
             .flat_map(|row| placed(kind, axis, &places, row, n))
             .collect();
-        if matches!(kind, Kind::Reorder | Kind::AllAtOnce) {
+        if matches!(kind, StaleKind::Reorder | StaleKind::AllAtOnce) {
             let by = 7 * n % all.len();
             all.rotate_left(by);
         }
@@ -74,11 +80,11 @@ pub fn changing(kind: Kind, number: u32, rng: &mut impl Rng) -> Result<DrawnCase
 
 /// A row's bodies in a frame: the static one, and the other, which meets it in every other frame.
 /// On either side there are rows that meet in the first frame and rows that don't.
-fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) -> Vec<RowBody> {
+fn placed(kind: StaleKind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) -> Vec<RowBody> {
     let after = (n % 2 == 1) != (row / 2 % 2 == 1);
     let side = if row.is_multiple_of(2) { 1.0 } else { -1.0 };
     let origin = match kind {
-        Kind::Rebase => ORIGINS[n],
+        StaleKind::Rebase => ORIGINS[n],
         _ => 0.0,
     };
     let at = |distance: f32| {
@@ -90,7 +96,7 @@ fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) ->
         id,
         shape,
         dynamic: true,
-        rotation: ALONG[axis],
+        rotation: QUARTER_TURNS[axis],
         translation: at(distance),
     };
     let mut all = vec![RowBody {
@@ -102,17 +108,25 @@ fn placed(kind: Kind, axis: usize, places: &[[f32; 3]], row: usize, n: usize) ->
     }];
     let id = 2 * row + 1;
     let change = match kind {
-        Kind::Reshape => 1,
-        Kind::AllAtOnce => row % 4,
-        Kind::Reorder | Kind::Rebase => 3,
+        StaleKind::Reshape => 1,
+        StaleKind::AllAtOnce => row % 4,
+        StaleKind::Reorder | StaleKind::Rebase => 3,
     };
     match change {
-        0 => all.push(moving(id, 0, if after { NEAR } else { 1e6 })),
-        1 => all.push(moving(id, u32::from(after), REACH)),
+        0 => all.push(moving(id, 0, if after { MEETING_DISTANCE } else { 1e6 })),
+        1 => all.push(moving(id, u32::from(after), TIP_DISTANCE)),
         // A new body each time, which is gone in the next frame.
-        2 if after => all.push(moving(id + 2 * ROWS * (n + 1), 0, NEAR)),
+        2 if after => all.push(moving(id + 2 * ROWS * (n + 1), 0, MEETING_DISTANCE)),
         2 => {}
-        _ => all.push(moving(id, 0, if after { NEAR } else { AWAY })),
+        _ => all.push(moving(
+            id,
+            0,
+            if after {
+                MEETING_DISTANCE
+            } else {
+                PARTED_DISTANCE
+            },
+        )),
     }
     all
 }

@@ -9,6 +9,7 @@ use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::BoxLedger;
 use crate::ours::compare::ListCount;
 use crate::ours::configurations::Mode;
+use crate::ours::histories::HistoryLedger;
 use crate::ours::matrix::Matrix;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 
@@ -37,6 +38,8 @@ pub struct Ledger {
     pub matrix: Matrix,
     /// Lists of given boxes.
     pub boxes: BoxLedger,
+    /// Lists of long-lived worlds.
+    pub histories: HistoryLedger,
 }
 
 /// A missed pair, or one on which a finder disagrees with all-pairs.
@@ -50,8 +53,7 @@ pub struct Failure {
     pub case: Case,
     /// The pair.
     pub pair: [u32; 2],
-    /// Whether the exact answers ask for it; otherwise all-pairs has it and this list not, or the
-    /// other way round.
+    /// Whether the exact answers require it; otherwise only one of all-pairs and this list has it.
     pub missed: bool,
 }
 
@@ -88,17 +90,18 @@ impl Ledger {
         }
         self.matrix.add(&other.matrix);
         self.boxes.add(other.boxes);
+        self.histories.add(other.histories);
         self.failures.extend(other.failures);
         self.failures.truncate(MOST_FAILURES);
     }
 
-    /// Missed pairs in all.
+    /// The number of all missed pairs.
     #[must_use]
     pub fn missed(&self) -> u64 {
         self.rows.values().map(|count| count.missed).sum()
     }
 
-    /// Pairs on which a list and that of all-pairs differ, in all.
+    /// The number of all pairs on which a list differs from that of all-pairs.
     #[must_use]
     pub fn differing(&self) -> u64 {
         self.rows.values().map(|count| count.differ).sum()

@@ -1,5 +1,5 @@
-//! Our culler under judgement: in every way that it culls ([`run`]), over rounds of seeds and hard
-//! cases ([`rounds`]), and as a subject like any other program ([`subject`]).
+//! Judges our culler: in every way that it culls ([`run`]), over rounds of seeds and hard cases
+//! ([`rounds`]), and as a subject like any other program ([`subject`]).
 
 pub mod ledger;
 pub mod rounds;

@@ -1,5 +1,5 @@
-//! Rounds of a verification run: what a seed or a group of hard cases draws, judged once by every
-//! predicate and then culled in every way, in the modes of this turn.
+//! Rounds of a verification run. The bodies that a seed or a group of hard cases draws are judged
+//! once by every predicate, and then culled in every way, in the modes of this turn.
 
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -11,6 +11,7 @@ use crate::ours::boxes;
 use crate::ours::configurations::Rotation;
 use crate::ours::forms::{self, Form};
 use crate::ours::hard::HardCaseGroup;
+use crate::ours::histories::{draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes};
 use crate::ours::reference_shapes::Shapes;
 use crate::ours::seeded_draws::{ContactSpec, crowd, probe};
 use sdop::bodies::Bodies;
@@ -53,8 +54,12 @@ pub enum SeedSource {
     Random,
 }
 
-/// The random stream of given boxes; those of sources have lower numbers.
+/// The random streams of given boxes and of histories; those of sources have lower numbers.
 const BOXES: u64 = 8;
+const HISTORIES: u64 = 9;
+
+/// Modes in which each world lives through a history.
+const MODES_PER_HISTORY: usize = 3;
 
 /// Given boxes of a seed, in every cell.
 ///
@@ -66,6 +71,38 @@ pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
     let frames = boxes::draw(&mut |n| rng.random_range(0..n));
     Ok(Ledger {
         boxes: boxes::judge(&frames, rotation)?,
+        ..Ledger::default()
+    })
+}
+
+/// Long-lived worlds of a seed for one or-DOP, number `number` of all that a seed has: one history
+/// of given boxes and one of meshes, by every strategy and overlap test. The modes of eight or-DOPs
+/// fill every cell.
+///
+/// # Errors
+/// As [`judge_meshes`].
+pub fn histories(
+    seed: u64,
+    number: usize,
+    (k, axes): (DirectionSet, Axes),
+    rotation: &Rotation,
+) -> Result<Ledger, RoundError> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(64).wrapping_add(number as u64));
+    rng.set_stream(HISTORIES);
+    let all = rotation.modes();
+    let modes = |row: usize| {
+        let first = row + number * MODES_PER_HISTORY + seed as usize % all.len();
+        let modes = (first..).take(MODES_PER_HISTORY);
+        modes.map(|turn| all[turn % all.len()]).collect::<Vec<_>>()
+    };
+    let shapes = history_shapes((k, axes), seed)?;
+    let mut below = |n| rng.random_range(0..n);
+    let boxes = draw_boxes(&mut below);
+    let meshes = draw_meshes(&shapes, &mut below);
+    let mut judged = judge_boxes(&boxes, &modes(0))?;
+    judged.add(judge_meshes(&shapes, &meshes, (k, axes), modes)?);
+    Ok(Ledger {
+        histories: judged,
         ..Ledger::default()
     })
 }
@@ -155,4 +192,35 @@ pub fn group(
         &Predicate::ALL,
         (rotation, number as u64),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use crate::ours::configurations::variants;
+    use crate::ours::histories::HistoryCell;
+    use sdop::simd::Tier;
+
+    /// Our worlds pass, and a seed's histories fill every cell.
+    #[test]
+    fn histories_fill_every_cell() {
+        let tiers = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
+        let rotation = Rotation::new(&tiers);
+        let mut all = Ledger::default();
+        for (number, variant) in variants().enumerate() {
+            all.add(histories(1, number, variant, &rotation).unwrap());
+        }
+        let judged = all.histories;
+        assert_eq!(judged.failure, None);
+        assert_eq!((judged.missed, judged.differ), (0, 0));
+        assert!(
+            judged.required > 20 * judged.lists,
+            "pairs are near each other"
+        );
+        for cell in HistoryCell::all(&rotation) {
+            assert!(judged.lists_in(&cell) > 0, "{cell:?}");
+        }
+    }
 }

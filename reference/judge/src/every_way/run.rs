@@ -1,5 +1,5 @@
-//! Frames that one culler sees, culled in every way. Each list is compared with the exact answers
-//! and with that of all-pairs.
+//! Culls the same frames in every way, and compares each list with the exact answers and with that
+//! of all-pairs.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -13,6 +13,7 @@ use crate::ours::compare::{compare, culler, difference, found, settings};
 use crate::ours::configurations::{Mode, rows};
 use crate::ours::forms::FormError;
 use crate::ours::hard::HardCaseError;
+use crate::ours::histories::HistoryError;
 use crate::ours::reference_shapes::{InvalidInput, Shapes};
 use crate::score::Miss;
 use crate::shrink::{Lists, SmallestCase, shrink_while};
@@ -28,6 +29,9 @@ pub enum RoundError {
     /// A culler that can't be made, or bodies that it refuses.
     #[error(transparent)]
     Cull(#[from] CullError),
+    /// A history that a world refuses.
+    #[error(transparent)]
+    History(#[from] HistoryError),
     /// Numbers that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),
@@ -150,12 +154,13 @@ impl Run<'_> {
     }
 }
 
-/// What the lists of one strategy and overlap test are held against, whichever finder and mode.
+/// The lists with which those of one strategy and overlap test are compared, for every finder and
+/// mode.
 struct ExpectedLists<'a> {
     run: &'a Run<'a>,
     row: CullSettings,
-    /// What all-pairs finds in the plainest mode, a list a frame, by tier: flush-to-zero may decide
-    /// otherwise.
+    /// The pairs that all-pairs finds in the simplest mode, one list per frame, by tier:
+    /// flush-to-zero may decide otherwise.
     all_pairs: BTreeMap<&'static str, Vec<Vec<[u32; 2]>>>,
     /// Whether the margins explain an extra pair, by frame.
     explained: BTreeMap<(usize, [u32; 2]), bool>,

@@ -1,4 +1,4 @@
-//! Our cullers as one more subject: in every way that they have, each in the mode whose turn it is.
+//! Our cullers as a subject: in every way that they have, each in the mode whose turn it is.
 
 use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
@@ -31,7 +31,7 @@ pub struct EveryWay {
 }
 
 impl EveryWay {
-    /// On these modes.
+    /// Our cullers in these modes.
     #[must_use]
     pub fn new(rotation: Rotation) -> Self {
         Self { rotation }
@@ -78,7 +78,7 @@ impl Subject for EveryWay {
 
 type Lists = Vec<Vec<[u32; 2]>>;
 
-/// What is in all of some lists, frame by frame; they are sorted.
+/// The pairs that all of these lists contain, frame by frame; the lists are sorted.
 fn all_report(
     mut lists: impl Iterator<Item = Result<Lists, CullError>>,
 ) -> Result<Lists, CullError> {

@@ -137,7 +137,7 @@ impl Answers {
         self.tallies[predicate.index()] = tally;
     }
 
-    /// One answer a pair; empty for a predicate that was not asked.
+    /// One answer per pair; empty for a predicate that was not evaluated.
     #[must_use]
     pub fn of(&self, predicate: Predicate) -> &[bool] {
         &self.answers[predicate.index()]
@@ -170,7 +170,7 @@ impl Answers {
 }
 
 /// Whether the rounding margins explain the report of a pair: volumes wider by them overlap
-/// exactly. World-aligned volumes have no other looseness than their rounding.
+/// exactly. World-aligned volumes are larger than necessary only by their rounding.
 ///
 /// # Errors
 /// A pose outside the contract.

@@ -1,11 +1,12 @@
 //! Strategies of proptest that draw near-touching configurations on purpose (feature `proptest`).
 //!
-//! Uniform draws are far apart or deep inside one another. Here two bodies are put into a contact
-//! ([`Contact`]) that shrinks towards equal, unturned bodies whose gap is zero.
+//! Uniformly drawn bodies are far apart or deep inside one another. Here two bodies are put into
+//! contact ([`Contact`]). Proptest shrinks a failure towards equal bodies without rotation and with
+//! a gap of zero.
 
 use proptest::prelude::*;
 
-use crate::ours::contact::{Contact, Kind, PlacedShape};
+use crate::ours::contact::{Contact, ContactKind, PlacedShape};
 
 /// A quaternion: any direction with a norm of 0.1 to 2, small integers, or a tiny or huge norm.
 pub fn rotation() -> impl Strategy<Value = [f32; 4]> {
@@ -31,7 +32,7 @@ pub fn contact() -> impl Strategy<Value = Contact> {
         .prop_filter("a direction", |d| d.iter().any(|x| x.abs() > 1e-3));
     let gap = prop_oneof![Just(0.0), -8.0..8.0];
     (
-        prop::sample::select(&Kind::ALL[..]),
+        prop::sample::select(&ContactKind::ALL[..]),
         [0_u32..64, 0..64],
         direction,
         gap,

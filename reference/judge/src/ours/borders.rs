@@ -1,12 +1,12 @@
 //! Scenes built from the grid's own arithmetic: extents, centres and reaches on the borders between
 //! its cells, a few units in the last place of f64 to either side.
 //!
-//! A random coordinate comes that near to a border once in 2⁵⁰ draws, so random scenes can't tell a
-//! cell found by rounding half to even from one counted by a division that rounds half away from
-//! zero. Here the lowest centre, which is the grid's origin, or the coordinate on the border is a
-//! number so small that its last place moves a quotient by one of the quotient's. All that is
-//! chosen comes from one function, "a number below n": a random generator searches, a fuzzer is
-//! guided.
+//! A random coordinate comes that close to a border once in 2⁵⁰ draws, so random scenes can't
+//! distinguish a cell found by rounding half to even from one counted by a division that rounds
+//! half away from zero. Here the lowest centre, which is the grid's origin, or the coordinate on
+//! the border is so small that its last place moves a quotient by the quotient's last place. One
+//! function makes all choices, "a number below n". It can be a random generator, or a fuzzer that
+//! is guided by coverage.
 
 use sdop::bodies::Bodies;
 use sdop::broad_phase::{BallBounds, Cells, TableLayout};
@@ -35,7 +35,7 @@ pub struct Borders {
 /// A finder's list that isn't that of all pairs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FinderDifference {
-    /// Who.
+    /// The finder that is wrong.
     pub finder: Finder,
     /// In which frame.
     pub frame: usize,
@@ -215,7 +215,7 @@ impl BorderDraw<'_> {
         from[self.below(from.len() as u32) as usize]
     }
 
-    /// In [0, 1).
+    /// A number in [0, 1).
     fn unit(&mut self) -> f64 {
         f64::from(self.below(1 << 24)) / f64::from(1 << 24)
     }

@@ -1,6 +1,6 @@
-//! Given boxes against their definition: by every finder, in every tier, on any number of threads
-//! exactly those are listed that have a point in common. Ends are compared one by one, which rounds
-//! nothing.
+//! Compares cullers of boxes with the definition: every finder, in every tier and on any number of
+//! threads, must list exactly the boxes that have a point in common. The definition compares ends,
+//! which needs no rounding.
 
 use std::collections::BTreeMap;
 
@@ -30,7 +30,7 @@ const UNITS: [i32; 4] = [-70, 0, 0, 100];
 /// Which list of boxes: all that decides how it is made, and nothing that decides what it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BoxCell {
-    /// Who finds the candidates.
+    /// The finder of candidates.
     pub finder: Finder,
     /// The tier's name.
     pub tier: &'static str,
@@ -86,7 +86,7 @@ impl BoxLedger {
         self.failure = self.failure.take().or(other.failure);
     }
 
-    /// Wrong pairs in all.
+    /// The number of all wrong pairs.
     #[must_use]
     pub fn wrong(&self) -> u64 {
         self.cells.values().map(|[_, wrong]| wrong).sum()
@@ -146,7 +146,7 @@ fn share(below: &mut impl FnMut(u32) -> u32) -> f32 {
 
 /// A box that begins where another one ends on some axis, or ends where that begins, give or take
 /// three last places.
-fn beside(other: &Aabb, sides: [f32; 3], below: &mut impl FnMut(u32) -> u32) -> Aabb {
+pub(super) fn beside(other: &Aabb, sides: [f32; 3], below: &mut impl FnMut(u32) -> u32) -> Aabb {
     let (mut min, at) = (other.min, below(3) as usize);
     let off = below(7) as i32 - 3;
     let shifted = |end: f32| {

@@ -20,7 +20,7 @@ pub struct ListCount {
     pub reported: u64,
     /// Required and not reported: the promise broken.
     pub missed: u64,
-    /// In this list and not in that of all-pairs, or the other way round.
+    /// Pairs that are in this list and not in that of all-pairs, or the other way round.
     pub differ: u64,
     /// Reported although the exact volumes don't overlap, but volumes wider by the stated margins
     /// do: the price of rounding.

@@ -1,11 +1,10 @@
-//! Every configuration of culling a frame, and the modes in which each takes its turn.
+//! Every configuration in which a frame can be culled, and the modes that these use in turn.
 //!
 //! A *way* decides what is reported: strategy × overlap test × finder, for one or-DOP (k, axes). A
 //! *mode* decides how it is computed and must change nothing: updates × tier × threads. Every way
 //! in every mode on every frame would cost twenty times as much, so a [`Rotation`] gives each way
-//! another mode in each turn. Nothing else may follow the turn's number in step, or a mode would
-//! always meet the same kind of case: the order of modes is drawn anew each time all have had their
-//! turn.
+//! another mode in each turn. If the mode followed the turn's number, a mode could always meet the
+//! same kind of case. Therefore the order of modes is shuffled each time all have had their turn.
 
 use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;

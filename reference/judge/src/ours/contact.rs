@@ -1,5 +1,5 @@
-//! Near-touching configurations, drawn on purpose: uniform random pairs are far apart or deep
-//! inside one another and never ask for the last bit.
+//! Bodies that nearly touch, drawn on purpose: uniform random pairs are far apart or deep inside
+//! one another, so the last bit never decides them.
 //!
 //! A supporting feature of A and one of B along an axis n are put together, Δ = a* − b* + gap·n. At
 //! gap 0 the sets share the point a* and n separates their interiors, so the pair touches whatever
@@ -16,7 +16,7 @@ use sdop::rounding::U;
 /// What touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum ContactKind {
     /// Bounding balls along any direction.
     Ball,
     /// or-DOP corner on or-DOP face of the first body.
@@ -37,7 +37,7 @@ pub enum Kind {
     Concentric,
 }
 
-impl Kind {
+impl ContactKind {
     /// Every kind.
     pub const ALL: [Self; 9] = [
         Self::Ball,
@@ -56,7 +56,7 @@ impl Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
     /// What touches.
-    pub kind: Kind,
+    pub kind: ContactKind,
     /// Which face, edge or world direction; taken modulo their number.
     pub pick: [u32; 2],
     /// Any direction, any length; used by kinds that take one, and for the sign of the others'
@@ -110,21 +110,21 @@ impl Contact {
             DVec3::from(*n).try_normalize()
         };
         let (n, [pa, pb]) = match self.kind {
-            Kind::Ball => {
+            ContactKind::Ball => {
                 let radii = f64::from(a.built.ball.radius) + f64::from(b.built.ball.radius);
                 return Some((any, between + any * radii));
             }
-            Kind::Concentric => return Some((any, between)),
-            Kind::FirstFace | Kind::SecondFace | Kind::Edges => {
+            ContactKind::Concentric => return Some((any, between)),
+            ContactKind::FirstFace | ContactKind::SecondFace | ContactKind::Edges => {
                 let (ta, tb) = (a.turned(), b.turned());
                 let n = match self.kind {
-                    Kind::FirstFace => nth(&ta.normals, 0)?,
-                    Kind::SecondFace => nth(&tb.normals, 1)?,
+                    ContactKind::FirstFace => nth(&ta.normals, 0)?,
+                    ContactKind::SecondFace => nth(&tb.normals, 1)?,
                     _ => crossed(nth(&ta.edges, 0)?, nth(&tb.edges, 1)?, any),
                 };
                 (n, [ta.corners, tb.corners])
             }
-            Kind::Box => {
+            ContactKind::Box => {
                 let (ta, tb) = (a.turned_box(), b.turned_box());
                 let n = match self.pick[0] % 3 {
                     0 => nth(&ta.normals, 1)?,
@@ -133,14 +133,14 @@ impl Contact {
                 };
                 (n, [ta.corners, tb.corners])
             }
-            Kind::World => {
+            ContactKind::World => {
                 let directions = reference::DirectionSet::K26.coefficients();
                 let c = directions[self.pick[0] as usize % directions.len()];
                 let n = DVec3::from(c.map(f64::from)).normalize();
                 (n, [a.vertices(), b.vertices()])
             }
-            Kind::Mesh => (any, [a.vertices(), b.vertices()]),
-            Kind::Triangle => (
+            ContactKind::Mesh => (any, [a.vertices(), b.vertices()]),
+            ContactKind::Triangle => (
                 a.triangle_normal(self.pick[0]).unwrap_or(any),
                 [a.vertices(), b.vertices()],
             ),

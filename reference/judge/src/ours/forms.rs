@@ -1,4 +1,4 @@
-//! Forms by name and size, the extreme ones included, and the shapes that are built from them.
+//! Forms by name and size, including extreme ones, and the shapes that are built from them.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ pub struct Form {
     pub offset: Option<[f32; 3]>,
 }
 
-/// A form that can't be had.
+/// A form that can't be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("form {form}: {problem}")]
 pub struct FormError {

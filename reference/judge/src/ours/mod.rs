@@ -16,6 +16,7 @@ pub mod configurations;
 pub mod contact;
 pub mod forms;
 pub mod hard;
+pub mod histories;
 pub mod matrix;
 pub mod naive;
 pub mod reference_shapes;

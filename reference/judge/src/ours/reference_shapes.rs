@@ -15,7 +15,7 @@ pub use reference::InvalidInput;
 /// Shapes as the culler and as the reference knows them, in one order.
 #[derive(Clone, Debug)]
 pub struct Shapes {
-    /// As built.
+    /// The shapes as built.
     pub built: Vec<Shape>,
     /// The same numbers for the reference, with each shape's oriented box.
     pub judged: Vec<reference::Shape>,
@@ -76,6 +76,21 @@ pub(crate) fn body<'a>(
     })
 }
 
+/// The shape grown by a contact margin, rounded inward: what a culler must at least take it for.
+/// Vertices stay as they are.
+pub(super) fn grown(shape: &Shape, margin: f32) -> Result<reference::Shape, InvalidInput> {
+    let by = f64::from(margin);
+    let ball = reference::Ball {
+        centre: shape.ball.centre,
+        radius: down(f64::from(shape.ball.radius) + by),
+    };
+    let slabs = |ordop: &OrDop| moved_slabs(ordop, by, [up, down]);
+    let vertices = shape.vertices.clone();
+    let obb = shape.obb(&Hull::of(&shape.vertices));
+    reference::Shape::new(ball, slabs(&shape.ordop), vertices, shape.triangles.clone())?
+        .with_obb(&slabs(&obb))
+}
+
 /// The shape, wider by a multiple of the margins.
 fn shape(shape: &Shape, margins: f64) -> Result<reference::Shape, InvalidInput> {
     let radius = f64::from(shape.ball.radius);
@@ -99,22 +114,27 @@ fn shape(shape: &Shape, margins: f64) -> Result<reference::Shape, InvalidInput> 
 
 /// The slabs in the reference's terms, each end further out by `by` times its direction's length.
 pub(crate) fn slabs(ordop: &OrDop, by: f64) -> reference::Slabs {
+    moved_slabs(ordop, by, [down, up])
+}
+
+/// The same, with the lower and the upper ends rounded as given.
+fn moved_slabs(ordop: &OrDop, by: f64, rounded: [fn(f64) -> f32; 2]) -> reference::Slabs {
     let lengths = ordop.directions.coefficients().iter();
     let lengths = lengths.map(|&c| norm(ordop.basis.direction(c)));
-    let moved = |ends: &[f32], sign: f64, outward: fn(f64) -> f32| -> Vec<f32> {
+    let moved = |ends: &[f32], sign: f64, rounded: fn(f64) -> f32| -> Vec<f32> {
         let moved = ends.iter().zip(lengths.clone());
         moved
             .map(|(&end, length)| match by * length {
                 0.0 => end,
-                further => outward(f64::from(end) + sign * further),
+                further => rounded(f64::from(end) + sign * further),
             })
             .collect()
     };
     reference::Slabs {
         directions: directions(ordop.directions),
         basis: ordop.basis.columns,
-        lo: moved(&ordop.lo, -1.0, down),
-        hi: moved(&ordop.hi, 1.0, up),
+        lo: moved(&ordop.lo, -1.0, rounded[0]),
+        hi: moved(&ordop.hi, 1.0, rounded[1]),
     }
 }
 

@@ -3,7 +3,7 @@
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, Kind, PlacedShape};
+use super::contact::{Contact, ContactKind, PlacedShape};
 use super::reference_shapes::Shapes;
 use sdop::bodies::Bodies;
 use sdop::rounding::pose;
@@ -114,7 +114,7 @@ fn norm(rng: &mut impl Rng, offset: usize) -> [f32; 4] {
 #[serde(deny_unknown_fields, default)]
 pub struct ContactSpec {
     /// What may touch.
-    pub kinds: Vec<Kind>,
+    pub kinds: Vec<ContactKind>,
     /// How orientations relate.
     pub turn: TurnKind,
     /// The largest gap or overlap, in u = 2⁻²⁴ of the bodies' reach; 0 is as close as rounding
@@ -131,7 +131,7 @@ pub struct ContactSpec {
 impl Default for ContactSpec {
     fn default() -> Self {
         Self {
-            kinds: Kind::ALL[..8].to_vec(),
+            kinds: ContactKind::ALL[..8].to_vec(),
             turn: TurnKind::Any,
             gap: 4.0,
             origin: None,

@@ -1,4 +1,4 @@
-//! Errors of records: where, what, and how to mend them.
+//! The errors of records: where the mistake is, what it is, and how to fix it.
 
 use std::path::Path;
 

@@ -13,20 +13,20 @@
 //! {"frame":n,"poses":[[qx,qy,qz,qw,tx,ty,tz]…],"pairs":[[i,j]…]}
 //! ```
 //!
-//! Readers leave out keys that they don't know. Keys may be added without a new version, which
-//! counts what an old reader would get wrong; `minor` counts additions. Minors 1 and 2 added, all
-//! optional:
+//! Readers ignore keys that they don't know, so keys may be added without a new `version`; `minor`
+//! counts such additions. `version` increases only if an old reader would misread a record. Minors
+//! 1 and 2 added these keys, all optional:
 //!
 //! | line | key | holds |
 //! |---|---|---|
 //! | first | `minor` | 2 |
-//! | first | `program` | who culled, with its version |
+//! | first | `program` | the program that culled, with its version |
 //! | first | `dt`, `side` | seconds between frames; the side of the box about the origin |
-//! | first | `effects` | `[{"name","on"}…]`: what is simulated and what isn't |
+//! | first | `effects` | `[{"name","on"}…]`: which effects are simulated and which aren't |
 //! | first | `cull` | the `[cull]` table of the scene, as run |
 //! | frame | `counters` | `[{"volume","updates","tests","hits"}…]` of this frame, in the order of the tests |
 //! | frame | `translations` | `[[tx,ty,tz]…]` in f64 of every body, where f32 doesn't hold them all; `poses` then have the nearest f32 (minor 2) |
-//! | first | `frames` | how many frames the record has when it is complete (minor 2) |
+//! | first | `frames` | the number of frames of the complete record (minor 2) |
 //! | frame | `meets` | the pairs, not both static, whose meshes meet in exact arithmetic, sorted |
 
 mod error;

@@ -58,7 +58,7 @@ fn verdict(cases: Vec<CaseVerdict>) -> Verdict {
     }
 }
 
-/// Checks the word, the cases judged and asked for, and the reason.
+/// Checks the word, the numbers of judged and requested cases, and the reason.
 fn assert_concludes(verdict: &Verdict, word: &str, counts: [usize; 2], why: Option<&str>) {
     assert_eq!(verdict.conclusion().to_string(), word);
     assert_eq!(verdict.passed(), word == "PASS");

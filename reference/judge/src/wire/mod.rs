@@ -59,7 +59,7 @@ impl Wire {
 /// Records what a program answers to a frame.
 ///
 /// # Errors
-/// That it skips the case, or that an answer before the first still holds.
+/// The program skips the case, or repeats an answer before it has given one.
 pub fn book(answers: &mut Vec<Answer>, said: ProgramAnswer, line: &[u8]) -> Result<(), StopReason> {
     match said {
         ProgramAnswer::Answer(answer) => answers.push(answer),

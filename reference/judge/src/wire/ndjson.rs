@@ -3,7 +3,8 @@
 //!
 //! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claims about given
 //! boxes, and `bodies` when the set changes, each with its former number as `was` (null for a new
-//! body). For one claim each it has `groups` and `excluded`, `margins`, or `save` and `restore`.
+//! body). For some claims it also has `groups` and `excluded`, or `margins`, or `save` and
+//! `restore`.
 
 use std::io::BufRead;
 
@@ -39,7 +40,7 @@ struct CaseFields {
     flag: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     source: String,
-    /// The claim that is asked about, then the others that the case is about.
+    /// The judged claim, then the other claims of the case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     claims: Vec<Claim>,
 }

@@ -1,4 +1,4 @@
-//! A culler and a pair test of one's own, judged as in the crate's README.
+//! A user's culler and pair test, judged as in the crate's README.
 
 use sdop_judge::WorldBox;
 

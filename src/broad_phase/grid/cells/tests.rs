@@ -121,7 +121,7 @@ fn box_cells_are_minimal() {
     assert!(larger > 20, "{larger}");
 }
 
-/// Cells of size 2 and a little, so many each way.
+/// Cells that are slightly larger than 2, this many along each axis.
 fn cells(count: [u8; 3]) -> Cells {
     let bounds = BallBounds {
         lo: [0.0; 3],

@@ -1,7 +1,7 @@
 use super::*;
 
 impl Policy {
-    /// That makes its first list with a skin of so many radii, all of this size.
+    /// A policy for bodies of one size, whose first list has a skin in typical radii.
     pub(in super::super) fn of_typical(typical: f64) -> Self {
         Self {
             radii: RadiusKind::Typical,
@@ -147,9 +147,9 @@ fn overflow_lengthens_the_pause() {
     assert!((12..24).contains(&made.count()));
 }
 
-/// Of a million bodies whose list with this skin served so many frames, until one was so far from
-/// its place: the skin of the next one, up to so many pairs and with a pair more, each with so many
-/// candidates. No skin is the grid's frames.
+/// A list of a million bodies ends. Each row has its skin, the frames that it served, the largest
+/// drifts at its end and the candidates per pair; then a number of pairs, and the next list's skin
+/// with that number and with one pair more. Without a skin, the grid handles the next frames.
 #[test]
 fn next_skin_is_the_cheapest() {
     const INFINITE_DRIFT: f64 = f64::INFINITY;

@@ -1,4 +1,5 @@
-//! Lists of long boxes, which a finder's balls (the cubes around them) describe badly.
+//! Lists of long boxes, for which a finder's balls (the cubes around the boxes) are a bad
+//! approximation.
 
 use super::TrackedBodies;
 use crate::bodies::Aabb;

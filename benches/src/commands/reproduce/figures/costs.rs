@@ -47,10 +47,11 @@ pub fn draw_strategies(area: &Area<'_>, scene: &str, costs: &[&Cost]) -> DrawRes
     panel(&right, "on another scale", &slow, name)
 }
 
-/// Costs in two parts at the widest gap between neighbours by time, if the slowest takes so many
-/// times the fastest's that its terms would be too low to see; the order within each part stays.
+/// Splits costs in two at the widest gap between neighbours by time, if the slowest takes so much
+/// longer than the fastest that the terms of the fastest would be too low to see. The order within
+/// each part stays.
 fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
-    const WIDE: f64 = 4.0;
+    const LEAST_TIME_RATIO: f64 = 4.0;
     let time = |cost: &Cost| cost.frame.measured.mean;
     let mut times: Vec<f64> = costs.iter().map(|&cost| time(cost)).collect();
     times.sort_by(f64::total_cmp);
@@ -58,7 +59,7 @@ fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
         .windows(2)
         .max_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
     let border = match (gap, times.first(), times.last()) {
-        (Some(gap), Some(first), Some(last)) if *last >= WIDE * first => gap[0],
+        (Some(gap), Some(first), Some(last)) if *last >= LEAST_TIME_RATIO * first => gap[0],
         _ => f64::INFINITY,
     };
     costs

@@ -25,7 +25,12 @@ pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     for (row, elsewhere) in OTHER_FRAME_SECONDS.into_iter().enumerate() {
         for (column, scene) in scenes.iter().enumerate() {
             let of = |rate: &&Rate| rate.scene == *scene && rate.elsewhere == elsewhere;
-            let rates: Vec<&Rate> = of_most().filter(of).collect();
+            // Where all the time went to other processes, there is no rate.
+            let has_rate = |rate: &&Rate| rate.fps.mean.is_finite();
+            let rates: Vec<&Rate> = of_most().filter(of).filter(has_rate).collect();
+            if rates.is_empty() {
+                continue;
+            }
             let panel = &panels[row * scenes.len() + column];
             let fps = || rates.iter().map(|rate| rate.fps.mean);
             let fastest = fps().fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Percentages over N, ours and the paper's: what the sphere figure and Fig. 14 share.
+//! Draws percentages over N, ours and the paper's, for the sphere figure and Fig. 14.
 
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;

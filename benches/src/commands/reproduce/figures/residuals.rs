@@ -1,4 +1,4 @@
-//! How well the formula predicts: measured over predicted, less one.
+//! How well the formula predicts: measured / predicted − 1.
 
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;

@@ -1,4 +1,4 @@
-//! What the figures share: fonts, whiskers, legends, and one colour per strategy.
+//! The common style of the figures: fonts, whiskers, legends, and one colour per strategy.
 
 use plotters::chart::MeshStyle;
 use plotters::coord::CoordTranslate;

@@ -1,4 +1,4 @@
-//! The paper's Fig. 14, the percentages of Table 1, with the paper's own as hollow marks.
+//! The paper's Fig. 14: the percentages of Table 1, with the paper's numbers as hollow marks.
 
 use plotters::prelude::*;
 use sdop_bench::reproduce::paper_name;

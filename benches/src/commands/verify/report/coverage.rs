@@ -4,6 +4,7 @@
 use sdop::settings::Strategy;
 use sdop_judge::ours::boxes::{BoxCell, BoxLedger};
 use sdop_judge::ours::configurations::Rotation;
+use sdop_judge::ours::histories::{ChangeKind, HistoryCell, HistoryLedger, Subject};
 use sdop_judge::ours::matrix::{Cell, Matrix, MatrixPart};
 use serde::Serialize;
 
@@ -20,16 +21,26 @@ pub struct Coverage {
     fewest: u64,
     /// What can't exist, and so has no cell.
     impossible: String,
-    /// By strategy and overlap test against finder: over k, axes, updates, tiers and threads.
+    /// Lists by strategy and overlap test, and by finder: the sums over k, axes, updates, tiers and
+    /// threads.
     by_strategy: Vec<CoverageLine>,
-    /// By tier, updates and threads against k and axes: over strategies, overlap tests and finders.
+    /// Lists by tier, updates and threads, and by k and axes: the sums over strategies, overlap
+    /// tests and finders.
     by_mode: Vec<CoverageLine>,
-    /// Of given boxes: pairs that meet, over frames.
+    /// Pairs of given boxes that meet, summed over frames.
     box_pairs: u64,
-    /// Those that a list had and shouldn't, or should have had.
+    /// Pairs of given boxes that a list had wrongly, or lacked.
     box_wrong: u64,
     /// Lists of given boxes: by tier and threads against finder.
     boxes: Vec<CoverageLine>,
+    /// Of long-lived worlds: lists, pairs that had to be reported, those that weren't, and pairs on
+    /// which a world and one made for the moment differ.
+    history_lists: u64,
+    history_pairs: u64,
+    history_missed: u64,
+    history_differ: u64,
+    /// Lists of long-lived worlds: by subject against kind of change, over tiers and threads.
+    histories: Vec<CoverageLine>,
     /// The cells without a list, by name.
     empty: Vec<String>,
 }
@@ -49,7 +60,11 @@ struct Part {
 }
 
 impl Coverage {
-    pub fn of(matrix: &Matrix, boxes: &BoxLedger, rotation: &Rotation) -> Self {
+    pub fn of(
+        matrix: &Matrix,
+        (boxes, histories): (&BoxLedger, &HistoryLedger),
+        rotation: &Rotation,
+    ) -> Self {
         let all = matrix.fold(rotation, |_| ());
         let all = all
             .first()
@@ -73,13 +88,21 @@ impl Coverage {
             box_pairs: boxes.required,
             box_wrong: boxes.wrong(),
             boxes: rows(BoxCell::all(rotation).map(|(cell, _)| box_part(&cell, boxes))),
+            history_lists: histories.lists,
+            history_pairs: histories.required,
+            history_missed: histories.missed,
+            history_differ: histories.differ,
+            histories: rows(history_parts(histories, rotation)),
             empty: {
                 let unjudged = BoxCell::all(rotation).map(|(cell, _)| cell);
                 let unjudged = unjudged.filter(|cell| boxes.lists(cell) == 0);
+                let unlived = HistoryCell::all(rotation).into_iter();
+                let unlived = unlived.filter(|cell| histories.lists_in(cell) == 0);
                 let names = matrix.empty(rotation).iter().map(name).collect::<Vec<_>>();
                 names
                     .into_iter()
                     .chain(unjudged.map(|cell| box_name(&cell)))
+                    .chain(unlived.map(|cell| history_name(&cell)))
                     .collect()
             },
         }
@@ -101,6 +124,14 @@ impl Coverage {
             self.box_pairs,
             self.box_wrong,
             projection(&self.boxes)
+        );
+        text += &format!(
+            "\nLong-lived worlds after changes, {} lists, {} pairs required, {} missed, {} differ:\n{}",
+            self.history_lists,
+            self.history_pairs,
+            self.history_missed,
+            self.history_differ,
+            projection(&self.histories)
         );
         for cell in &self.empty {
             text += &format!("\nempty: {cell}");
@@ -168,6 +199,38 @@ fn box_part(cell: &BoxCell, boxes: &BoxLedger) -> ((String, String), MatrixPart)
         fewest: lists,
     };
     ((line, cell.finder.to_string()), filled)
+}
+
+/// The cells of long-lived worlds, by subject and kind of change. Given boxes lack some kinds, for
+/// which they have no cells.
+fn history_parts(
+    histories: &HistoryLedger,
+    rotation: &Rotation,
+) -> Vec<((String, String), MatrixPart)> {
+    let mut parts = Vec::new();
+    let all = HistoryCell::all(rotation);
+    let mut subjects: Vec<Subject> = all.iter().map(|cell| cell.subject).collect();
+    subjects.dedup();
+    for subject in subjects {
+        for change in ChangeKind::ALL {
+            let of = |cell: &&HistoryCell| (cell.subject, cell.change) == (subject, change);
+            let lists = all.iter().filter(of).map(|cell| histories.lists_in(cell));
+            let lists: Vec<u64> = lists.collect();
+            let part = MatrixPart {
+                cells: lists.len() as u64,
+                filled: lists.iter().filter(|lists| **lists > 0).count() as u64,
+                fewest: lists.iter().copied().min().unwrap_or(0),
+            };
+            parts.push(((subject.name(), change.name().to_owned()), part));
+        }
+    }
+    parts
+}
+
+fn history_name(cell: &HistoryCell) -> String {
+    let (subject, change) = (cell.subject.name(), cell.change.name());
+    let threads = threads(cell.threads);
+    format!("a world of {subject}, {change}, {} {threads}", cell.tier)
 }
 
 fn box_name(cell: &BoxCell) -> String {

@@ -2,8 +2,8 @@
 //!
 //! A group's file says what is drawn and, for every or-DOP (k, axes), which pairs overlap by each
 //! predicate: one bit per pair, hexadecimal, in the order of runs, frames and sorted pairs. The
-//! answers were computed by the exact reference when they were recorded and are checked against it
-//! ever after.
+//! exact reference computed the answers when they were recorded, and tests still compare them with
+//! it.
 
 use std::collections::BTreeMap;
 
@@ -47,7 +47,7 @@ pub struct HardCaseGroup {
     pub contacts: ContactSpec,
     /// What they look like.
     pub forms: Vec<Form>,
-    /// By or-DOP ("18 principal"), by predicate: one bit a pair.
+    /// The answers by or-DOP ("18 principal") and by predicate: one bit per pair.
     #[serde(default)]
     pub answers: BTreeMap<String, BTreeMap<String, String>>,
 }
@@ -78,7 +78,7 @@ impl HardCaseGroup {
     /// Makes the cases for one or-DOP.
     ///
     /// # Errors
-    /// Forms that can't be had.
+    /// A form can't be built.
     pub fn cases(&self, k: DirectionSet, axes: Axes) -> Result<HardCases, HardCaseError> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         Ok(self

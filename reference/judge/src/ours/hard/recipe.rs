@@ -83,7 +83,7 @@ impl Recipe {
     /// Makes the cases for one or-DOP: contacts of its faces and edges depend on it.
     ///
     /// # Errors
-    /// Forms that can't be had.
+    /// A form can't be built.
     pub fn cases(
         &self,
         forms: &[Form],

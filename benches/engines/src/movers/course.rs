@@ -1,0 +1,225 @@
+//! Which bodies move in each frame, and where to.
+//!
+//! The scene is the uniform one of all comparisons. A mover goes a tenth of its radius per frame
+//! along a straight line and turns round at the walls.
+
+use clap::ValueEnum;
+use serde::Serialize;
+
+use sdop::bodies::Bodies;
+use sdop_bench::random::Stream;
+use sdop_bench::scene::Scene;
+
+use crate::boxes::{Frame, Slabs};
+use crate::incremental::Moves;
+use crate::scenes::{Course, Order, Spread};
+
+/// The seed of what moves.
+const SEED: u64 = 0x6d6f_7665_7273;
+/// Seconds per frame, at a speed of one radius per second.
+const DT: f32 = 0.1;
+/// A wave takes so many frames through the box.
+const WAVE_FRAMES: usize = 200;
+/// Of so many frames the first ones have all movers, the others none.
+const WAKING: [usize; 2] = [5, 20];
+
+/// Which bodies move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Motion {
+    /// The same ones in each frame.
+    Same,
+    /// A random set, drawn anew for each frame.
+    Fresh,
+    /// Those in a slab that moves through the box.
+    Wave,
+    /// All movers for five frames, then none for fifteen.
+    Waking,
+    /// A random set, and each goes anywhere.
+    Teleport,
+    /// A random set, each replaced by a new body somewhere else.
+    Replaced,
+}
+
+impl Motion {
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Same => "the same ones",
+            Self::Fresh => "a fresh random set",
+            Self::Wave => "a moving wave",
+            Self::Waking => "all waking, then sleeping",
+            Self::Teleport => "teleports",
+            Self::Replaced => "removed and inserted",
+        }
+    }
+}
+
+/// The bodies and who moves.
+pub struct MoverCourse {
+    /// The scene as it was placed.
+    pub course: Course,
+    /// Its first frame.
+    pub first: Frame,
+    motion: Motion,
+    movers: usize,
+    /// Bodies, the first of which move.
+    order: Vec<u32>,
+    boxes: Vec<Slabs>,
+    poses: Bodies,
+    velocities: Vec<[f32; 3]>,
+    half_side: f32,
+    draws: Stream,
+    frame: usize,
+}
+
+impl MoverCourse {
+    /// So many bodies of which so many move.
+    pub fn new(bodies: usize, movers: usize, motion: Motion) -> miette::Result<Self> {
+        let mut course = Course::new(Spread::Uniform, bodies, Order::Random, 0)?;
+        let mut first = Frame::default();
+        course.next_frame(&mut first)?;
+        let mut draws = Stream::new(SEED, motion as u64);
+        let mut order: Vec<u32> = (0..bodies as u32).collect();
+        draw_first(&mut order, movers, &mut draws);
+        let Scene { velocities, .. } = &course.scene;
+        let reach = |side: f32| side / 2.0;
+        Ok(Self {
+            velocities: velocities.linear.clone(),
+            half_side: course.scene.side.map_or(f32::INFINITY, reach),
+            boxes: first.boxes.clone(),
+            poses: first.bodies.clone(),
+            motion,
+            movers,
+            order,
+            draws,
+            frame: 0,
+            course,
+            first,
+        })
+    }
+
+    /// All boxes after the last frame.
+    pub fn boxes(&self) -> &[Slabs] {
+        &self.boxes
+    }
+
+    /// All poses after the last frame.
+    pub fn poses(&self) -> &Bodies {
+        &self.poses
+    }
+
+    /// The next frame's changes.
+    pub fn next_frame(&mut self) -> Moves {
+        let mut bodies = self.next_movers();
+        bodies.sort_unstable();
+        let mut moves = Moves::default();
+        for body in bodies {
+            let at = body as usize;
+            let centre = self.next_place(at);
+            let radius = self.first.radii[at];
+            let slabs = centre.map(|x| [x - radius, x + radius]);
+            self.poses.translation[at] = centre;
+            self.boxes[at] = slabs;
+            moves.bodies.push(body);
+            moves.centres.push(centre);
+            moves.boxes.push(slabs);
+        }
+        self.frame += 1;
+        moves
+    }
+
+    fn next_movers(&mut self) -> Vec<u32> {
+        let is_awake = self.frame % WAKING[1] < WAKING[0];
+        match self.motion {
+            Motion::Same => {}
+            Motion::Waking if is_awake => {}
+            Motion::Waking => return Vec::new(),
+            Motion::Wave => return self.in_wave(),
+            Motion::Fresh | Motion::Teleport | Motion::Replaced => {
+                draw_first(&mut self.order, self.movers, &mut self.draws);
+            }
+        }
+        self.order[..self.movers].to_vec()
+    }
+
+    /// The bodies in a slab across x that holds as many as should move, about.
+    fn in_wave(&self) -> Vec<u32> {
+        let width = 2.0 * self.half_side * self.movers as f32 / self.boxes.len() as f32;
+        let phase = (self.frame % WAVE_FRAMES) as f32 / WAVE_FRAMES as f32;
+        let start = -self.half_side + phase * (2.0 * self.half_side - width);
+        let slab = start..start + width;
+        let places = self.poses.translation.iter().zip(0..);
+        let inside = places.filter(|(place, _)| slab.contains(&place[0]));
+        inside.map(|(_, body)| body).collect()
+    }
+
+    fn next_place(&mut self, body: usize) -> [f32; 3] {
+        if matches!(self.motion, Motion::Teleport | Motion::Replaced) {
+            let half = self.half_side;
+            return [(); 3].map(|()| self.draws.between(-half, half));
+        }
+        let (half, velocity) = (self.half_side, &mut self.velocities[body]);
+        let mut place = self.poses.translation[body];
+        for (x, v) in place.iter_mut().zip(velocity) {
+            if x.abs() > half && x.signum() == v.signum() {
+                *v = -*v;
+            }
+            *x += *v * DT;
+        }
+        place
+    }
+}
+
+/// Draws so many at random, which come first.
+fn draw_first(order: &mut [u32], count: usize, draws: &mut Stream) {
+    for at in 0..count.min(order.len()) {
+        let other = at + draws.index((order.len() - at) as u32) as usize;
+        order.swap(at, other);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may stop")]
+
+    use super::*;
+
+    /// Every motion moves about as many as it should, each once, and boxes are where they were
+    /// moved to.
+    #[test]
+    fn movers_are_as_many_as_asked_for() {
+        for &motion in Motion::value_variants() {
+            let mut course = MoverCourse::new(1000, 100, motion).unwrap();
+            let (mut most, mut all) = (0, 0);
+            for _ in 0..WAVE_FRAMES {
+                let moves = course.next_frame();
+                assert!(moves.bodies.windows(2).all(|two| two[0] < two[1]));
+                for (body, slabs) in moves.iter() {
+                    assert_eq!(course.boxes()[body as usize], *slabs);
+                }
+                most = moves.bodies.len().max(most);
+                all += moves.bodies.len();
+            }
+            let mean = all / WAVE_FRAMES;
+            let expected = if motion == Motion::Waking { 25 } else { 100 };
+            assert!(
+                mean.abs_diff(expected) <= 10 && most >= 100,
+                "{motion:?}: {mean}, {most}"
+            );
+        }
+    }
+
+    /// The same bodies move in each frame, or other ones.
+    #[test]
+    fn fresh_movers_differ() {
+        let two = |motion| {
+            let mut course = MoverCourse::new(1000, 100, motion).unwrap();
+            [(); 2].map(|()| course.next_frame().bodies)
+        };
+        let [one, other] = two(Motion::Same);
+        assert_eq!(one, other);
+        let [one, other] = two(Motion::Fresh);
+        assert_ne!(one, other);
+    }
+}

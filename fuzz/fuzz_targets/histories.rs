@@ -1,0 +1,49 @@
+//! Long-lived worlds of boxes and of meshes, with bodies that come, go, move, rest, wake and
+//! change; the bytes choose everything. After each frame, their pairs and events are those of a
+//! newly built world, and no pair that the exact reference requires is missing.
+#![no_main]
+
+use std::sync::OnceLock;
+
+use libfuzzer_sys::fuzz_target;
+use sdop::Tier;
+use sdop_judge::ours::Shapes;
+use sdop_judge::ours::configurations::{Mode, rows, variants};
+use sdop_judge::ours::histories::{
+    draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes,
+};
+
+/// A number below another, of as many bytes as that takes; 0 when none are left.
+fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {
+    let length = (n - 1).max(1).ilog2() / 8 + 1;
+    let number = (0..length).fold(0, |sum: u32, _| {
+        sum << 8 | u32::from(bytes.next().unwrap_or(0))
+    });
+    number % n
+}
+
+/// The shapes of each or-DOP, built once.
+fn shapes(variant: usize) -> &'static Shapes {
+    static BUILT: OnceLock<Vec<Shapes>> = OnceLock::new();
+    let build = |variant| history_shapes(variant, 1).expect("its forms can be built");
+    &BUILT.get_or_init(|| variants().map(build).collect())[variant]
+}
+
+fuzz_target!(|data: &[u8]| {
+    let mut bytes = data.iter().copied();
+    let mut below = |n| below(n, &mut bytes);
+    let tiers = Tier::available();
+    let mode = Mode::plain(tiers[below(tiers.len() as u32) as usize]);
+    let judged = if below(2) == 0 {
+        let history = draw_boxes(&mut below);
+        judge_boxes(&history, &[mode])
+    } else {
+        let number = below(variants().count() as u32) as usize;
+        let variant = variants().nth(number).expect("one of them");
+        let row = below(rows(variant).len() as u32) as usize;
+        let history = draw_meshes(shapes(number), &mut below);
+        let modes = |n| if n == row { vec![mode] } else { Vec::new() };
+        judge_meshes(shapes(number), &history, variant, modes)
+    };
+    assert_eq!(judged.expect("histories are valid").failure, None);
+});

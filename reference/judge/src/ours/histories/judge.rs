@@ -1,0 +1,363 @@
+//! Carries out a history in a world, and compares the world's pairs and events after each frame.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::draw::MARGINS;
+use super::state::{Pairs, State, by_number, in_order};
+use super::subject::JudgedWorld;
+use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, Subject};
+use crate::ours::answers::{Answers, Predicate};
+use crate::ours::boxes::meeting;
+use crate::ours::compare::difference;
+use crate::ours::configurations::{Mode, rows};
+use crate::ours::reference_shapes::{Shapes, grown};
+use sdop::Motion;
+use sdop::bodies::{Aabb, Bodies};
+use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};
+use sdop::culler::Culler;
+use sdop::settings::{Budget, CullSettings, Finder, Strategy};
+use sdop::simd::Tier;
+use sdop::volume::{Axes, DirectionSet};
+use sdop::world::{Body, BodyId, World, WorldError};
+
+/// What a world must say after each frame.
+pub(super) struct Truth {
+    /// Pairs that must be reported.
+    pub required: Vec<Pairs>,
+    /// The lists of worlds made for the moment; `None` where a list depends on slots.
+    pub fresh: Option<Vec<Pairs>>,
+}
+
+/// A world that lives through a history.
+pub(super) struct Life<'a, W: JudgedWorld> {
+    pub world: W,
+    history: &'a History<W::Body>,
+    states: &'a [State<W::Body>],
+    ids: Vec<BodyId>,
+    numbers: HashMap<BodyId, u32>,
+    before: Pairs,
+}
+
+impl<'a, W: JudgedWorld> Life<'a, W> {
+    /// A world that gets the first bodies.
+    pub fn new(
+        world: W,
+        history: &'a History<W::Body>,
+        states: &'a [State<W::Body>],
+    ) -> Result<Self, WorldError> {
+        let mut life = Self {
+            world,
+            history,
+            states,
+            ids: Vec::new(),
+            numbers: HashMap::new(),
+            before: Vec::new(),
+        };
+        for &body in &history.first {
+            life.insert(body)?;
+        }
+        Ok(life)
+    }
+
+    fn insert(&mut self, body: W::Body) -> Result<(), WorldError> {
+        let id = self.world.insert(body)?;
+        self.numbers.insert(id, self.ids.len() as u32);
+        self.ids.push(id);
+        Ok(())
+    }
+
+    /// The changes that lead to a frame.
+    pub fn change(&mut self, frame: usize) -> Result<(), WorldError> {
+        let Some(before) = frame.checked_sub(1) else {
+            return Ok(());
+        };
+        let mut state = self.states[before].clone();
+        for (_, change) in &self.history.frames[before] {
+            match change {
+                Change::Insert(body) => self.insert(*body)?,
+                Change::Remove(number) => self.world.remove(self.ids[*number])?,
+                Change::Set(number, body) => {
+                    let former = state.bodies[*number].unwrap_or(*body);
+                    self.world.change(self.ids[*number], former, *body)?;
+                }
+                Change::Exclude(pair, excluded) => {
+                    let pair = pair.map(|number| self.ids[number]);
+                    self.world.exclude(pair, *excluded)?;
+                }
+                Change::Interest(numbers) => {
+                    let of_interest = numbers.iter().filter(|n| state.bodies[**n].is_some());
+                    let ids: Vec<_> = of_interest.map(|&number| self.ids[number]).collect();
+                    self.world.interest(&ids)?;
+                }
+            }
+            state.take(change);
+        }
+        Ok(())
+    }
+
+    /// Culls, and returns the pairs that are missed, and those on which the list or the events are
+    /// not what they must be.
+    fn compare(&mut self, frame: usize, truth: &Truth) -> Result<[Pairs; 2], WorldError> {
+        let listed = self.world.cull()?;
+        let list = by_number(&listed, &self.numbers);
+        let missed = |pair: &&[u32; 2]| list.binary_search(pair).is_err();
+        let missed = truth.required[frame]
+            .iter()
+            .filter(missed)
+            .copied()
+            .collect();
+        let mut differ = match &truth.fresh {
+            Some(fresh) => difference(&list, &fresh[frame]),
+            None => Vec::new(),
+        };
+        if !listed.is_sorted_by(|one, next| one < next) {
+            differ.extend(list.first());
+        }
+        let events = self.world.events();
+        let outside = |these: &Pairs, those: &Pairs| {
+            let is_outside = |pair: &&[u32; 2]| those.binary_search(pair).is_err();
+            these.iter().filter(is_outside).copied().collect::<Pairs>()
+        };
+        for (events, wanted) in [
+            (
+                events.begun().collect::<Vec<_>>(),
+                outside(&list, &self.before),
+            ),
+            (events.ended().collect(), outside(&self.before, &list)),
+        ] {
+            differ.extend(difference(&by_number(&events, &self.numbers), &wanted));
+        }
+        self.before = list;
+        Ok([missed, differ])
+    }
+
+    /// Lives through all frames.
+    pub fn live(
+        mut self,
+        subject: Subject,
+        mode: Mode,
+        truth: &Truth,
+        ledger: &mut HistoryLedger,
+    ) -> Result<(), WorldError> {
+        for frame in 0..self.states.len() {
+            self.change(frame)?;
+            let [missed, differ] = self.compare(frame, truth)?;
+            let kinds: Vec<ChangeKind> = match frame.checked_sub(1) {
+                Some(before) => self.history.frames[before]
+                    .iter()
+                    .map(|one| one.0)
+                    .collect(),
+                None => Vec::new(),
+            };
+            for change in ChangeKind::ALL {
+                if kinds.contains(&change) {
+                    let cell = HistoryCell {
+                        subject,
+                        change,
+                        tier: mode.tier.name(),
+                        threads: mode.threads,
+                    };
+                    *ledger.cells.entry(cell).or_default() += 1;
+                }
+            }
+            ledger.lists += 1;
+            ledger.required += truth.required[frame].len() as u64;
+            ledger.missed += missed.len() as u64;
+            ledger.differ += differ.len() as u64;
+            let wrong = missed.first().map(|pair| ("misses", pair));
+            let wrong = wrong.or(differ.first().map(|pair| ("differs on", pair)));
+            if let (Some((fault, pair)), None) = (wrong, &ledger.failure) {
+                let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
+                ledger.failure = Some(format!(
+                    "a world of {} {fault} bodies {} and {} in frame {frame} of a history, after {} \
+                     ({}, {} threads)",
+                    subject.name(),
+                    pair[0],
+                    pair[1],
+                    names.join(", "),
+                    mode.tier,
+                    mode.threads
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A history of given boxes in these modes.
+///
+/// # Errors
+/// Threads that the system refuses, invalid boxes.
+pub fn judge_boxes(
+    history: &History<BoxBody>,
+    modes: &[Mode],
+) -> Result<HistoryLedger, HistoryError> {
+    let states = State::all(history)?;
+    let required = required_boxes(&states);
+    // Boxes are compared as they are: what is required is all that may be reported.
+    let truth = Truth {
+        fresh: Some(required.clone()),
+        required,
+    };
+    let mut ledger = HistoryLedger::default();
+    for (&mode, &finder) in modes.iter().zip(Finder::ALL.iter().cycle()) {
+        let culler = BoxCuller::builder().finder(finder).tier(mode.tier);
+        let culler = culler.threads(mode.threads).worth_waking(0);
+        let life = Life::new(BoxWorld::with(&culler)?, history, &states)?;
+        life.live(Subject::Boxes, mode, &truth, &mut ledger)?;
+    }
+    Ok(ledger)
+}
+
+/// The pairs of boxes that a world must report after each frame, by their definition.
+pub(super) fn required_boxes(states: &[State<BoxBody>]) -> Vec<Pairs> {
+    let required = |state: &State<BoxBody>| {
+        let (numbers, parts) = state.parts(|body| body.groups);
+        let bodies: Vec<BoxBody> = state.present().map(|(_, body)| body).collect();
+        let bounds: Vec<Aabb> = bodies.iter().map(|body| body.bounds).collect();
+        let is_fixed = |at: &u32| bodies[*at as usize].motion == Motion::Fixed;
+        let counts = |pair: &[u32; 2]| !parts(*pair) && !pair.iter().all(is_fixed);
+        let meeting = meeting(&bounds).into_iter().filter(counts);
+        let number = |at: u32| numbers[at as usize] as u32;
+        in_order(meeting.map(|pair| pair.map(number)))
+    };
+    states.iter().map(required).collect()
+}
+
+/// A history of meshes, by every strategy and overlap test that has a mode: `modes(n)` are those of
+/// row number `n` of [`rows`].
+///
+/// # Errors
+/// Settings that a world refuses, poses outside the contract.
+pub fn judge_meshes(
+    shapes: &Shapes,
+    history: &History<Body>,
+    variant: (DirectionSet, Axes),
+    modes: impl Fn(usize) -> Vec<Mode>,
+) -> Result<HistoryLedger, HistoryError> {
+    let states = State::all(history)?;
+    let rows = rows(variant).into_iter().enumerate();
+    let rows = rows.map(|(number, row)| (row, modes(number)));
+    let rows: Vec<_> = rows.filter(|(_, modes)| !modes.is_empty()).collect();
+    let is_asked = |predicate: &Predicate| rows.iter().any(|(row, _)| needs(row, *predicate));
+    let predicates: Vec<Predicate> = Predicate::ALL.into_iter().filter(is_asked).collect();
+    let with_margins = with_margins(shapes)?;
+    let answers = |state| answers(&with_margins, state, variant.0, &predicates);
+    let answers = states.iter().map(answers).collect::<Result<Vec<_>, _>>()?;
+    let mut ledger = HistoryLedger::default();
+    for (row, modes) in rows {
+        let way = CullSettings {
+            budget: Some(Budget::Tests(3)),
+            ..row
+        };
+        let required = states.iter().zip(&answers);
+        let required: Vec<Pairs> = required
+            .map(|(state, answers)| required_of(state, answers, &way))
+            .collect();
+        let mut truths: BTreeMap<&str, Truth> = BTreeMap::new();
+        for (mode, &pairs) in modes.into_iter().zip(Finder::ALL.iter().cycle()) {
+            let way = CullSettings {
+                pairs,
+                ..way.clone()
+            };
+            let plain = match mode.tier {
+                Tier::SCALAR_FLUSH => mode.tier,
+                _ => Tier::SCALAR,
+            };
+            if !truths.contains_key(plain.name()) {
+                let fresh = fresh_lists(shapes, &states, &way, plain)?;
+                let required = required.clone();
+                truths.insert(plain.name(), Truth { required, fresh });
+            }
+            let life = Life::new(world(shapes, &way, mode)?, history, &states)?;
+            life.live(Subject::of(&way), mode, &truths[plain.name()], &mut ledger)?;
+        }
+    }
+    Ok(ledger)
+}
+
+/// Whether what a way must report follows from a predicate.
+fn needs(way: &CullSettings, predicate: Predicate) -> bool {
+    let strategy = way.strategy;
+    match predicate {
+        Predicate::OrDop(overlap) => strategy.scheme().has_overlap_test() && overlap == way.overlap,
+        Predicate::Aabb => strategy == Strategy::Aabb,
+        Predicate::KDop => strategy == Strategy::KDop,
+        Predicate::Obb => strategy == Strategy::Obb,
+        Predicate::Sphere => true,
+        Predicate::Mesh => false,
+    }
+}
+
+fn world(shapes: &Shapes, way: &CullSettings, mode: Mode) -> Result<World, WorldError> {
+    let culler = Culler::builder().settings(way).updates(mode.updates);
+    let culler = culler.tier(mode.tier).threads(mode.threads).worth_waking(0);
+    World::with(shapes.built.clone(), &culler)
+}
+
+/// What all-pairs finds in worlds made for the moments. A budget is spent in the order of slots,
+/// which a world's history decides.
+fn fresh_lists(
+    shapes: &Shapes,
+    states: &[State<Body>],
+    way: &CullSettings,
+    tier: Tier,
+) -> Result<Option<Vec<Pairs>>, WorldError> {
+    if way.strategy.scheme().has_budget() {
+        return Ok(None);
+    }
+    let way = CullSettings {
+        pairs: Finder::AllPairs,
+        ..way.clone()
+    };
+    let lists = states.iter().map(|state| {
+        let world = world(shapes, &way, Mode::plain(tier))?;
+        state.fresh(world)
+    });
+    lists.collect::<Result<_, _>>().map(Some)
+}
+
+/// The shapes for the reference, each grown by every margin, rounded inward.
+fn with_margins(shapes: &Shapes) -> Result<Shapes, HistoryError> {
+    let all = shapes.built.iter();
+    let all = all.flat_map(|shape| MARGINS.map(|margin| grown(shape, margin)));
+    Ok(Shapes {
+        built: Vec::new(),
+        judged: all.collect::<Result<_, _>>()?,
+        widened: Vec::new(),
+    })
+}
+
+/// The exact answers about the present bodies, grown by their margins.
+fn answers(
+    shapes: &Shapes,
+    state: &State<Body>,
+    k: DirectionSet,
+    predicates: &[Predicate],
+) -> Result<Answers, HistoryError> {
+    let mut bodies = Bodies::default();
+    for (_, body) in state.present() {
+        let margin = MARGINS.iter().position(|&known| known == body.margin);
+        let shape = body.shape * MARGINS.len() as u32 + margin.unwrap_or(0) as u32;
+        // Drawn translations are f32.
+        let translation = body.translation.map(|x| x as f32);
+        bodies.push(shape, body.motion.is_dynamic(), body.rotation, translation);
+    }
+    Ok(Answers::judge(shapes, &bodies, k, predicates)?)
+}
+
+/// The pairs that a way must report.
+fn required_of(state: &State<Body>, answers: &Answers, way: &CullSettings) -> Pairs {
+    let (numbers, parts) = state.parts(|body| body.groups);
+    let interest: Vec<u32> = (0..)
+        .zip(&numbers)
+        .filter(|(_, number)| state.interest.contains(number))
+        .map(|(at, _)| at)
+        .collect();
+    let (strategy, overlap) = (way.strategy, way.overlap);
+    let counted =
+        answers.pairs.iter().enumerate().filter(|(n, pair)| {
+            !parts(**pair) && answers.required(strategy, overlap, &interest, *n)
+        });
+    in_order(counted.map(|(_, pair)| pair.map(|at| numbers[at as usize] as u32)))
+}

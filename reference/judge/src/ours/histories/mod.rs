@@ -1,0 +1,230 @@
+//! Histories of long-lived worlds: frames in which a few bodies are inserted, removed, moved, put
+//! to rest, woken, fixed or changed. After each frame, a world's pairs are compared with the exact
+//! answers and with those of a newly built world, and its events with the difference of its lists.
+
+mod draw;
+mod judge;
+mod state;
+mod subject;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+
+pub use draw::{draw_boxes, draw_meshes, history_shapes};
+pub use judge::{judge_boxes, judge_meshes};
+
+use super::configurations::{Rotation, rows, variants};
+use super::reference_shapes::InvalidInput;
+use sdop::settings::{CullSettings, Overlap, Strategy};
+use sdop::world::WorldError;
+
+/// The error of a history that can't be judged.
+#[derive(Debug, thiserror::Error)]
+pub enum HistoryError {
+    /// What a world refuses.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// Numbers that the reference refuses.
+    #[error(transparent)]
+    Input(#[from] InvalidInput),
+}
+
+/// What happens to a body, or to two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ChangeKind {
+    /// A new body.
+    Inserted,
+    /// A body leaves.
+    Removed,
+    /// Another pose, or other ends.
+    Moved,
+    /// A dynamic or fixed body is put to rest.
+    Rested,
+    /// A resting body becomes dynamic.
+    Woken,
+    /// A body is fixed.
+    Fixed,
+    /// Other groups.
+    Regrouped,
+    /// Another contact margin.
+    Margin,
+    /// Another shape.
+    Reshaped,
+    /// Two bodies are excluded, or included again.
+    Excluded,
+    /// Other bodies are of interest.
+    Interest,
+}
+
+impl ChangeKind {
+    /// Every kind.
+    pub const ALL: [Self; 11] = [
+        Self::Inserted,
+        Self::Removed,
+        Self::Moved,
+        Self::Rested,
+        Self::Woken,
+        Self::Fixed,
+        Self::Regrouped,
+        Self::Margin,
+        Self::Reshaped,
+        Self::Excluded,
+        Self::Interest,
+    ];
+
+    /// What tables call it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Inserted => "inserted",
+            Self::Removed => "removed",
+            Self::Moved => "moved",
+            Self::Rested => "rested",
+            Self::Woken => "woken",
+            Self::Fixed => "fixed",
+            Self::Regrouped => "regrouped",
+            Self::Margin => "margin",
+            Self::Reshaped => "reshaped",
+            Self::Excluded => "excluded",
+            Self::Interest => "interest",
+        }
+    }
+
+    /// Whether given boxes can change in this way.
+    #[must_use]
+    pub fn is_of_boxes(self) -> bool {
+        !matches!(self, Self::Margin | Self::Reshaped | Self::Interest)
+    }
+}
+
+/// A change; bodies are numbered in the order of their insertion.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change<B> {
+    /// The next number.
+    Insert(B),
+    /// This one leaves.
+    Remove(usize),
+    /// This one has these properties now.
+    Set(usize, B),
+    /// Two are excluded (true) or included again.
+    Exclude([usize; 2], bool),
+    /// These are of interest.
+    Interest(Vec<usize>),
+}
+
+/// What happens to the bodies of a world.
+#[derive(Clone, Debug)]
+pub struct History<B> {
+    /// The bodies at first.
+    pub first: Vec<B>,
+    /// The changes of each frame, with their kinds.
+    pub frames: Vec<Vec<(ChangeKind, Change<B>)>>,
+}
+
+/// The world that is judged: given boxes, or meshes by a strategy with an overlap test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Subject {
+    /// A `BoxWorld`.
+    Boxes,
+    /// A `World`.
+    Meshes(Strategy, Option<Overlap>),
+}
+
+impl Subject {
+    /// The world that culls meshes in this way.
+    #[must_use]
+    pub fn of(way: &CullSettings) -> Self {
+        let has_test = way.strategy.scheme().has_overlap_test();
+        Self::Meshes(way.strategy, has_test.then_some(way.overlap))
+    }
+
+    /// What tables call it.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::Boxes => "given boxes".to_owned(),
+            Self::Meshes(strategy, None) => strategy.to_string(),
+            Self::Meshes(strategy, Some(overlap)) => format!("{strategy} {overlap}"),
+        }
+    }
+}
+
+/// Which lists: after which kind of change, and how the world is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct HistoryCell {
+    /// Which world.
+    pub subject: Subject,
+    /// What the frame has changed.
+    pub change: ChangeKind,
+    /// The tier's name.
+    pub tier: &'static str,
+    /// The number of threads.
+    pub threads: usize,
+}
+
+impl HistoryCell {
+    /// Every cell that can be filled with these modes.
+    #[must_use]
+    pub fn all(rotation: &Rotation) -> Vec<Self> {
+        let rows = variants().next().map(rows).unwrap_or_default();
+        let subjects = [Subject::Boxes].into_iter();
+        let subjects = subjects.chain(rows.iter().map(Subject::of));
+        let mut cells = Vec::new();
+        for subject in subjects {
+            let has = |kind: &ChangeKind| subject != Subject::Boxes || kind.is_of_boxes();
+            for change in ChangeKind::ALL.into_iter().filter(has) {
+                for mode in rotation.modes() {
+                    let cell = Self {
+                        subject,
+                        change,
+                        tier: mode.tier.name(),
+                        threads: mode.threads,
+                    };
+                    // Modes that differ in their updates alone share a cell.
+                    if !cells.contains(&cell) {
+                        cells.push(cell);
+                    }
+                }
+            }
+        }
+        cells
+    }
+}
+
+/// What was judged: sums over frames.
+#[derive(Clone, Debug, Default)]
+pub struct HistoryLedger {
+    /// Lists by cell. A list after two kinds of changes is in two cells.
+    pub cells: BTreeMap<HistoryCell, u64>,
+    /// Lists, each counted once.
+    pub lists: u64,
+    /// Pairs that had to be reported.
+    pub required: u64,
+    /// Those that weren't.
+    pub missed: u64,
+    /// Pairs and events on which a world and one made for the moment differ.
+    pub differ: u64,
+    /// The first wrong pair.
+    pub failure: Option<String>,
+}
+
+impl HistoryLedger {
+    /// Adds another one.
+    pub fn add(&mut self, other: Self) {
+        for (cell, lists) in other.cells {
+            *self.cells.entry(cell).or_default() += lists;
+        }
+        self.lists += other.lists;
+        self.required += other.required;
+        self.missed += other.missed;
+        self.differ += other.differ;
+        self.failure = self.failure.take().or(other.failure);
+    }
+
+    /// Lists judged in a cell.
+    #[must_use]
+    pub fn lists_in(&self, cell: &HistoryCell) -> u64 {
+        self.cells.get(cell).copied().unwrap_or(0)
+    }
+}

@@ -1,0 +1,144 @@
+//! The bodies of a history after some frames.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::subject::JudgedWorld;
+use super::{Change, History};
+use sdop::Groups;
+use sdop::bodies::Aabb;
+use sdop::boxes::BoxWorld;
+use sdop::world::{BodyId, WorldError};
+
+/// Pairs of bodies' numbers, the lower one first, sorted.
+pub type Pairs = Vec<[u32; 2]>;
+
+/// The bodies after some frames of a history.
+#[derive(Clone, Debug)]
+pub struct State<B> {
+    /// By number; those that have left are `None`.
+    pub bodies: Vec<Option<B>>,
+    /// Pairs that aren't reported.
+    pub excluded: Vec<[usize; 2]>,
+    /// Bodies of interest.
+    pub interest: Vec<usize>,
+    /// The slot of each body, by number: worlds order the two bodies of a pair by their slots, and
+    /// one-sided tests use the planes of the first.
+    slots: Arc<Vec<usize>>,
+}
+
+impl<B: Copy> State<B> {
+    /// After each frame, the first bodies' frame before the others.
+    pub fn all(history: &History<B>) -> Result<Vec<Self>, WorldError> {
+        let mut state = Self {
+            bodies: history.first.iter().copied().map(Some).collect(),
+            excluded: Vec::new(),
+            interest: Vec::new(),
+            slots: Arc::new(slots(history)?),
+        };
+        let mut all = vec![state.clone()];
+        for frame in &history.frames {
+            frame.iter().for_each(|(_, change)| state.take(change));
+            all.push(state.clone());
+        }
+        Ok(all)
+    }
+
+    /// Makes a change.
+    pub fn take(&mut self, change: &Change<B>) {
+        match change {
+            Change::Insert(body) => self.bodies.push(Some(*body)),
+            Change::Remove(number) => {
+                self.bodies[*number] = None;
+                self.excluded.retain(|pair| !pair.contains(number));
+                self.interest.retain(|of_interest| of_interest != number);
+            }
+            Change::Set(number, body) => self.bodies[*number] = Some(*body),
+            Change::Exclude(pair, true) => self.excluded.push(*pair),
+            Change::Exclude(pair, false) => self.excluded.retain(|known| known != pair),
+            Change::Interest(numbers) => self.interest.clone_from(numbers),
+        }
+    }
+
+    /// The bodies that are there, with their numbers, in the order of slots.
+    pub fn present(&self) -> impl Iterator<Item = (usize, B)> {
+        let numbered = self.bodies.iter().enumerate();
+        let present = numbered.filter_map(|(number, body)| Some((number, (*body)?)));
+        let mut present: Vec<_> = present.collect();
+        present.sort_by_key(|(number, _)| self.slots[*number]);
+        present.into_iter()
+    }
+
+    /// The pairs i < j of present bodies, in their order, that neither groups nor exclusion part.
+    pub fn parts(&self, groups: impl Fn(&B) -> Groups) -> (Vec<usize>, impl Fn([u32; 2]) -> bool) {
+        let (numbers, bodies): (Vec<usize>, Vec<B>) = self.present().unzip();
+        let groups: Vec<Groups> = bodies.iter().map(groups).collect();
+        let (named, excluded) = (numbers.clone(), self.excluded.clone());
+        let parts = move |pair: [u32; 2]| {
+            let [i, j] = pair.map(|at| at as usize);
+            let mut name = [named[i], named[j]];
+            name.sort_unstable();
+            !groups[i].collide(groups[j]) || excluded.contains(&name)
+        };
+        (numbers, parts)
+    }
+
+    /// A world made for the moment, and the pairs that it finds.
+    pub fn fresh<W: JudgedWorld<Body = B>>(&self, mut world: W) -> Result<Pairs, WorldError> {
+        let mut ids = vec![None; self.bodies.len()];
+        for (number, body) in self.present() {
+            ids[number] = Some(world.insert(body)?);
+        }
+        let id = |number: &usize| ids[*number];
+        for pair in &self.excluded {
+            if let [Some(a), Some(b)] = pair.each_ref().map(id) {
+                world.exclude([a, b], true)?;
+            }
+        }
+        let interest: Vec<BodyId> = self.interest.iter().filter_map(id).collect();
+        world.interest(&interest)?;
+        let numbers = ids.iter().zip(0..);
+        let numbers = numbers
+            .filter_map(|(id, number)| Some(((*id)?, number)))
+            .collect();
+        Ok(by_number(&world.cull()?, &numbers))
+    }
+}
+
+/// Pairs of ids as pairs of numbers.
+pub fn by_number(pairs: &[[BodyId; 2]], numbers: &HashMap<BodyId, u32>) -> Pairs {
+    let number = |id| numbers.get(&id).copied().unwrap_or(u32::MAX);
+    in_order(pairs.iter().map(|pair| pair.map(number)))
+}
+
+/// The lower number of each pair first, sorted.
+pub fn in_order(pairs: impl Iterator<Item = [u32; 2]>) -> Pairs {
+    let ordered = |mut pair: [u32; 2]| {
+        pair.sort_unstable();
+        pair
+    };
+    let mut pairs: Pairs = pairs.map(ordered).collect();
+    pairs.sort_unstable();
+    pairs
+}
+
+/// The slot that each body gets in a world, by number. Slots are given again after a cull.
+fn slots<B>(history: &History<B>) -> Result<Vec<usize>, WorldError> {
+    let (mut world, mut ids) = (BoxWorld::new(), Vec::new());
+    let apart = |number: usize| Aabb::new([number as f32; 3], [number as f32; 3]);
+    for number in 0..history.first.len() {
+        ids.push(world.insert(apart(number))?);
+    }
+    world.cull()?;
+    for frame in &history.frames {
+        for (_, change) in frame {
+            match change {
+                Change::Insert(_) => ids.push(world.insert(apart(ids.len()))?),
+                Change::Remove(number) => world.remove(ids[*number])?,
+                _ => {}
+            }
+        }
+        world.cull()?;
+    }
+    Ok(ids.iter().map(|id| id.slot()).collect())
+}
