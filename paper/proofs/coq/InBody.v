@@ -3,15 +3,11 @@
 From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
 From Sdop Require Import Format Geometry Double Pose Place WorldBall Rejected Ieee Shows Outward.
-From Sdop Require Import Finder Duality Vectors Norms64 OrDopPose Query.
+From Sdop Require Import Finder Duality Vectors Norms64 OrDopTest OrDopPose Query.
 Open Scope R_scope.
 
 Local Notation g := gradual64.
 
-Definition transposed (a : matrix) : matrix :=
-  {| row0 := pt (px (row0 a)) (px (row1 a)) (px (row2 a));
-     row1 := pt (py (row0 a)) (py (row1 a)) (py (row2 a));
-     row2 := pt (pz (row0 a)) (pz (row1 a)) (pz (row2 a)) |}.
 Definition format_point (p : point) : Prop :=
   format64 (px p) /\ format64 (py p) /\ format64 (pz p).
 

@@ -3,7 +3,7 @@
    gradual underflow. *)
 From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
-From Sdop Require Import Format Geometry Double Pose Place WorldBall Ieee Shows Outward Finder.
+From Sdop Require Import Format Geometry Double Pose Place WorldBall Ieee Shows Outward Finder Duality Vectors.
 Open Scope R_scope.
 
 (* src/world/region.rs: MOVED, MOVED_BEFORE, MOVED_LEAST: 2^-23, 2^-52 and 2^-149. *)
@@ -127,20 +127,6 @@ Definition slab_factor : R := 1 + / 1099511627776.
 Definition grown_end (hi margin length : R) : R :=
   next_above (add64 gradual64 hi (mul64 gradual64 (mul64 gradual64 margin length) slab_factor)).
 
-Lemma cauchy_schwarz (d p : point) : dot d p <= norm d * norm p.
-Proof.
-  pose proof (norm_nonneg d) as N. pose proof (norm_nonneg p) as M.
-  apply Rle_trans with (Rabs (dot d p)); [apply Rle_abs |].
-  rewrite <- (Rabs_pos_eq (norm d * norm p)) by (now apply Rmult_le_pos).
-  apply Rsqr_le_abs_0. unfold Rsqr.
-  replace (norm d * norm p * (norm d * norm p)) with (square d * square p)
-    by (rewrite <- !norm_square; ring).
-  unfold dot, square.
-  pose proof (Rle_0_sqr (px d * py p - py d * px p)).
-  pose proof (Rle_0_sqr (px d * pz p - pz d * px p)).
-  pose proof (Rle_0_sqr (py d * pz p - pz d * py p)). unfold Rsqr in *. lra.
-Qed.
-
 Theorem slab_with_margin (d p q : point) (hi margin length : R) :
   dot d p <= hi -> distance p q <= margin ->
   norm d * (1 - / 35184372088832) <= length <= big -> / IZR (2 ^ 200) <= norm d ->
@@ -150,7 +136,7 @@ Proof.
   intros Hp Hq (L0 & L1) Hd (M0 & M1).
   assert (Dot : dot d q <= hi + norm d * margin).
   { replace (dot d q) with (dot d p + dot d (minus q p)).
-    - pose proof (cauchy_schwarz d (minus q p)) as C. unfold distance in Hq.
+    - pose proof (Rle_trans _ _ _ (Rle_abs _) (dot_norms d (minus q p))) as C. unfold distance in Hq.
       pose proof (norm_nonneg d).
       assert (norm d * norm (minus q p) <= norm d * margin) by (apply Rmult_le_compat_l; lra). lra.
     - unfold dot, minus. cbn [px py pz]. ring. }

@@ -4,7 +4,7 @@ From Coq Require Import Reals ZArith Bool Lra Lia.
 From Flocq Require Import Core.
 From Sdop Require Import Format Geometry Double Pose Place WorldBall Rejected Ieee Shows Outward.
 From Sdop Require Import Finder.
-From Sdop Require Import Duality Vectors Norms64 OrDopPose.
+From Sdop Require Import Duality Vectors Norms64 OrDopPose Swept Query.
 Open Scope R_scope.
 
 Local Notation g := gradual64.
@@ -45,25 +45,6 @@ Proof.
   f_equal; unfold pt; f_equal; field; lra.
 Qed.
 
-Lemma chord_of (q : quaternion) (p : point) :
-  0 < norm_of q ->
-  square (minus (apply (exact_rotation q) p) p)
-    <= 4 * ((norm_of q - qw q * qw q) / norm_of q) * square p.
-Proof.
-  intro N. set (v := pt (qx q) (qy q) (qz q)).
-  assert (E : square (minus (apply (exact_rotation q) p) p)
-    = 4 * (square v * square p - dot v p * dot v p) / norm_of q).
-  { unfold square, minus, apply, exact_rotation, dot, v, pt, norm_of in *.
-    cbn [row0 row1 row2 px py pz]. field. lra. }
-  rewrite E. replace (norm_of q - qw q * qw q) with (square v)
-    by (unfold v, square, norm_of, pt; cbn [px py pz]; ring).
-  pose proof (Rle_0_sqr (dot v p)) as S. unfold Rsqr in S.
-  apply Rmult_le_reg_r with (norm_of q); [exact N |].
-  replace (4 * (square v * square p - dot v p * dot v p) / norm_of q * norm_of q)
-    with (4 * (square v * square p - dot v p * dot v p)) by (field; lra).
-  replace (4 * (square v / norm_of q) * square p * norm_of q) with (4 * (square v * square p))
-    by (field; lra). lra.
-Qed.
 (* Two quaternions turn a point to places that are apart by their difference. *)
 Lemma turned_apart (p q : quaternion) (x : point) (k : R) :
   0 < norm_of p -> 0 < norm_of q -> 0 <= k -> norm_of (apart p q) <= k * k * norm_of p ->
@@ -85,7 +66,7 @@ Proof.
   pose proof (norm_nonneg x) as X. apply norm_below.
   - apply Rmult_le_pos; lra.
   - rewrite rotation_keeps_norm by lra.
-    apply Rle_trans with (1 := chord_of r x R0). rewrite <- norm_square.
+    apply Rle_trans with (1 := chord_square r x R0). rewrite <- norm_square.
     assert (G : (norm_of r - qw r * qw r) / norm_of r <= k * k).
     { apply Rmult_le_reg_r with (norm_of r); [exact R0 |]. unfold Rdiv.
       rewrite Rmult_assoc, Rinv_l, Rmult_1_r by lra.
@@ -114,9 +95,6 @@ Definition product (p q : quaternion) : quaternion :=
   let c := computed_product p q in
   let over x := fl gradual (div64 g x (largest_of c)) in
   {| qx := over (qx c); qy := over (qy c); qz := over (qz c); qw := over (qw c) |}.
-
-Lemma sub64_as_add (x y : R) : sub64 g x y = add64 g x (- y).
-Proof. unfold sub64, add64. now rewrite !read64_is. Qed.
 
 Lemma sum_of_four (a b c d A B C D : R) :
   Rabs (a - A) <= v * Rabs A + dust -> Rabs (b - B) <= v * Rabs B + dust ->

@@ -65,6 +65,9 @@ Proof.
   apply Rmult_le_compat_r; [apply Rabs_pos | lra].
 Qed.
 
+Lemma sub64_as_add (x y : R) : sub64 g x y = add64 g x (- y).
+Proof. unfold sub64, add64. now rewrite !read64_is. Qed.
+
 Lemma sub64_share (x y : R) :
   format64 x -> format64 y -> Rabs (sub64 g x y - (x - y)) <= v * Rabs (x - y).
 Proof.

@@ -3,7 +3,7 @@
 From Coq Require Import Reals ZArith Bool List Lra Lia.
 From Flocq Require Import Core.
 From Sdop Require Import Format Geometry Double Pose Place WorldBall Ieee Shows Cells Outward.
-From Sdop Require Import Finder Duality Vectors Norms64 Query InBody QueryBody.
+From Sdop Require Import Finder Duality Vectors Norms64 OrDopTest Query InBody QueryBody.
 Import ListNotations.
 Open Scope R_scope.
 

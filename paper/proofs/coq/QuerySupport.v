@@ -51,9 +51,6 @@ Proof.
     assert (v * (l * B) <= 0.001 * (l * B)) by (apply Rmult_le_compat_r; unfold v; lra). lra.
 Qed.
 
-Lemma sub64_as_add (x y : R) : sub64 g x y = add64 g x (- y).
-Proof. unfold sub64, add64. now rewrite !read64_is. Qed.
-
 Section Parts.
 Variables top B : R.
 Hypothesis Top : 0 <= top.

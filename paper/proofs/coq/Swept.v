@@ -16,23 +16,37 @@ Definition swept_margin (linear angular offset : point) (reach seconds : R) : R 
   next_above (add64 g (mul64 g (norm_in_f64 linear) seconds) (mul64 g (Rmin angle 2) size)).
 
 (* A rotation moves a point by twice its sine of half the angle, at most. *)
+Lemma chord_square (q : quaternion) (p : point) :
+  0 < norm_of q ->
+  square (minus (apply (exact_rotation q) p) p)
+    <= 4 * ((norm_of q - qw q * qw q) / norm_of q) * square p.
+Proof.
+  intro N. set (v := pt (qx q) (qy q) (qz q)).
+  assert (E : square (minus (apply (exact_rotation q) p) p)
+    = 4 * (square v * square p - dot v p * dot v p) / norm_of q).
+  { unfold square, minus, apply, exact_rotation, dot, v, pt, norm_of in *.
+    cbn [row0 row1 row2 px py pz]. field. lra. }
+  rewrite E. replace (norm_of q - qw q * qw q) with (square v)
+    by (unfold v, square, norm_of, pt; cbn [px py pz]; ring).
+  pose proof (Rle_0_sqr (dot v p)) as S. unfold Rsqr in S.
+  apply Rmult_le_reg_r with (norm_of q); [exact N |].
+  replace (4 * (square v * square p - dot v p * dot v p) / norm_of q * norm_of q)
+    with (4 * (square v * square p - dot v p * dot v p)) by (field; lra).
+  replace (4 * (square v / norm_of q) * square p * norm_of q) with (4 * (square v * square p))
+    by (field; lra). lra.
+Qed.
+
 Lemma chord (q : quaternion) (p : point) :
   norm_of q = 1 ->
   norm (minus (apply (exact_rotation q) p) p) <= 2 * (sqrt (1 - qw q * qw q) * norm p).
 Proof.
-  intro N. set (v := pt (qx q) (qy q) (qz q)).
-  assert (V : 1 - qw q * qw q = square v) by (unfold v, square, norm_of, pt in *; cbn [px py pz]; lra).
-  assert (Pv : 0 <= sqrt (1 - qw q * qw q)) by apply sqrt_pos. pose proof (norm_nonneg p) as Pp.
-  assert (E : square (minus (apply (exact_rotation q) p) p)
-    = 4 * (square v * square p - dot v p * dot v p) / norm_of q).
-  { unfold square, minus, apply, exact_rotation, dot, v, pt, norm_of in *.
-    cbn [row0 row1 row2 px py pz]. field. rewrite N. lra. }
-  apply norm_below.
+  intro N. pose proof (chord_square q p ltac:(lra)) as C.
+  rewrite N in C. unfold Rdiv in C. rewrite Rinv_1, Rmult_1_r in C.
+  assert (V : 0 <= 1 - qw q * qw q).
+  { destruct (square_shares q) as (X & Y & Z & _). unfold norm_of in N. lra. }
+  pose proof (sqrt_pos (1 - qw q * qw q)) as P. pose proof (norm_nonneg p). apply norm_below.
   - apply Rmult_le_pos; [lra |]. now apply Rmult_le_pos.
-  - rewrite E, N. unfold Rdiv. rewrite Rinv_1, Rmult_1_r. pose proof (Rle_0_sqr (dot v p)) as S. unfold Rsqr in S.
-    replace (2 * (sqrt (1 - qw q * qw q) * norm p) * (2 * (sqrt (1 - qw q * qw q) * norm p)))
-      with (4 * ((sqrt (1 - qw q * qw q) * sqrt (1 - qw q * qw q)) * (norm p * norm p))) by ring.
-    rewrite sqrt_sqrt by (rewrite V; apply square_nonneg). rewrite norm_square, V. lra.
+  - apply Rle_trans with (1 := C). rewrite <- norm_square, <- (sqrt_sqrt _ V) at 1. lra.
 Qed.
 
 Lemma half_chord (angle : R) :

@@ -3,7 +3,8 @@
 From Sdop Require Sphere Ieee Place ReadPose WorldBall Rejected Controls Cells Grid Same Outward
   Finder Lists Levels Duality Margins Refit SupportRounded OrDop OrDopPose SlabEnd OrDopBody
   SameOrDop OrDopRun Cubes CubeLists Binning Above Reach Rows Swept Query InBody QueryBody
-  QuerySupport QueryPair QueryLine Kept Parts Examples ExamplesOrDop.
+  QuerySupport QueryPair QueryLine Kept Parts Examples ExamplesOrDop
+  ExamplesRest.
 
 Definition theorems := (
   Rejected.sphere_rejects_disjoint,
@@ -77,7 +78,17 @@ Definition theorems := (
   Examples.spheres_are_rejected,
   Examples.spheres_are_reported,
   ExamplesOrDop.ordops_are_rejected,
-  ExamplesOrDop.ordops_are_reported
+  ExamplesOrDop.ordops_are_reported,
+  ExamplesRest.ball_touches_rod,
+  ExamplesRest.box_touches_rod,
+  ExamplesRest.rods_touch,
+  ExamplesRest.line_meets_rod,
+  ExamplesRest.part_is_near,
+  ExamplesRest.first_body_moves,
+  ExamplesRest.unit_balls_in_reach,
+  ExamplesRest.unit_balls_listed,
+  ExamplesRest.corner_boxes_not_parted,
+  ExamplesRest.moving_point_contained
 ).
 
 Print Assumptions theorems.
