@@ -76,6 +76,22 @@ fn every_ordop_test_matches_record() {
     }
 }
 
+/// A choice that is added gets a golden value.
+#[test]
+fn every_choice_has_golden_pairs() {
+    let culling = Strategy::ALL.iter().copied();
+    let culling: Vec<_> = culling
+        .filter(|strategy| strategy.scheme().culls())
+        .collect();
+    assert_eq!(STRATEGIES.map(|(strategy, ..)| strategy)[..], culling);
+    for k in DirectionSet::ALL {
+        assert!(OVERLAPS.iter().any(|row| row.0 == *k), "{k}");
+    }
+    for overlap in Overlap::ALL {
+        assert!(OVERLAPS.iter().any(|row| row.1 == *overlap), "{overlap}");
+    }
+}
+
 const STRATEGIES: [(Strategy, u64, &str); 9] = [
     (Strategy::Sphere, 1070, "69a1e008ec8579de"),
     (Strategy::OrDop, 501, "1b67adbe6c474c43"),

@@ -197,6 +197,7 @@ fn every_sharable_command_is_tested() {
     let mut judged: Vec<&str> = SWEEPS.iter().map(|sweep| sweep.name).collect();
     judged.sort_unstable();
     assert_eq!(judged, shared);
+    assert_eq!(judged, TESTED, "sorted as these are");
 }
 
 /// Shards of a sweep are the work of one process.
@@ -223,24 +224,22 @@ fn shards_equal_one_process(sweep: &Sweep) {
     assert_eq!(sweep.merged(&scene, &out, &shards), whole, "{}", sweep.name);
 }
 
-#[test]
-fn verify_shards_equal_one_process() {
-    shards_equal_one_process(&SWEEPS[0]);
+/// A test for each sweep, so that they run side by side.
+macro_rules! shards_equal_one_process {
+    ($($name:ident),+) => {
+        const TESTED: &[&str] = &[$(stringify!($name)),+];
+        mod shards_equal_one_process {
+            $(#[test]
+            fn $name() {
+                super::shards_equal_one_process(super::sweep(stringify!($name)));
+            })+
+        }
+    };
 }
+shards_equal_one_process!(record, reproduce, tradeoff, verify);
 
-#[test]
-fn reproduce_shards_equal_one_process() {
-    shards_equal_one_process(&SWEEPS[1]);
-}
-
-#[test]
-fn tradeoff_shards_equal_one_process() {
-    shards_equal_one_process(&SWEEPS[2]);
-}
-
-#[test]
-fn record_shards_equal_one_process() {
-    shards_equal_one_process(&SWEEPS[3]);
+fn sweep(name: &str) -> &'static Sweep {
+    SWEEPS.iter().find(|sweep| sweep.name == name).unwrap()
 }
 
 /// Shards of another scene are no part of a work.
@@ -269,7 +268,7 @@ fn shards_of_other_scenes_are_rejected() {
 /// A record is made only from the shards of one plan.
 #[test]
 fn record_uses_only_its_shards() {
-    let sweep = SWEEPS.iter().find(|sweep| sweep.name == "record").unwrap();
+    let sweep = sweep("record");
     let (directory, scene) = scene_file(SCENE);
     let out = directory.path().join("out");
     let refused = |last: &[&str]| {
@@ -308,7 +307,7 @@ fn record_uses_only_its_shards() {
 
 #[test]
 fn an_interrupted_record_is_made_anew() {
-    let sweep = SWEEPS.iter().find(|sweep| sweep.name == "record").unwrap();
+    let sweep = sweep("record");
     let (directory, scene) = scene_file(SCENE);
     let out = directory.path().join("out");
     let part = out.join("box/reproduce.part");

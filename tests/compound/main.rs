@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod corners;
+#[path = "../support/forms.rs"]
+mod forms;
 mod lives;
 mod misuse;
 mod robots;

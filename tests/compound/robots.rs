@@ -140,16 +140,7 @@ fn meeting_parts_are_reported() {
 #[test]
 fn every_strategy_has_parts() {
     let mut random = Random(2);
-    let reports_all = |&&strategy: &&Strategy| {
-        let settings = CullSettings {
-            strategy,
-            ..CullSettings::default()
-        };
-        strategy.scheme().culls() && settings.check(2).is_ok()
-    };
-    let strategies: Vec<_> = Strategy::ALL.iter().filter(reports_all).collect();
-    assert!(strategies.len() > 5, "{strategies:?}");
-    for &strategy in strategies {
+    for strategy in forms::strategies_that_report_all() {
         let scene = Scene::new(strategy, DirectionSet::K18, [0.0; 3], &mut random);
         check(&scene);
     }

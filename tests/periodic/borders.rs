@@ -106,6 +106,7 @@ fn faces_edges_and_corners_touch() {
 /// The same for boxes of nearly half a period, in every image.
 #[test]
 fn wide_boxes_touch_in_one_image() {
+    const NONE: [i32; 0] = [];
     let period = 1.0;
     let side = 0.5_f64.next_down();
     let mut boxes = PeriodicBoxes::new([Some(period), None, None]).unwrap();
@@ -118,15 +119,15 @@ fn wide_boxes_touch_in_one_image() {
         assert!(pairs.iter().all(|pair| pair.bodies == [first, second]));
         pairs.iter().map(|pair| pair.image[0]).collect::<Vec<_>>()
     };
-    assert_eq!(image(&mut boxes, 0.5, 0.75), []);
+    assert_eq!(image(&mut boxes, 0.5, 0.75), NONE);
     assert_eq!(image(&mut boxes, side, 0.75), [0]);
     assert_eq!(image(&mut boxes, 0.75, 1.0), [-1]);
-    assert_eq!(image(&mut boxes, 0.75, 1.0_f64.next_down()), []);
-    assert_eq!(image(&mut boxes, 1.0e6 + 0.5, 1.0e6 + 0.875), []);
+    assert_eq!(image(&mut boxes, 0.75, 1.0_f64.next_down()), NONE);
+    assert_eq!(image(&mut boxes, 1.0e6 + 0.5, 1.0e6 + 0.875), NONE);
     assert_eq!(image(&mut boxes, -1.0e6 - 0.25, -1.0e6), [1_000_000]);
     assert_eq!(
         image(&mut boxes, -1.0e6 - 0.25, (-1.0e6_f64).next_down()),
-        []
+        NONE
     );
 }
 

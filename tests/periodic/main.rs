@@ -4,6 +4,8 @@
 
 mod borders;
 mod boxes;
+#[path = "../support/forms.rs"]
+mod forms;
 mod layouts;
 mod meshes;
 mod misuse;

@@ -1,9 +1,8 @@
 //! Periodic meshes against exact meshes: no pair of which an image meets is missed, and each is
 //! reported in one image.
 
-use sdop::settings::CullSettings;
 use sdop::volume::{DirectionSet, ShapeSpec};
-use sdop::{Culler, ProceduralShape, Shape, Strategy};
+use sdop::{Culler, ProceduralShape, Shape};
 use sdop_reference::WidePose;
 
 use super::*;
@@ -123,21 +122,13 @@ fn near_images([a, b]: [[f64; 3]; 2], periods: [Option<f64>; 3]) -> Vec<[i32; 3]
 fn no_meeting_image_is_missed() {
     let lengths = [3.0, 3.5, 2.75 + STEP];
     let mut random = Random(6);
-    let reports_all = |&&strategy: &&Strategy| {
-        let settings = CullSettings {
-            strategy,
-            ..CullSettings::default()
-        };
-        strategy.scheme().culls() && settings.check(2).is_ok()
-    };
-    let strategies: Vec<_> = Strategy::ALL.iter().filter(reports_all).collect();
-    assert!(strategies.len() > 5, "{strategies:?}");
+    let strategies = forms::strategies_that_report_all();
     let (mut met, mut reported) = (0, 0);
     for (number, periods) in subsets(lengths).enumerate() {
         let directions = [DirectionSet::K18, DirectionSet::K6][number % 2];
         let shapes = shapes(directions);
         let meshes: Vec<_> = shapes.iter().map(reference).collect();
-        for &&strategy in &strategies {
+        for &strategy in &strategies {
             let builder = Culler::builder().strategy(strategy).k(directions);
             let mut world = PeriodicWorld::with(shapes.clone(), &builder, periods).unwrap();
             let body = |random: &mut Random| random_body(lengths, periods, random);

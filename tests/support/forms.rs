@@ -6,6 +6,21 @@
 )]
 
 use sdop::mesh::ProceduralShape;
+use sdop::settings::{CullSettings, Strategy};
+
+/// The strategies that need no further settings, and so report every pair that they don't reject.
+pub fn strategies_that_report_all() -> Vec<Strategy> {
+    let reports_all = |&strategy: &Strategy| {
+        let settings = CullSettings {
+            strategy,
+            ..CullSettings::default()
+        };
+        strategy.scheme().culls() && settings.check(2).is_ok()
+    };
+    let strategies: Vec<_> = Strategy::ALL.iter().copied().filter(reports_all).collect();
+    assert!(strategies.len() > 5, "{strategies:?}");
+    strategies
+}
 
 /// Meshes of three kinds: with faces on the axes, round, and thin.
 pub const FORMS: [ProceduralShape; 3] = [

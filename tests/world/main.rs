@@ -92,7 +92,7 @@ fn ways() -> Vec<CullSettings> {
 
 type Pairs = BTreeSet<[BodyId; 2]>;
 
-/// What a culler made for the moment reports of the same bodies.
+/// What a newly built culler reports of the same bodies.
 fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) -> Pairs {
     let mut order: Vec<BodyId> = bodies.keys().copied().collect();
     order.sort();
@@ -120,7 +120,7 @@ fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) 
         .collect()
 }
 
-/// A world reports what a culler made for the moment would.
+/// A world reports what a newly built culler would.
 #[test]
 fn world_equals_new_culler() {
     let shapes = shapes();

@@ -15,6 +15,7 @@ use serde::Serialize;
 use crate::boxes::Frame;
 use crate::check::ExpectedPairs;
 use crate::entry::{Engine, Entry, OURS, Setup};
+use crate::facts::{LeftOut, Timings};
 use crate::memory::{self, Memory};
 use crate::scenes::{Course, EXPECTED, Order, Schedule, Spread};
 use crate::turns::{TimedEngine, take_turns};
@@ -35,27 +36,8 @@ pub struct Case {
     pub schedule: Schedule,
 }
 
-/// An engine that took too long.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct ExcludedEngine {
-    /// The case.
-    #[serde(flatten)]
-    pub case: Case,
-    /// The engine.
-    pub engine: &'static str,
-    /// Milliseconds that it took for the frame that gave the reason.
-    pub ms: f64,
-    /// Milliseconds that it had.
-    pub limit_ms: f64,
-}
-
 /// A case with its answers.
-pub struct CaseTimings {
-    /// In the order of engines.
-    pub rows: Vec<EngineTiming>,
-    /// Those without a row.
-    pub left_out: Vec<ExcludedEngine>,
-}
+pub type CaseTimings = Timings<EngineTiming, Case>;
 
 /// What one engine did in a case.
 #[derive(Clone, Debug, Serialize)]
@@ -127,11 +109,11 @@ pub fn run(case: Case, entries: &[Entry], limit_ms: f64) -> miette::Result<CaseT
             peak_bytes_a_body: memory.peak as f64 / bodies,
         });
     }
-    Ok(CaseTimings { rows, left_out })
+    Ok(Timings { rows, left_out })
 }
 
 /// Which engines have passed, and which have not been checked.
-type CheckedEngines<'a> = (Vec<(&'a Entry, Memory)>, Vec<ExcludedEngine>);
+type CheckedEngines<'a> = (Vec<(&'a Entry, Memory)>, Vec<LeftOut<Case>>);
 
 /// Runs every engine alone over the first frames and judges its pairs; counts its memory on the
 /// way.
@@ -159,7 +141,7 @@ fn check<'a>(
         let (peer, ms) = tried?;
         drop(peer);
         if ms > limit_ms && entry.name != OURS {
-            left_out.push(ExcludedEngine {
+            left_out.push(LeftOut {
                 case,
                 engine: entry.name,
                 ms,

@@ -62,6 +62,58 @@ impl Facts {
     }
 }
 
+/// An engine that took too long in a case of type `C`.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LeftOut<C> {
+    /// The case.
+    #[serde(flatten)]
+    pub case: C,
+    /// The engine.
+    pub engine: &'static str,
+    /// Milliseconds that it took for the frame that gave the reason.
+    pub ms: f64,
+    /// Milliseconds that it had.
+    pub limit_ms: f64,
+}
+
+/// What was timed: a row of type `R` per case of type `C` and engine, in the order of engines.
+#[derive(Serialize)]
+pub struct Timings<R, C> {
+    /// Those that kept to the limit.
+    pub rows: Vec<R>,
+    /// Those without a row.
+    pub left_out: Vec<LeftOut<C>>,
+}
+
+/// A measurement.
+#[derive(Serialize)]
+pub struct Record<R, C> {
+    #[serde(flatten)]
+    pub facts: Facts,
+    #[serde(flatten)]
+    pub timings: Timings<R, C>,
+}
+
+impl<R, C> Record<R, C> {
+    /// An empty record of this machine.
+    pub fn new(note: String) -> Self {
+        Self {
+            facts: Facts::new(note),
+            timings: Timings {
+                rows: Vec::new(),
+                left_out: Vec::new(),
+            },
+        }
+    }
+
+    /// Adds a case.
+    pub fn add(&mut self, timings: Timings<R, C>) {
+        self.facts.look_again();
+        self.timings.rows.extend(timings.rows);
+        self.timings.left_out.extend(timings.left_out);
+    }
+}
+
 /// `sdop record`'s command where it runs this, or this one's.
 fn command() -> String {
     std::env::var("SDOP_COMMAND").unwrap_or_else(|_| {

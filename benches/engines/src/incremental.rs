@@ -24,7 +24,7 @@ impl Moves {
 /// A pair that has begun (true) or ended.
 pub type Change = ([u32; 2], bool);
 
-/// What an engine has found in a frame.
+/// What an engine reports after a frame.
 pub enum Found<'a> {
     /// The pairs that have begun or ended in this frame.
     Changes(&'a [Change]),
@@ -89,12 +89,9 @@ pub enum Only {
     ReadPairs,
 }
 
-/// The name of the engine that the others are compared with.
-const OURS: &str = "sdop";
-
 impl MoverEntry {
     /// Whether it is one of ours, which is never left out.
     pub fn is_ours(&self) -> bool {
-        self.name.starts_with(OURS)
+        self.name.starts_with("sdop")
     }
 }

@@ -41,8 +41,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 use compare::Case;
-use entry::{Entry, OURS};
-use miette::miette;
+use entry::OURS;
 use record::Record;
 use scenes::{Order, Schedule, Spread};
 
@@ -117,7 +116,12 @@ fn main() -> miette::Result<()> {
         Some(OtherCommand::Answer(args)) => return verdicts::answer(args),
         None => {}
     }
-    let entries = chosen(cli.peers.as_deref())?;
+    let entries = roster::chosen(
+        roster::roster(),
+        cli.peers.as_deref(),
+        |entry| entry.name,
+        |entry| entry.name == OURS,
+    )?;
     let mut record = Record::new(cli.note.clone());
     for case in cases(&cli) {
         eprintln!(
@@ -135,33 +139,6 @@ fn main() -> miette::Result<()> {
     }
     print!("{}", record.page());
     Ok(())
-}
-
-/// Ours, and the engines whose names begin as requested.
-fn chosen(wished: Option<&[String]>) -> miette::Result<Vec<Entry>> {
-    let all = roster::roster();
-    let Some(wished) = wished else {
-        return Ok(all);
-    };
-    let known = all.iter().map(|entry| entry.name).collect::<Vec<_>>();
-    for name in wished {
-        if !known.iter().any(|known| known.starts_with(name.as_str())) {
-            return Err(miette!(
-                help = format!(
-                    "compiled in: {}; others need --features physx,debian,box3d",
-                    known.join(", ")
-                ),
-                "no engine's name begins with `{name}`"
-            ));
-        }
-    }
-    let is_wished = |entry: &Entry| {
-        entry.name == OURS
-            || wished
-                .iter()
-                .any(|name| entry.name.starts_with(name.as_str()))
-    };
-    Ok(all.into_iter().filter(is_wished).collect())
 }
 
 fn cases(cli: &Cli) -> Vec<Case> {

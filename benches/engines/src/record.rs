@@ -4,38 +4,15 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use miette::IntoDiagnostic as _;
-use serde::Serialize;
 
-use crate::compare::{Case, CaseTimings, EngineTiming, ExcludedEngine};
-use crate::facts::{self, Facts};
+use crate::compare::{Case, EngineTiming};
+use crate::facts::{self, LeftOut};
 use crate::scenes::{Order, Spread};
 
-/// A measurement.
-#[derive(Serialize)]
-pub struct Record {
-    #[serde(flatten)]
-    facts: Facts,
-    rows: Vec<EngineTiming>,
-    left_out: Vec<ExcludedEngine>,
-}
+/// A comparison.
+pub type Record = facts::Record<EngineTiming, Case>;
 
 impl Record {
-    /// An empty record of this machine.
-    pub fn new(note: String) -> Self {
-        Self {
-            facts: Facts::new(note),
-            rows: Vec::new(),
-            left_out: Vec::new(),
-        }
-    }
-
-    /// Adds a case.
-    pub fn add(&mut self, compared: CaseTimings) {
-        self.facts.look_again();
-        self.rows.extend(compared.rows);
-        self.left_out.extend(compared.left_out);
-    }
-
     /// Writes `peers.csv`, `peers.json` and `peers.md`.
     pub fn write(&self, directory: &Path) -> miette::Result<()> {
         facts::write(directory, "peers", self.csv()?, self, self.page())
@@ -67,7 +44,7 @@ impl Record {
             "peak_bytes_a_body",
         ])
         .into_diagnostic()?;
-        for row in &self.rows {
+        for row in &self.timings.rows {
             let Case {
                 spread,
                 order,
@@ -103,7 +80,7 @@ impl Record {
              - what favours or harms whom: `benches/engines/BIAS.md`\n",
         );
         let mut tables: Vec<(Spread, Order, usize)> = Vec::new();
-        for row in &self.rows {
+        for row in &self.timings.rows {
             let table = (row.case.spread, row.case.order, row.case.threads);
             if !tables.contains(&table) {
                 tables.push(table);
@@ -118,6 +95,7 @@ impl Record {
 
     fn table(&self, out: &mut String, (spread, order, threads): (Spread, Order, usize)) {
         let rows: Vec<&EngineTiming> = self
+            .timings
             .rows
             .iter()
             .filter(|row| {
@@ -165,10 +143,10 @@ impl Record {
     }
 
     fn list_left_out(&self, out: &mut String, (spread, order, threads): (Spread, Order, usize)) {
-        let of_table = |left: &&ExcludedEngine| {
+        let of_table = |left: &&LeftOut<Case>| {
             (left.case.spread, left.case.order, left.case.threads) == (spread, order, threads)
         };
-        for left in self.left_out.iter().filter(of_table) {
+        for left in self.timings.left_out.iter().filter(of_table) {
             let _ = write!(
                 out,
                 "\nLeft out at {}: {}, {:.0} ms in one of its first frames, limit {:.0}.\n",

@@ -1,5 +1,7 @@
 //! The list of engines in the comparison.
 
+use miette::miette;
+
 #[cfg(feature = "box3d")]
 use crate::box3d;
 use crate::entry::Entry;
@@ -41,4 +43,36 @@ pub fn incremental() -> Vec<MoverEntry> {
         &bullet::MOVERS,
     ];
     all.concat()
+}
+
+/// Those whose names begin as requested, and those that always take part.
+///
+/// # Errors
+/// A request that no name fits.
+pub fn chosen<E>(
+    all: Vec<E>,
+    wished: Option<&[String]>,
+    name_of: fn(&E) -> &'static str,
+    always: fn(&E) -> bool,
+) -> miette::Result<Vec<E>> {
+    let Some(wished) = wished else {
+        return Ok(all);
+    };
+    let known: Vec<_> = all.iter().map(name_of).collect();
+    for name in wished {
+        if !known.iter().any(|known| known.starts_with(name.as_str())) {
+            return Err(miette!(
+                help = format!(
+                    "compiled in: {}; others need --features physx,debian,box3d",
+                    known.join(", ")
+                ),
+                "no engine's name begins with `{name}`"
+            ));
+        }
+    }
+    let is_wished = |entry: &E| {
+        let name = name_of(entry);
+        always(entry) || wished.iter().any(|wish| name.starts_with(wish.as_str()))
+    };
+    Ok(all.into_iter().filter(is_wished).collect())
 }

@@ -76,13 +76,12 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         let warm: Vec<&Cost> = of(first, Regime::Warm).collect();
         write(path, &draw_costs(&first.scene, &warm)?)?;
     }
-    for report in args.out.iter().flat_map(|_| &reports) {
-        let json = serde_json::to_string_pretty(report).into_diagnostic()?;
-        let name = format!("{}.json", report.scene);
-        write(
-            &args.out.iter().collect::<PathBuf>().join(name),
-            &(json + "\n"),
-        )?;
+    if let Some(directory) = &args.out {
+        for report in &reports {
+            let json = serde_json::to_string_pretty(report).into_diagnostic()?;
+            let name = format!("{}.json", report.scene);
+            write(&directory.join(name), &(json + "\n"))?;
+        }
     }
     match args.format {
         Format::Csv => {

@@ -85,14 +85,14 @@ pub enum CostError {
 }
 
 /// A scene, and its passes so far.
-struct Subject {
+struct StudiedScene {
     file: SceneFile,
     scene: Scene,
     frames: u32,
     passes: Vec<Pass>,
 }
 
-impl Subject {
+impl StudiedScene {
     fn new(file: &SceneFile, plan: &CostPlan) -> Result<Self, CostError> {
         let scene = file.build()?;
         let frames = plan.frames.min(scene.frames);
@@ -104,11 +104,11 @@ impl Subject {
         })
     }
 
-    /// Whether calibration scenes that are made of this scene are made as well of the first one.
+    /// Checks that this scene and the first one have the same calibration scenes.
     fn is_like(&self, first: &Self) -> Result<(), CostError> {
         let differ = if self.scene.cull != first.scene.cull {
             "`[cull]` tables"
-        } else if self.kinds() != first.kinds() {
+        } else if self.meshes() != first.meshes() {
             "meshes or radii"
         } else {
             return Ok(());
@@ -120,13 +120,10 @@ impl Subject {
         })
     }
 
-    /// The shapes by the bits of their balls and their numbers of vertices, each once.
-    fn kinds(&self) -> BTreeSet<([u32; 4], usize)> {
-        let kind = |shape: &Shape| {
-            let ([x, y, z], r) = (shape.ball.centre, shape.ball.radius);
-            ([x, y, z, r].map(f32::to_bits), shape.vertices.len())
-        };
-        self.scene.shapes.iter().map(kind).collect()
+    /// The bits of the vertices of each shape, each once.
+    fn meshes(&self) -> BTreeSet<Vec<[u32; 3]>> {
+        let bits = |shape: &Shape| shape.vertices.iter().map(|v| v.map(f32::to_bits)).collect();
+        self.scene.shapes.iter().map(bits).collect()
     }
 
     /// The scene of pass number `n`, which has the nth next seed.
@@ -153,8 +150,8 @@ pub fn possible(scene: &Scene) -> Vec<Strategy> {
     Strategy::ALL.iter().copied().filter(has).collect()
 }
 
-/// Measures scenes of one kind, and calls `done` after each pass. In each pass all of them have the
-/// same prices, as far as their working sets are of one level. The report of each scene.
+/// Measures scenes of one kind, calls `done` after each pass, and returns a report per scene. In a
+/// pass, all scenes with working sets of one cache level have the same prices.
 ///
 /// # Errors
 /// A scene can't be built, simulated or culled, or is of another kind than the first.
@@ -163,50 +160,48 @@ pub fn study(
     plan: &CostPlan,
     mut done: impl FnMut(),
 ) -> Result<Vec<CostReport>, CostError> {
-    let subjects = files.iter().map(|file| Subject::new(file, plan));
-    let mut subjects = subjects.collect::<Result<Vec<_>, _>>()?;
-    let Some(first) = subjects.first() else {
+    let scenes = files.iter().map(|file| StudiedScene::new(file, plan));
+    let mut scenes = scenes.collect::<Result<Vec<_>, _>>()?;
+    let Some(first) = scenes.first() else {
         return Ok(Vec::new());
     };
-    subjects.iter().try_for_each(|other| other.is_like(first))?;
+    scenes.iter().try_for_each(|other| other.is_like(first))?;
     let of_strategy = |&strategy| Variant::strategy(&first.scene.cull, strategy);
     let variants: Vec<Variant> = plan.strategies.iter().map(of_strategy).collect();
     let mut calibrations: BTreeMap<CacheLevel, Calibration> = BTreeMap::new();
-    for subject in &subjects {
-        if let Entry::Vacant(free) = calibrations.entry(subject.level()) {
+    for studied in &scenes {
+        if let Entry::Vacant(free) = calibrations.entry(studied.level()) {
             let (tier, effort) = (plan.tier, plan.effort);
-            free.insert(Calibration::new(&subject.scene, &variants, tier, effort)?);
+            free.insert(Calibration::new(&studied.scene, &variants, tier, effort)?);
         }
     }
     let before = Conditions::before();
     for n in 0..plan.passes {
         for (&level, calibration) in &mut calibrations {
             let round = calibration.round()?;
-            for subject in subjects
-                .iter_mut()
-                .filter(|subject| subject.level() == level)
-            {
-                let scene = subject.of_pass(n)?;
-                let mut frames = SceneFrames::new(&scene, subject.frames)?;
+            let of_level = scenes.iter_mut().filter(|studied| studied.level() == level);
+            for studied in of_level {
+                let scene = studied.of_pass(n)?;
+                let mut frames = SceneFrames::new(&scene, studied.frames)?;
                 let round = Some(round.clone());
                 let pass = pass(&scene, &variants, plan.tier, &mut frames, round, &mut ())?;
-                subject.passes.push(pass);
+                studied.passes.push(pass);
                 done();
             }
         }
     }
-    let report = |subject| report(subject, &variants, plan, before);
-    Ok(subjects.into_iter().map(report).collect())
+    let report = |studied| report(studied, &variants, plan, before);
+    Ok(scenes.into_iter().map(report).collect())
 }
 
 fn report(
-    subject: Subject,
+    studied: StudiedScene,
     variants: &[Variant],
     plan: &CostPlan,
     before: Conditions,
 ) -> CostReport {
-    let Subject { scene, frames, .. } = subject;
-    let passes: Vec<&Pass> = subject.passes.iter().collect();
+    let StudiedScene { scene, frames, .. } = studied;
+    let passes: Vec<&Pass> = studied.passes.iter().collect();
     let mut costs = Vec::new();
     for of in variants.iter().enumerate() {
         for &regime in Regime::ALL {

@@ -13,7 +13,7 @@ use crate::entry::Work;
 use crate::incremental::{Extras, MoverEntry};
 use crate::oracle;
 
-/// The pairs that a frame must have.
+/// The pairs that every engine must report after a frame.
 pub struct Truth<'a> {
     boxes: &'a [Slabs],
     touching: Vec<[u32; 2]>,
@@ -75,7 +75,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Whether an engine may report a pair that isn't required.
+    /// Whether an engine may report this additional pair.
     fn allows(&self, entry: &MoverEntry, pair: [u32; 2]) -> bool {
         let [Some(a), Some(b)] = pair.map(|body| self.boxes.get(body as usize)) else {
             return false;

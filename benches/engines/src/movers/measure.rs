@@ -13,6 +13,7 @@ use super::follower::Follower;
 use super::judge::Truth;
 use super::schedule::MoverCase;
 use crate::compare::median_ratio;
+use crate::facts::{LeftOut, Timings};
 use crate::incremental::{MoverEntry, Moves};
 use crate::memory;
 
@@ -56,27 +57,8 @@ pub struct MoverTiming {
     pub bytes_a_body: f64,
 }
 
-/// An engine that took too long.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct LeftOut {
-    /// The case.
-    #[serde(flatten)]
-    pub case: MoverCase,
-    /// The engine.
-    pub engine: &'static str,
-    /// Milliseconds of the frame that gave the reason.
-    pub ms: f64,
-    /// Milliseconds that it had.
-    pub limit_ms: f64,
-}
-
 /// A case with its answers.
-pub struct MoverTimings {
-    /// In the order of engines.
-    pub rows: Vec<MoverTiming>,
-    /// Those without a row.
-    pub left_out: Vec<LeftOut>,
-}
+pub type MoverTimings = Timings<MoverTiming, MoverCase>;
 
 /// An engine with its times.
 struct Timed<'a> {
@@ -131,7 +113,7 @@ pub fn run(case: MoverCase, entries: &[MoverEntry], limit_ms: f64) -> miette::Re
     }
     let ours = all.first().map(|timed| timed.turns(case.turn));
     let rows = all.iter().map(|timed| timed.row(case, ours.as_deref()));
-    Ok(MoverTimings {
+    Ok(Timings {
         rows: rows.collect(),
         left_out,
     })
@@ -176,7 +158,7 @@ impl<'a> Timed<'a> {
     }
 
     /// Why it takes no part any more, if its last frame took more than `most` times the limit.
-    fn left_out(&self, case: MoverCase, limit_ms: f64, most: f64) -> Option<LeftOut> {
+    fn left_out(&self, case: MoverCase, limit_ms: f64, most: f64) -> Option<LeftOut<MoverCase>> {
         let is_slow = self.ms > most * limit_ms && !self.entry.is_ours();
         is_slow.then_some(LeftOut {
             case,

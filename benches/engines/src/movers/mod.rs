@@ -15,7 +15,6 @@ mod schedule;
 use std::path::PathBuf;
 
 use course::Motion;
-use miette::miette;
 
 use crate::entry::Setup;
 use crate::incremental::MoverEntry;
@@ -52,7 +51,12 @@ pub struct Args {
 
 /// Checks, measures, prints the table, and writes it if asked to.
 pub fn run(args: &Args) -> miette::Result<()> {
-    let entries = chosen(args.peers.as_deref())?;
+    let entries = roster::chosen(
+        roster::incremental(),
+        args.peers.as_deref(),
+        |entry| entry.name,
+        MoverEntry::is_ours,
+    )?;
     let mut record = record::Record::new(args.note.clone());
     for case in schedule::cases(args) {
         eprintln!("{case}");
@@ -63,27 +67,6 @@ pub fn run(args: &Args) -> miette::Result<()> {
     }
     print!("{}", record.page());
     Ok(())
-}
-
-/// Ours, and the engines whose names begin as requested.
-fn chosen(wished: Option<&[String]>) -> miette::Result<Vec<MoverEntry>> {
-    let all = roster::incremental();
-    let Some(wished) = wished else {
-        return Ok(all);
-    };
-    let begins = |entry: &MoverEntry| wished.iter().any(|name| entry.name.starts_with(name));
-    if !all.iter().any(begins) {
-        let known = all.iter().map(|entry| entry.name).collect::<Vec<_>>();
-        return Err(miette!(
-            help = format!("compiled in: {}", known.join(", ")),
-            "no engine's name begins with any of {}",
-            wished.join(", ")
-        ));
-    }
-    let all = all.into_iter();
-    Ok(all
-        .filter(|entry| entry.is_ours() || begins(entry))
-        .collect())
 }
 
 /// What an engine is built for, with as many threads as it may use here.

@@ -4,39 +4,16 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use miette::IntoDiagnostic as _;
-use serde::Serialize;
 
-use super::measure::{LeftOut, MoverTiming, MoverTimings};
+use super::measure::MoverTiming;
 use super::schedule::MoverCase;
-use crate::facts::{self, Facts};
+use crate::facts;
 use crate::record::digits;
 
-/// A measurement.
-#[derive(Serialize)]
-pub struct Record {
-    #[serde(flatten)]
-    facts: Facts,
-    rows: Vec<MoverTiming>,
-    left_out: Vec<LeftOut>,
-}
+/// A comparison.
+pub type Record = facts::Record<MoverTiming, MoverCase>;
 
 impl Record {
-    /// An empty record of this machine.
-    pub fn new(note: String) -> Self {
-        Self {
-            facts: Facts::new(note),
-            rows: Vec::new(),
-            left_out: Vec::new(),
-        }
-    }
-
-    /// Adds a case.
-    pub fn add(&mut self, timings: MoverTimings) {
-        self.facts.look_again();
-        self.rows.extend(timings.rows);
-        self.left_out.extend(timings.left_out);
-    }
-
     /// Writes `movers.csv`, `movers.json` and `movers.md`.
     pub fn write(&self, directory: &Path) -> miette::Result<()> {
         facts::write(directory, "movers", self.csv()?, self, self.page())
@@ -50,7 +27,7 @@ impl Record {
             pairs extra us_low us us_high us_p50 us_p99 us_most ratio bytes_a_body";
         out.write_record(header.split(' ').filter(|word| !word.is_empty()))
             .into_diagnostic()?;
-        for row in &self.rows {
+        for row in &self.timings.rows {
             let MoverCase {
                 bodies,
                 movers,
@@ -84,7 +61,7 @@ impl Record {
              - what favours or harms whom: `benches/engines/BIAS.md`\n",
         );
         let mut cases: Vec<MoverCase> = Vec::new();
-        for row in &self.rows {
+        for row in &self.timings.rows {
             if !cases.contains(&row.case) {
                 cases.push(row.case);
             }
@@ -103,7 +80,7 @@ impl Record {
              | engine | margin | answer | pairs | extra | µs | × ours | p50 | p99 | most | B |\n\
              |---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|\n"
         );
-        for row in self.rows.iter().filter(|row| row.case == case) {
+        for row in self.timings.rows.iter().filter(|row| row.case == case) {
             let [us, p50, p99, most] = [row.us, row.us_p50, row.us_p99, row.us_most].map(digits);
             let answer = if row.events { "events" } else { "pairs" };
             let _ = writeln!(
@@ -118,7 +95,12 @@ impl Record {
                 row.bytes_a_body
             );
         }
-        for left in self.left_out.iter().filter(|left| left.case == case) {
+        for left in self
+            .timings
+            .left_out
+            .iter()
+            .filter(|left| left.case == case)
+        {
             let _ = write!(
                 out,
                 "\nLeft out: {}, {:.0} ms in one of its first frames, limit {:.0}.\n",

@@ -31,8 +31,8 @@ pub struct Report {
     /// Pairs missed, over all sources.
     missed: u64,
     /// Pairs on which a list and that of all-pairs differ, over all sources; of given boxes, a list
-    /// and their definition; of long-lived worlds, a list or its events and those of a world made
-    /// for the moment.
+    /// and their definition; of long-lived worlds, a list or its events and those of a newly built
+    /// world.
     differ: u64,
     sources: Vec<SourceReport>,
     coverage: Coverage,

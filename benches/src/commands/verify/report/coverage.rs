@@ -4,7 +4,7 @@
 use sdop::settings::Strategy;
 use sdop_judge::ours::boxes::{BoxCell, BoxLedger};
 use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::histories::{ChangeKind, HistoryCell, HistoryLedger, Subject};
+use sdop_judge::ours::histories::{ChangeKind, HistoryCell, HistoryLedger, WorldKind};
 use sdop_judge::ours::matrix::{Cell, Matrix, MatrixPart};
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub struct Coverage {
     /// Lists of given boxes: by tier and threads against finder.
     boxes: Vec<CoverageLine>,
     /// Of long-lived worlds: lists, pairs that had to be reported, those that weren't, and pairs on
-    /// which a world and one made for the moment differ.
+    /// which a world and a newly built one differ.
     history_lists: u64,
     history_pairs: u64,
     history_missed: u64,
@@ -201,7 +201,7 @@ fn box_part(cell: &BoxCell, boxes: &BoxLedger) -> ((String, String), MatrixPart)
     ((line, cell.finder.to_string()), filled)
 }
 
-/// The cells of long-lived worlds, by subject and kind of change. Given boxes lack some kinds, for
+/// The cells of long-lived worlds, by world and kind of change. Given boxes lack some kinds, for
 /// which they have no cells.
 fn history_parts(
     histories: &HistoryLedger,
@@ -209,11 +209,11 @@ fn history_parts(
 ) -> Vec<((String, String), MatrixPart)> {
     let mut parts = Vec::new();
     let all = HistoryCell::all(rotation);
-    let mut subjects: Vec<Subject> = all.iter().map(|cell| cell.subject).collect();
-    subjects.dedup();
-    for subject in subjects {
-        for change in ChangeKind::ALL {
-            let of = |cell: &&HistoryCell| (cell.subject, cell.change) == (subject, change);
+    let mut worlds: Vec<WorldKind> = all.iter().map(|cell| cell.world).collect();
+    worlds.dedup();
+    for world in worlds {
+        for &change in ChangeKind::ALL {
+            let of = |cell: &&HistoryCell| (cell.world, cell.change) == (world, change);
             let lists = all.iter().filter(of).map(|cell| histories.lists_in(cell));
             let lists: Vec<u64> = lists.collect();
             let part = MatrixPart {
@@ -221,16 +221,16 @@ fn history_parts(
                 filled: lists.iter().filter(|lists| **lists > 0).count() as u64,
                 fewest: lists.iter().copied().min().unwrap_or(0),
             };
-            parts.push(((subject.name(), change.name().to_owned()), part));
+            parts.push(((world.name(), change.name().to_owned()), part));
         }
     }
     parts
 }
 
 fn history_name(cell: &HistoryCell) -> String {
-    let (subject, change) = (cell.subject.name(), cell.change.name());
+    let (world, change) = (cell.world.name(), cell.change.name());
     let threads = threads(cell.threads);
-    format!("a world of {subject}, {change}, {} {threads}", cell.tier)
+    format!("a world of {world}, {change}, {} {threads}", cell.tier)
 }
 
 fn box_name(cell: &BoxCell) -> String {

@@ -5,7 +5,7 @@
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-use super::subject::Properties;
+use super::worlds::Properties;
 use super::{Change, ChangeKind, History};
 use crate::ours::boxes::beside;
 use crate::ours::contact::PlacedShape;
@@ -72,7 +72,8 @@ pub fn draw_boxes(below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
         BoxBody { bounds, ..*from }
     };
     let kinds = ChangeKind::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .filter(|kind| kind.is_of_boxes());
     draw(
         &kinds.collect::<Vec<_>>(),
@@ -133,7 +134,7 @@ pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> Histo
             ..body
         },
     };
-    draw(&ChangeKind::ALL, new, moved, own, below)
+    draw(ChangeKind::ALL, new, moved, own, below)
 }
 
 /// A margin other than this one.

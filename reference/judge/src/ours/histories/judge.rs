@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::draw::MARGINS;
 use super::state::{Pairs, State, by_number, in_order};
-use super::subject::JudgedWorld;
-use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, Subject};
+use super::worlds::JudgedWorld;
+use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, WorldKind};
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::meeting;
 use crate::ours::compare::difference;
@@ -24,8 +24,8 @@ use sdop::world::{Body, BodyId, World, WorldError};
 pub(super) struct Truth {
     /// Pairs that must be reported.
     pub required: Vec<Pairs>,
-    /// The lists of worlds made for the moment; `None` where a list depends on slots.
-    pub fresh: Option<Vec<Pairs>>,
+    /// The lists of newly built worlds.
+    pub fresh: Vec<Pairs>,
 }
 
 /// A world that lives through a history.
@@ -106,10 +106,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
             .filter(missed)
             .copied()
             .collect();
-        let mut differ = match &truth.fresh {
-            Some(fresh) => difference(&list, &fresh[frame]),
-            None => Vec::new(),
-        };
+        let mut differ = difference(&list, &truth.fresh[frame]);
         if !listed.is_sorted_by(|one, next| one < next) {
             differ.extend(list.first());
         }
@@ -134,7 +131,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
     /// Lives through all frames.
     pub fn live(
         mut self,
-        subject: Subject,
+        kind: WorldKind,
         mode: Mode,
         truth: &Truth,
         ledger: &mut HistoryLedger,
@@ -149,10 +146,10 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
                     .collect(),
                 None => Vec::new(),
             };
-            for change in ChangeKind::ALL {
+            for change in ChangeKind::ALL.iter().copied() {
                 if kinds.contains(&change) {
                     let cell = HistoryCell {
-                        subject,
+                        world: kind,
                         change,
                         tier: mode.tier.name(),
                         threads: mode.threads,
@@ -171,7 +168,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
                 ledger.failure = Some(format!(
                     "a world of {} {fault} bodies {} and {} in frame {frame} of a history, after {} \
                      ({}, {} threads)",
-                    subject.name(),
+                    kind.name(),
                     pair[0],
                     pair[1],
                     names.join(", "),
@@ -196,7 +193,7 @@ pub fn judge_boxes(
     let required = required_boxes(&states);
     // Boxes are compared as they are: what is required is all that may be reported.
     let truth = Truth {
-        fresh: Some(required.clone()),
+        fresh: required.clone(),
         required,
     };
     let mut ledger = HistoryLedger::default();
@@ -204,7 +201,7 @@ pub fn judge_boxes(
         let culler = BoxCuller::builder().finder(finder).tier(mode.tier);
         let culler = culler.threads(mode.threads).worth_waking(0);
         let life = Life::new(BoxWorld::with(&culler)?, history, &states)?;
-        life.live(Subject::Boxes, mode, &truth, &mut ledger)?;
+        life.live(WorldKind::Boxes, mode, &truth, &mut ledger)?;
     }
     Ok(ledger)
 }
@@ -270,7 +267,12 @@ pub fn judge_meshes(
                 truths.insert(plain.name(), Truth { required, fresh });
             }
             let life = Life::new(world(shapes, &way, mode)?, history, &states)?;
-            life.live(Subject::of(&way), mode, &truths[plain.name()], &mut ledger)?;
+            life.live(
+                WorldKind::of(&way),
+                mode,
+                &truths[plain.name()],
+                &mut ledger,
+            )?;
         }
     }
     Ok(ledger)
@@ -295,17 +297,13 @@ fn world(shapes: &Shapes, way: &CullSettings, mode: Mode) -> Result<World, World
     World::with(shapes.built.clone(), &culler)
 }
 
-/// What all-pairs finds in worlds made for the moments. A budget is spent in the order of slots,
-/// which a world's history decides.
+/// What all-pairs finds in newly built worlds.
 fn fresh_lists(
     shapes: &Shapes,
     states: &[State<Body>],
     way: &CullSettings,
     tier: Tier,
-) -> Result<Option<Vec<Pairs>>, WorldError> {
-    if way.strategy.scheme().has_budget() {
-        return Ok(None);
-    }
+) -> Result<Vec<Pairs>, WorldError> {
     let way = CullSettings {
         pairs: Finder::AllPairs,
         ..way.clone()
@@ -314,7 +312,7 @@ fn fresh_lists(
         let world = world(shapes, &way, Mode::plain(tier))?;
         state.fresh(world)
     });
-    lists.collect::<Result<_, _>>().map(Some)
+    lists.collect()
 }
 
 /// The shapes for the reference, each grown by every margin, rounded inward.

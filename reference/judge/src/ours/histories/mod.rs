@@ -5,9 +5,9 @@
 mod draw;
 mod judge;
 mod state;
-mod subject;
 #[cfg(test)]
 mod tests;
+mod worlds;
 
 use std::collections::BTreeMap;
 
@@ -16,6 +16,7 @@ pub use judge::{judge_boxes, judge_meshes};
 
 use super::configurations::{Rotation, rows, variants};
 use super::reference_shapes::InvalidInput;
+use sdop::choice::choices;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::world::WorldError;
 
@@ -30,67 +31,35 @@ pub enum HistoryError {
     Input(#[from] InvalidInput),
 }
 
-/// What happens to a body, or to two.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ChangeKind {
-    /// A new body.
-    Inserted,
-    /// A body leaves.
-    Removed,
-    /// Another pose, or other ends.
-    Moved,
-    /// A dynamic or fixed body is put to rest.
-    Rested,
-    /// A resting body becomes dynamic.
-    Woken,
-    /// A body is fixed.
-    Fixed,
-    /// Other groups.
-    Regrouped,
-    /// Another contact margin.
-    Margin,
-    /// Another shape.
-    Reshaped,
-    /// Two bodies are excluded, or included again.
-    Excluded,
-    /// Other bodies are of interest.
-    Interest,
+choices! {
+    /// What happens to a body, or to two.
+    ChangeKind, "kind of change", {
+        /// A new body.
+        Inserted = "inserted",
+        /// A body leaves.
+        Removed = "removed",
+        /// Another pose, or other ends.
+        Moved = "moved",
+        /// A dynamic or fixed body is put to rest.
+        Rested = "rested",
+        /// A resting body becomes dynamic.
+        Woken = "woken",
+        /// A body is fixed.
+        Fixed = "fixed",
+        /// Other groups.
+        Regrouped = "regrouped",
+        /// Another contact margin.
+        Margin = "margin",
+        /// Another shape.
+        Reshaped = "reshaped",
+        /// Two bodies are excluded, or included again.
+        Excluded = "excluded",
+        /// Other bodies are of interest.
+        Interest = "interest",
+    }
 }
 
 impl ChangeKind {
-    /// Every kind.
-    pub const ALL: [Self; 11] = [
-        Self::Inserted,
-        Self::Removed,
-        Self::Moved,
-        Self::Rested,
-        Self::Woken,
-        Self::Fixed,
-        Self::Regrouped,
-        Self::Margin,
-        Self::Reshaped,
-        Self::Excluded,
-        Self::Interest,
-    ];
-
-    /// What tables call it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Inserted => "inserted",
-            Self::Removed => "removed",
-            Self::Moved => "moved",
-            Self::Rested => "rested",
-            Self::Woken => "woken",
-            Self::Fixed => "fixed",
-            Self::Regrouped => "regrouped",
-            Self::Margin => "margin",
-            Self::Reshaped => "reshaped",
-            Self::Excluded => "excluded",
-            Self::Interest => "interest",
-        }
-    }
-
     /// Whether given boxes can change in this way.
     #[must_use]
     pub fn is_of_boxes(self) -> bool {
@@ -124,14 +93,14 @@ pub struct History<B> {
 
 /// The world that is judged: given boxes, or meshes by a strategy with an overlap test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Subject {
+pub enum WorldKind {
     /// A `BoxWorld`.
     Boxes,
     /// A `World`.
     Meshes(Strategy, Option<Overlap>),
 }
 
-impl Subject {
+impl WorldKind {
     /// The world that culls meshes in this way.
     #[must_use]
     pub fn of(way: &CullSettings) -> Self {
@@ -154,7 +123,7 @@ impl Subject {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct HistoryCell {
     /// Which world.
-    pub subject: Subject,
+    pub world: WorldKind,
     /// What the frame has changed.
     pub change: ChangeKind,
     /// The tier's name.
@@ -168,15 +137,15 @@ impl HistoryCell {
     #[must_use]
     pub fn all(rotation: &Rotation) -> Vec<Self> {
         let rows = variants().next().map(rows).unwrap_or_default();
-        let subjects = [Subject::Boxes].into_iter();
-        let subjects = subjects.chain(rows.iter().map(Subject::of));
+        let worlds = [WorldKind::Boxes].into_iter();
+        let worlds = worlds.chain(rows.iter().map(WorldKind::of));
         let mut cells = Vec::new();
-        for subject in subjects {
-            let has = |kind: &ChangeKind| subject != Subject::Boxes || kind.is_of_boxes();
-            for change in ChangeKind::ALL.into_iter().filter(has) {
+        for world in worlds {
+            let has = |kind: &ChangeKind| world != WorldKind::Boxes || kind.is_of_boxes();
+            for change in ChangeKind::ALL.iter().copied().filter(has) {
                 for mode in rotation.modes() {
                     let cell = Self {
-                        subject,
+                        world,
                         change,
                         tier: mode.tier.name(),
                         threads: mode.threads,
@@ -203,7 +172,7 @@ pub struct HistoryLedger {
     pub required: u64,
     /// Those that weren't.
     pub missed: u64,
-    /// Pairs and events on which a world and one made for the moment differ.
+    /// Pairs and events on which a world and a newly built one differ.
     pub differ: u64,
     /// The first wrong pair.
     pub failure: Option<String>,

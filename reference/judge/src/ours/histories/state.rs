@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::subject::JudgedWorld;
+use super::worlds::JudgedWorld;
 use super::{Change, History};
 use sdop::Groups;
 use sdop::bodies::Aabb;
@@ -83,7 +83,7 @@ impl<B: Copy> State<B> {
         (numbers, parts)
     }
 
-    /// A world made for the moment, and the pairs that it finds.
+    /// A newly built world, and the pairs that it finds.
     pub fn fresh<W: JudgedWorld<Body = B>>(&self, mut world: W) -> Result<Pairs, WorldError> {
         let mut ids = vec![None; self.bodies.len()];
         for (number, body) in self.present() {

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::judge::{Life, Truth, required_boxes};
 use super::state::State;
-use super::subject::JudgedWorld;
+use super::worlds::JudgedWorld;
 use super::*;
 use crate::ours::configurations::Mode;
 use sdop::boxes::{BoxBody, BoxWorld};
@@ -97,7 +97,7 @@ fn wrong(to: Option<ChangeKind>) -> u64 {
         let states = State::all(&history).unwrap();
         let required = required_boxes(&states);
         let truth = Truth {
-            fresh: Some(required.clone()),
+            fresh: required.clone(),
             required,
         };
         let world = Blind {
@@ -107,7 +107,7 @@ fn wrong(to: Option<ChangeKind>) -> u64 {
         };
         let life = Life::new(world, &history, &states).unwrap();
         life.live(
-            Subject::Boxes,
+            WorldKind::Boxes,
             Mode::plain(Tier::SCALAR),
             &truth,
             &mut ledger,
@@ -160,7 +160,8 @@ fn every_kind_of_change_is_drawn() {
         seen.sort_unstable();
         seen.dedup();
         let all = ChangeKind::ALL
-            .into_iter()
+            .iter()
+            .copied()
             .filter(|kind| kind.is_of_boxes());
         assert_eq!(seen, all.collect::<Vec<_>>(), "seed {seed}");
     }

@@ -53,16 +53,40 @@ pub trait JudgedWorld {
     fn events(&mut self) -> Events;
 }
 
+/// The calls that both worlds have alike.
+macro_rules! forwarded {
+    ($body:ty) => {
+        type Body = $body;
+
+        fn insert(&mut self, body: $body) -> Result<BodyId, WorldError> {
+            self.insert(body)
+        }
+
+        fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
+            self.remove(id)
+        }
+
+        fn exclude(&mut self, [a, b]: [BodyId; 2], excluded: bool) -> Result<(), WorldError> {
+            let changed = if excluded {
+                self.exclude(a, b)
+            } else {
+                self.include(a, b)
+            };
+            changed.map(|_| ())
+        }
+
+        fn cull(&mut self) -> Result<Vec<[BodyId; 2]>, WorldError> {
+            Ok(self.cull()?.iter().collect())
+        }
+
+        fn events(&mut self) -> Events {
+            self.events()
+        }
+    };
+}
+
 impl JudgedWorld for BoxWorld {
-    type Body = BoxBody;
-
-    fn insert(&mut self, body: BoxBody) -> Result<BodyId, WorldError> {
-        self.insert(body)
-    }
-
-    fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.remove(id)
-    }
+    forwarded!(BoxBody);
 
     fn change(&mut self, id: BodyId, from: BoxBody, to: BoxBody) -> Result<(), WorldError> {
         let moved = BoxBody {
@@ -80,38 +104,13 @@ impl JudgedWorld for BoxWorld {
         }
     }
 
-    fn exclude(&mut self, [a, b]: [BodyId; 2], excluded: bool) -> Result<(), WorldError> {
-        let changed = if excluded {
-            self.exclude(a, b)
-        } else {
-            self.include(a, b)
-        };
-        changed.map(|_| ())
-    }
-
     fn interest(&mut self, _: &[BodyId]) -> Result<(), WorldError> {
         Ok(())
-    }
-
-    fn cull(&mut self) -> Result<Vec<[BodyId; 2]>, WorldError> {
-        Ok(self.cull()?.iter().collect())
-    }
-
-    fn events(&mut self) -> Events {
-        self.events()
     }
 }
 
 impl JudgedWorld for World {
-    type Body = Body;
-
-    fn insert(&mut self, body: Body) -> Result<BodyId, WorldError> {
-        self.insert(body)
-    }
-
-    fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.remove(id)
-    }
+    forwarded!(Body);
 
     fn change(&mut self, id: BodyId, from: Body, to: Body) -> Result<(), WorldError> {
         let moved = Body {
@@ -130,24 +129,7 @@ impl JudgedWorld for World {
         }
     }
 
-    fn exclude(&mut self, [a, b]: [BodyId; 2], excluded: bool) -> Result<(), WorldError> {
-        let changed = if excluded {
-            self.exclude(a, b)
-        } else {
-            self.include(a, b)
-        };
-        changed.map(|_| ())
-    }
-
     fn interest(&mut self, ids: &[BodyId]) -> Result<(), WorldError> {
         self.set_interest(ids)
-    }
-
-    fn cull(&mut self) -> Result<Vec<[BodyId; 2]>, WorldError> {
-        Ok(self.cull()?.iter().collect())
-    }
-
-    fn events(&mut self) -> Events {
-        self.events()
     }
 }
