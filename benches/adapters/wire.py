@@ -29,19 +29,25 @@ class Culler:
 
     def __init__(self, scene: SimpleNamespace):
         self.shapes = scene.shapes
-        self.body_shapes, self.dynamic = np.asarray(scene.body_shapes), np.asarray(scene.dynamic)
+        self.body_shapes, self.dynamic = np.asarray(scene.body_shapes), np.asarray(scene.dynamic, dtype=bool)
 
     given: dict[str, Any]
     """The frame as the judge gives it, for what a claim adds: groups, excluded pairs, margins."""
 
     def change(self, body_shapes: Array, dynamic: Array, was: Array) -> None:
-        self.body_shapes, self.dynamic = np.asarray(body_shapes), np.asarray(dynamic)
+        self.body_shapes, self.dynamic = np.asarray(body_shapes), np.asarray(dynamic, dtype=bool)
 
     def pairs(self, found: object) -> Array:
         """Pairs that a library has found, in any order and maybe twice, as the judge takes them."""
-        rows = np.sort(np.asarray(found, dtype=np.int64).reshape(-1, 2), axis=1)
-        rows = np.unique(rows[rows[:, 0] < rows[:, 1]], axis=0)
-        return rows[self.dynamic[rows].any(axis=1)]
+        i, j = np.asarray(found, dtype=np.int64).reshape(-1, 2).T
+        is_asked = (i != j) & (self.dynamic[i] | self.dynamic[j])
+        i, j = i[is_asked], j[is_asked]
+        # One number per pair: sorting numbers takes a tenth of the time of numpy's unique rows, and
+        # this counts as the library's time.
+        bodies = max(len(self.dynamic), 1)
+        keys = np.sort(np.minimum(i, j) * bodies + np.maximum(i, j))
+        keys = keys[np.diff(keys, prepend=-1) > 0]
+        return np.stack([keys // bodies, keys % bodies], axis=1)
 
     def reach(self) -> float:
         """The distance of two bodies' origins within which balls may meet, for libraries that take

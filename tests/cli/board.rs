@@ -1,14 +1,14 @@
 //! `sdop board`: rows, cells and the page, from adapters of a few lines of shell.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::sdop;
+use crate::{sdop, stdout, text};
 
-/// An adapter that reports nothing, or skips, and a table of claims for it.
-fn board(folder: &Path, answer: &str, more: &str) -> (Value, String) {
+/// The path of a table of claims for an adapter with one answer to every frame.
+fn claims(folder: &Path, answer: &str, more: &str) -> PathBuf {
     let adapter = format!(
         r#"[ "$1" = --version ] && echo 1.0 && exit
 n=0
@@ -41,16 +41,16 @@ why = "no reason"
 "#,
         folder.display()
     );
-    fs::write(folder.join("claims.toml"), claims).unwrap();
-    let (claims, out) = (folder.join("claims.toml"), folder.join("out"));
+    let path = folder.join("claims.toml");
+    fs::write(&path, claims).unwrap();
+    path
+}
+
+/// The record and the page of such an adapter.
+fn board(folder: &Path, answer: &str, more: &str) -> (Value, String) {
+    let (claims, out) = (claims(folder, answer, more), folder.join("out"));
     let arguments = ["board", "--case", "box/grid/0000", "--check", "--claims"];
-    let run = sdop(
-        &[
-            &arguments[..],
-            &[claims.to_str().unwrap(), "--out", out.to_str().unwrap()],
-        ]
-        .concat(),
-    );
+    let run = sdop(&[&arguments[..], &[text(&claims), "--out", text(&out)]].concat());
     let json = serde_json::from_str(&fs::read_to_string(out.join("board.json")).unwrap()).unwrap();
     let page = fs::read_to_string(out.join("board.html")).unwrap();
     assert!(page.contains("Who misses pairs"), "{run:?}");
@@ -102,4 +102,32 @@ fn unclaimed_misses_are_no_failure() {
         json["adapters"][0]["cells"][0]["reasons"]["its page says so"],
         1
     );
+}
+
+/// The page shows the times of an adapter and ours, each with its recall.
+#[test]
+fn times_are_on_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let claims = claims(folder.path(), r#"\"pairs\":[],\"ns\":5000"#, "");
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let same = ["board", "--claims", text(&claims), "--out", text(&out)];
+        stdout(&[&same[..], more].concat())
+    };
+    run(&["--timed", "data/scenes/crowded-500.toml"]);
+    let file = out.join("times.json");
+    let times: Vec<Value> = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    let recalls: Vec<(&str, f64)> = times
+        .iter()
+        .map(|time| {
+            (
+                time["name"].as_str().unwrap(),
+                time["recall"].as_f64().unwrap(),
+            )
+        })
+        .collect();
+    assert_eq!(recalls, [("sdop BoxCuller", 1.0), ("none", 0.0)]);
+    run(&["--case", "box/grid/0000", "--times", text(&file)]);
+    let page = fs::read_to_string(out.join("board.html")).unwrap();
+    assert!(page.contains("Recall against time") && page.contains("0.005 ms"));
 }

@@ -28,4 +28,7 @@ pub struct Board {
     pub adapters: Vec<Row>,
     /// Libraries that were not run.
     pub not_run: Vec<NotRun>,
+    /// Times of an earlier run, for the page alone.
+    #[serde(skip)]
+    pub times: Vec<Speed>,
 }

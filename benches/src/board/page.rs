@@ -84,18 +84,17 @@ struct Time<'a> {
     is_ours: bool,
 }
 
-/// Every contestant once, sorted by claim and then by time.
-fn times<'b>(board: &'b Board) -> Vec<Time<'b>> {
-    let mut all: Vec<&Speed> = board.adapters.iter().flat_map(|row| &row.speed).collect();
+/// Every contestant, sorted by claim and then by time.
+fn times(board: &Board) -> Vec<Time<'_>> {
+    let mut all: Vec<&Speed> = board.times.iter().collect();
     all.sort_by_key(|speed| (speed.claim.name(), speed.median_ns));
-    all.dedup_by(|a, b| (a.claim, &a.name) == (b.claim, &b.name));
     let logs = || all.iter().map(|speed| (speed.median_ns.max(1) as f64).ln());
     let (low, high) = (
         logs().fold(f64::INFINITY, f64::min),
         logs().fold(0.0, f64::max),
     );
     let bar = |ns: u64| 4.0 + 96.0 * ((ns.max(1) as f64).ln() - low) / (high - low).max(1e-9);
-    let line = |speed: &'b Speed| Time {
+    let line = |speed| Time {
         time: milliseconds(speed),
         percent: percent(speed),
         bar: bar(speed.median_ns),

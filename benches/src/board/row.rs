@@ -18,13 +18,14 @@ use sdop_judge::{Case, Claim, JudgeError, Miss, Options, Outcome, Subject, exami
 use serde::Serialize;
 
 use super::claims::Adapter;
-use super::speed::Speed;
 use crate::view::{Page, ShownRun};
 
 /// Time limit of a case; libraries that compile at their first call need it.
 const TIMEOUT: Duration = Duration::from_secs(120);
 /// Time for reducing a failing case.
 const SHRINK: Duration = Duration::from_secs(4);
+/// The reason why misses of pairs that only touch are no failure.
+const ONLY_TOUCHING: &str = "pairs that only touch, which it does not claim to report";
 /// How many times a failing case is repeated to see its misses, since answers may vary from run to
 /// run.
 const TRIES: usize = 20;
@@ -76,8 +77,6 @@ pub struct Row {
     pub total: GroupVerdict,
     /// One for each family.
     pub cells: Vec<Cell>,
-    /// Its time and recall on a scene, if it was timed.
-    pub speed: Vec<Speed>,
 }
 
 /// A family of cases.
@@ -137,7 +136,6 @@ pub fn judge(
         how: None,
         total: GroupVerdict::default(),
         cells: Vec::new(),
-        speed: Vec::new(),
     };
     match version(command) {
         Ok(found) => row.found = found,
@@ -277,10 +275,9 @@ impl Cell {
         for name in &self.missed_in {
             let case = named(claim, name)?;
             let touches = || !adapter.touching && only_touch(subject, &case);
-            let why = match adapter.disclaims(name) {
-                Some(why) => Some(why),
-                None => touches().then_some("pairs that only touch, of which it does not speak"),
-            };
+            let why = adapter
+                .disclaims(name)
+                .or_else(|| touches().then_some(ONLY_TOUCHING));
             match why {
                 None => claimed.push(case),
                 Some(why) => {

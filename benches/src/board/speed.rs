@@ -6,7 +6,7 @@ use sdop::BoxCuller;
 use sdop_judge::answer::Answer;
 use sdop_judge::score::judge_answers;
 use sdop_judge::{Case, Claim, Subject};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::outsiders::timing::{TimingError, ours, strategy};
 
@@ -14,14 +14,15 @@ use crate::outsiders::timing::{TimingError, ours, strategy};
 pub(super) const SELF_REPORTED: &str = "self-reported";
 
 /// The time of a contestant per frame, and its recall.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct Speed {
     /// The library's name.
     pub name: String,
     /// The claim.
     pub claim: Claim,
     /// Whose clock measured.
-    pub clock: &'static str,
+    pub clock: String,
     /// Median over frames, without the first one, in nanoseconds.
     pub median_ns: u64,
     /// Reported pairs / required pairs, over all frames.
@@ -59,7 +60,7 @@ impl Speed {
 
     fn judged(
         name: &str,
-        clock: &'static str,
+        clock: &str,
         case: &Case,
         answers: &[Answer],
     ) -> Result<Option<Self>, TimingError> {
@@ -70,7 +71,7 @@ impl Speed {
         Ok(times.get(times.len() / 2).map(|&median_ns| Self {
             name: name.to_owned(),
             claim: case.claim,
-            clock,
+            clock: clock.to_owned(),
             median_ns,
             recall: (count.required - count.missed) as f64 / count.required.max(1) as f64,
             reported: answers.iter().map(|answer| answer.pairs.len()).sum(),

@@ -21,7 +21,7 @@ use super::output::{print, progress, rows};
 /// opens from disk; each of its cells shows its groups and the smallest case of a miss.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples: sdop board --out target/board\n          sdop board rtree coal --check\n          sdop board --quick --check"
+    after_help = "Examples: sdop board --out target/board\n          sdop board rtree coal --check\n          sdop board --quick --check\n          sdop board --timed data/scenes/crowded-500.toml --out target/board"
 )]
 pub struct Args {
     /// Names of adapters (default: all)
@@ -46,13 +46,16 @@ pub struct Args {
         default_value = "benches/adapters/claims.toml"
     )]
     claims: PathBuf,
-    /// Also time all libraries on this scene
-    #[arg(long, value_name = "SCENE")]
+    /// Time the libraries and ours on this scene instead of judging them, and write times.json
+    #[arg(long, value_name = "SCENE", conflicts_with_all = ["case", "check", "times"])]
     timed: Option<PathBuf>,
+    /// A times.json, for the page
+    #[arg(long, value_name = "FILE")]
+    times: Option<PathBuf>,
 }
 
 /// Frames of the timed scene.
-const FRAMES: u32 = 6;
+const FRAMES: u32 = 12;
 
 /// Runs the command.
 ///
@@ -61,31 +64,38 @@ const FRAMES: u32 = 6;
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let claims = Claims::parse(&files::read(&args.claims)?)
         .map_err(|problem| miette!("{}: {problem}", args.claims.display()))?;
-    let scene = args.timed.as_deref().map(scene).transpose()?;
+    match &args.timed {
+        Some(scene) => time_all(args, &claims, &SceneFile::read(scene)?.build()?),
+        None => judge_all(args, &claims),
+    }
+}
+
+fn judge_all(args: &Args, claims: &Claims) -> miette::Result<Outcome> {
+    let times = match &args.times {
+        Some(file) => serde_json::from_str(&files::read(file)?).into_diagnostic()?,
+        None => Vec::new(),
+    };
     let mut board = Board {
         code: env!("CARGO_PKG_VERSION").to_owned(),
         adapters: Vec::new(),
         not_run: claims.not_run.clone(),
+        times,
     };
-    for adapter in chosen(args, &claims)? {
-        let command = claims.command(adapter);
+    for adapter in chosen(args, claims)? {
         let bar = progress(0, &adapter.name);
-        let told = |done: usize, of: usize| {
+        let show = |done: usize, of: usize| {
             bar.set_length(of as u64);
             bar.set_position(done as u64);
         };
-        let mut row = judge(adapter, &command, &args.case, told).into_diagnostic()?;
+        let command = claims.command(adapter);
+        let row = judge(adapter, &command, &args.case, show).into_diagnostic()?;
         bar.finish_and_clear();
-        if let (Some(scene), None) = (&scene, &row.how) {
-            row.speed = times(adapter, command, scene)?;
-        }
         eprintln!("{}", line(&row).join("  "));
         board.adapters.push(row);
     }
     print(&rows(&HEADER, &board.adapters, line).to_string())?;
     if let Some(out) = &args.out {
-        let text = serde_json::to_string_pretty(&board).into_diagnostic()?;
-        files::write(&out.join("board.json"), text + "\n")?;
+        write_json(&out.join("board.json"), &board)?;
         files::write(&out.join("board.html"), page(&board).into_diagnostic()?)?;
     }
     let changed: Vec<String> = board.adapters.iter().filter_map(changed).collect();
@@ -93,6 +103,41 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         [_, ..] if args.check => Outcome::Failed(changed.join("; ")),
         _ => Outcome::Passed,
     })
+}
+
+/// Times each library once, in a new process and by its first claim, and our culler once per claim.
+fn time_all(args: &Args, claims: &Claims, scene: &Scene) -> miette::Result<Outcome> {
+    let mut times: Vec<Speed> = Vec::new();
+    let is_first = |adapter: &&Adapter| adapter.name == adapter.base;
+    for adapter in chosen(args, claims)?.into_iter().filter(is_first) {
+        let claim = adapter.claim;
+        let case = frames(scene, FRAMES, claim).into_diagnostic()?;
+        if !times.iter().any(|time| time.claim == claim) {
+            times.extend(Speed::ours(&case).into_diagnostic()?);
+        }
+        let program = Program {
+            command: claims.command(adapter),
+            wire: Wire::Ndjson,
+            timeout: Duration::from_secs(120),
+        };
+        times.extend(Speed::of(&adapter.name, &program, &case).into_diagnostic()?);
+    }
+    let header = ["contestant", "claim", "recall", "ns per frame"];
+    let line = |time: &Speed| {
+        let Speed { name, claim, .. } = time;
+        let [recall, ns] = [time.recall.to_string(), time.median_ns.to_string()];
+        vec![name.clone(), claim.to_string(), recall, ns]
+    };
+    print(&rows(&header, &times, line).to_string())?;
+    if let Some(out) = &args.out {
+        write_json(&out.join("times.json"), &times)?;
+    }
+    Ok(Outcome::Passed)
+}
+
+fn write_json(path: &Path, value: &impl serde::Serialize) -> miette::Result<()> {
+    let text = serde_json::to_string_pretty(value).into_diagnostic()?;
+    files::write(path, text + "\n")
 }
 
 fn chosen<'a>(args: &Args, claims: &'a Claims) -> miette::Result<Vec<&'a Adapter>> {
@@ -113,23 +158,6 @@ fn chosen<'a>(args: &Args, claims: &'a Claims) -> miette::Result<Vec<&'a Adapter
             && (!args.quick || adapter.quick)
     };
     Ok(claims.adapter.iter().filter(wanted).collect())
-}
-
-fn scene(path: &Path) -> miette::Result<Scene> {
-    Ok(SceneFile::read(path)?.build()?)
-}
-
-/// Times an adapter and our culler on the same frames. The adapter runs in a new process.
-fn times(adapter: &Adapter, command: String, scene: &Scene) -> miette::Result<Vec<Speed>> {
-    let program = Program {
-        command,
-        wire: Wire::Ndjson,
-        timeout: Duration::from_secs(120),
-    };
-    let case = frames(scene, FRAMES, adapter.claim).into_diagnostic()?;
-    let theirs = Speed::of(&adapter.name, &program, &case).into_diagnostic()?;
-    let ours = Speed::ours(&case).into_diagnostic()?;
-    Ok(theirs.into_iter().chain(ours).collect())
 }
 
 const HEADER: [&str; 8] = [

@@ -241,14 +241,24 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
         scenes: &[],
     },
     Experiment {
-        name: "adapters",
+        name: "adapters/verdicts",
         about: "other libraries judged: which of their claims hold",
+        steps: &[
+            ExperimentStep::Script("installed.txt", &["benches/adapters/install"]),
+            ExperimentStep::Sdop(&["board"]),
+        ],
+        deterministic: &[],
+        scenes: &[],
+    },
+    Experiment {
+        name: "adapters/times",
+        about: "other libraries timed by their own clocks, and ours, on the same frames",
         steps: &[
             ExperimentStep::Script("installed.txt", &["benches/adapters/install"]),
             ExperimentStep::Sdop(&["board", "--timed", "data/scenes/crowded-500.toml"]),
         ],
         deterministic: &[],
-        scenes: &[],
+        scenes: &["data/scenes/crowded-500.toml"],
     },
     Experiment {
         name: "effects",

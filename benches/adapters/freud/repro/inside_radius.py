@@ -10,7 +10,7 @@ of the box's side and back, so that what it misses is a share of the side.
 import freud
 import numpy as np
 
-SIDES = (8.0, 32.0, 128.0)
+SIDES = (8.0, 32.0, 64.0)
 PLACES = np.arange(-12, 12) / 8
 FINDERS = {"AABBQuery": freud.AABBQuery, "LinkCell": lambda box, points: freud.LinkCell(box, points, 1.0)}
 

@@ -177,7 +177,7 @@ sdop_data::with_hard_cases! { groups! {
     stale_rebase "stale/rebase", 6, CaseDraw::Stale(StaleKind::Rebase), "stale bounds after another origin", after "newton #4008";
     stale_all_at_once "stale/all-at-once", 6, CaseDraw::Stale(StaleKind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
     list_both "list/both", 3, CaseDraw::Approach(ApproachKind::Both), "a list kept until one body has moved as far as two together may", after "lammps #1701";
-    list_one "list/one", 3, CaseDraw::Approach(ApproachKind::One), "a list kept for a number of frames", after "lammps #4239 and sisl #1016";
+    list_one "list/one", 3, CaseDraw::Approach(ApproachKind::One), "a list kept for a number of frames", after "lammps #4239";
     list_return "list/return", 3, CaseDraw::Approach(ApproachKind::Return), "a list whose age is measured from frame to frame", after "lammps #1701";
     filter_groups "filter/groups", 6, CaseDraw::ClaimInput(ClaimInputKind::Groups, &[Claim::Filter]), "masks asked of one body alone, or of a few bits", after "newton #3713 and #990";
     filter_excluded "filter/excluded", 6, CaseDraw::ClaimInput(ClaimInputKind::Excluded, &[Claim::Filter]), "excluded pairs that are reported", after "newton #1553";
