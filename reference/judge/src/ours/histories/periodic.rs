@@ -227,7 +227,7 @@ fn required<B: Properties>(
     meeting: impl Fn(&B, &B) -> Result<Vec<[i64; 3]>, InvalidInput>,
 ) -> Result<Vec<Pairs>, InvalidInput> {
     let required = |state: &State<B>| {
-        let (numbers, parts) = state.parts(|body| *{ *body }.groups());
+        let (numbers, parts) = state.parts(|body| *body.to_owned().groups());
         let mut bodies: Vec<B> = state.present().map(|(_, body)| body).collect();
         let is_fixed = bodies.iter_mut().map(|body| !body.motion().is_dynamic());
         let is_fixed: Vec<bool> = is_fixed.collect();
