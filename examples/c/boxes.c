@@ -44,7 +44,7 @@ static void ask(const SdopBoxWorld *world, uint64_t near, uint64_t far) {
     sdop_query_index_free(index);
 }
 
-/* Particles in a cell that repeats along x and y: which of them are within a cutoff, and in which image? */
+/* A cell that repeats along x and y: which boxes meet, and in which image? */
 static void periodic_cell(void) {
     const double cell[3] = {10, 10, 0}; /* z has no period */
     SdopPeriodicBoxes *world;

@@ -1,6 +1,7 @@
-//! Long-lived worlds of boxes and of meshes, also in space that repeats, with bodies that come, go, move, rest, wake and
-//! change; the bytes choose everything. After each frame, their pairs and events are those of a
-//! newly built world, and no pair that the exact reference requires is missing.
+//! Long-lived worlds of boxes and of meshes, also in space that repeats, with bodies that come, go,
+//! move, rest, wake and change; the bytes choose everything. After each frame, their pairs and
+//! events are those of a newly built world, and no pair that the exact reference requires is
+//! missing.
 #![no_main]
 
 use std::sync::OnceLock;
