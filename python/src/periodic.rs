@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use numpy::{PyArray2, PyArrayMethods as _};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sdop::periodic::{ImageWorld, Periodic, PeriodicBox, PeriodicError, PeriodicPair};

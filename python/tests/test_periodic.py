@@ -136,7 +136,7 @@ def test_bodies_come_rest_and_go():
         (lambda: sdop.PeriodicBoxes([0.0, 1, 1]), sdop.SdopError, "the period along x is 0\nhelp: give a length"),
         (lambda: sdop.PeriodicBoxes([np.nan, 1, 1]), sdop.SdopError, "the period along x is NaN"),
         (lambda: sdop.PeriodicBoxes(3.0), TypeError, "float"),
-        (lambda: sdop.PeriodicBoxes(["a", 1, 1]), TypeError, ""),
+        (lambda: sdop.PeriodicBoxes(["a", 1, 1]), TypeError, "number"),
         (lambda: boxes().insert([0, 0, 0, 1, 2, 1]), sdop.SdopError, "body 0 measures 2 along y, but less than 2"),
         (lambda: boxes().insert([0, 0, 0, 1, 1]), sdop.SdopError, "bounds has shape"),
         (lambda: boxes().insert([0, 0, 0, 1, np.nan, 1]), sdop.SdopError, "body 0: box"),
