@@ -45,14 +45,11 @@ pub struct Repeated<B> {
 impl Repeated<PeriodicBox> {
     /// A history of given boxes, each of them moved by periods that `below` draws.
     pub fn boxes(history: &History<BoxBody>, below: &mut impl FnMut(u32) -> u32) -> Self {
-        Self::of(history, LEAST_OF_BOXES, below, |body, way, periods| {
-            let moved = |end: [f32; 3]| moved(end.map(f64::from), way, periods);
-            PeriodicBox {
-                min: moved(body.bounds.min),
-                max: moved(body.bounds.max),
-                motion: body.motion,
-                groups: body.groups,
-            }
+        Self::of(history, LEAST_OF_BOXES, below, |body, moved| PeriodicBox {
+            min: moved(body.bounds.min.map(f64::from)),
+            max: moved(body.bounds.max.map(f64::from)),
+            motion: body.motion,
+            groups: body.groups,
         })
     }
 }
@@ -60,12 +57,9 @@ impl Repeated<PeriodicBox> {
 impl Repeated<Body> {
     /// A history of meshes, each of them moved by periods that `below` draws.
     pub fn meshes(history: &History<Body>, below: &mut impl FnMut(u32) -> u32) -> Self {
-        Self::of(history, LEAST_OF_MESHES, below, |body, way, periods| {
-            let stepped = body.translation.map(|x| (x / STEP).round() * STEP);
-            Body {
-                translation: moved(stepped, way, periods),
-                ..*body
-            }
+        Self::of(history, LEAST_OF_MESHES, below, |body, moved| Body {
+            translation: moved(body.translation.map(|x| (x / STEP).round() * STEP)),
+            ..*body
         })
     }
 }
@@ -75,11 +69,21 @@ impl<B> Repeated<B> {
         history: &History<A>,
         least: f64,
         below: &mut impl FnMut(u32) -> u32,
-        moved: impl Fn(&A, [i32; 3], [Option<f64>; 3]) -> B,
+        place: impl Fn(&A, &dyn Fn([f64; 3]) -> [f64; 3]) -> B,
     ) -> Self {
         let axes = 1 + below(7);
         let periods = [0, 1, 2].map(|axis| (axes >> axis & 1 == 1).then(|| period(least, below)));
-        let moved = |body: &A, way| moved(body, way, periods);
+        // Borders are anywhere among the bodies.
+        let offset = [(); 3].map(|()| f64::from(below(1 << 16)) / f64::from(1 << 11));
+        let moved = |body: &A, way: [i32; 3]| {
+            let moved = |at: [f64; 3]| {
+                [0, 1, 2].map(|axis| {
+                    let period = periods[axis].unwrap_or(0.0);
+                    f64::from(way[axis]).mul_add(period, at[axis] + offset[axis])
+                })
+            };
+            place(body, &moved)
+        };
         let mut ways: Vec<[i32; 3]> = Vec::new();
         let mut first = Vec::new();
         for body in &history.first {
@@ -131,14 +135,6 @@ fn draw_way(below: &mut impl FnMut(u32) -> u32) -> [i32; 3] {
     [(); 3].map(|()| match below(8) {
         0 => below(1 << 21) as i32 - (1 << 20),
         _ => below(5) as i32 - 2,
-    })
-}
-
-/// A position moved by whole periods, rounded once.
-fn moved(at: [f64; 3], way: [i32; 3], periods: [Option<f64>; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| match periods[axis] {
-        Some(period) => f64::from(way[axis]).mul_add(period, at[axis]),
-        None => at[axis],
     })
 }
 
