@@ -30,6 +30,7 @@ always!(
     sdop::culler::CullError,
     sdop::mesh::MeshError,
     sdop::mesh::shapes::ShapeError,
+    sdop::periodic::PeriodicError,
     sdop::query::QueryError,
     sdop::settings::SettingsError,
     sdop::threads::ThreadsError,

@@ -1,5 +1,5 @@
 /* Boxes of an engine in, pairs that meet out; then a world in which they come and go, and which is
-   asked what is where. C11. */
+   asked what is where; then a cell that repeats. C11. */
 #undef NDEBUG /* what is asserted is shown */
 #include <assert.h>
 #include <inttypes.h>
@@ -44,6 +44,36 @@ static void ask(const SdopBoxWorld *world, uint64_t near, uint64_t far) {
     sdop_query_index_free(index);
 }
 
+/* A cell that repeats along x and y: which boxes meet, and in which image? */
+static void periodic_cell(void) {
+    const double cell[3] = {10, 10, 0}; /* z has no period */
+    SdopPeriodicBoxes *world;
+    check(sdop_periodic_boxes_new(&cell, NULL, 1, &world));
+    SdopPeriodicBox boxes[] = {
+        sdop_periodic_box_between(0, 4, 0, 1, 5, 1),
+        sdop_periodic_box_between(9, 4.5, 0.5, 10, 5.5, 1.5),
+    };
+    uint64_t ids[2];
+    for (size_t i = 0; i < 2; ++i) check(sdop_periodic_boxes_insert(world, &boxes[i], &ids[i]));
+    size_t count;
+    check(sdop_periodic_boxes_cull(world, &count));
+    SdopPeriodicPair pair;
+    check(sdop_periodic_boxes_pairs(world, &pair, 1, &count));
+    assert(count == 1 && pair.bodies.first == ids[0] && pair.bodies.second == ids[1]);
+    assert(pair.image[0] == -1 && pair.image[1] == 0 && pair.image[2] == 0);
+    printf("the second box meets the first, moved by %" PRId32 " periods along x\n", pair.image[0]);
+
+    boxes[1].min[0] = 8.5;
+    boxes[1].max[0] = 9.5;
+    check(sdop_periodic_boxes_set(world, ids, boxes, 2)); /* in each step */
+    check(sdop_periodic_boxes_cull(world, &count));
+    assert(count == 0);
+    boxes[1].max[0] = 13.5;
+    assert(sdop_periodic_boxes_set(world, &ids[1], &boxes[1], 1) == SDOP_STATUS_REFUSED);
+    printf("%s\n", sdop_last_error());
+    sdop_periodic_boxes_free(world);
+}
+
 int main(void) {
     const SdopBox boxes[] = {
         {{0, 0, 0}, {1, 1, 1}},
@@ -85,5 +115,6 @@ int main(void) {
     assert(status == SDOP_STATUS_REFUSED);
     printf("%s\n", sdop_last_error());
     sdop_box_world_free(world);
+    periodic_cell();
     return 0;
 }

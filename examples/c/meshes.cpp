@@ -1,5 +1,5 @@
 // Meshes with poses of an engine: a fixed set, a world with margins that is saved and rolled back,
-// queries, bodies of several shapes, single pairs. C++17.
+// a world that repeats, queries, bodies of several shapes, single pairs. C++17.
 #undef NDEBUG // what is asserted is shown
 #include <array>
 #include <cassert>
@@ -26,6 +26,7 @@ using Compound = std::unique_ptr<SdopCompound, Free<SdopCompound, sdop_compound_
 using Index = std::unique_ptr<SdopQueryIndex, Free<SdopQueryIndex, sdop_query_index_free>>;
 using PairTest = std::unique_ptr<SdopPairTest, Free<SdopPairTest, sdop_pair_test_free>>;
 using PartCuller = std::unique_ptr<SdopPartCuller, Free<SdopPartCuller, sdop_part_culler_free>>;
+using PeriodicWorld = std::unique_ptr<SdopPeriodicWorld, Free<SdopPeriodicWorld, sdop_periodic_world_free>>;
 using World = std::unique_ptr<SdopWorld, Free<SdopWorld, sdop_world_free>>;
 
 Shape tetrahedron() {
@@ -100,6 +101,39 @@ void a_world(const SdopShape *shape) {
     check(sdop_world_set(world.get(), ids[0], &asleep));
     assert(pairs_of(world.get()).size() == 1);
     assert(sdop_world_exclude(world.get(), ids[0], ids[0] + 1000) == SDOP_STATUS_REFUSED);
+}
+
+// Two bodies that touch across the border of a cell, in the one image in which they do.
+void a_world_that_repeats(const SdopShape *shape) {
+    const double cell[] = {8, 0, 0};
+    SdopPeriodicWorld *made = nullptr;
+    check(sdop_periodic_world_new(&shape, 1, &cell, nullptr, &made));
+    const PeriodicWorld world(made);
+    std::array<SdopBody, 2> bodies{sdop_body_at(0, 0, 0, 0), sdop_body_at(0, 8e6 + 7, 0, 0)};
+    std::array<std::uint64_t, 2> ids{};
+    for (std::size_t i = 0; i < ids.size(); ++i) check(sdop_periodic_world_insert(world.get(), &bodies[i], &ids[i]));
+    std::size_t count = 0;
+    const auto culled = [&] {
+        check(sdop_periodic_world_cull(world.get(), &count));
+        return count;
+    };
+    assert(culled() == 1);
+    SdopPeriodicPair pair{};
+    check(sdop_periodic_world_pairs(world.get(), &pair, 1, &count));
+    assert(pair.bodies.first == ids[0] && pair.bodies.second == ids[1] && pair.image[0] == -1000001);
+
+    check(sdop_periodic_world_exclude(world.get(), ids[0], ids[1]));
+    assert(culled() == 0);
+    check(sdop_periodic_world_include(world.get(), ids[0], ids[1]));
+    bodies[1].translation[0] = 8e6 + 6;
+    check(sdop_periodic_world_set(world.get(), ids.data(), bodies.data(), bodies.size()));
+    assert(culled() == 0);
+    const double smaller[] = {7, 0, 0}, narrow[] = {1, 0, 0};
+    assert(sdop_periodic_world_set_periods(world.get(), &narrow) == SDOP_STATUS_REFUSED);
+    check(sdop_periodic_world_set_periods(world.get(), &smaller));
+    check(sdop_periodic_world_remove(world.get(), ids[1]));
+    assert(culled() == 0);
+    assert(sdop_periodic_world_set(world.get(), &ids[1], &bodies[1], 1) == SDOP_STATUS_REFUSED);
 }
 
 // An arm of three links next to a post: which link may touch it?
@@ -201,6 +235,7 @@ int main() {
     const Shape shape = tetrahedron();
     a_fixed_set(shape.get());
     a_world(shape.get());
+    a_world_that_repeats(shape.get());
     queries(shape.get());
     parts_of_bodies(shape.get());
     single_pairs(shape.get());

@@ -1,6 +1,7 @@
-//! Long-lived worlds of boxes and of meshes, with bodies that come, go, move, rest, wake and
-//! change; the bytes choose everything. After each frame, their pairs and events are those of a
-//! newly built world, and no pair that the exact reference requires is missing.
+//! Long-lived worlds of boxes and of meshes, also in space that repeats, with bodies that come, go,
+//! move, rest, wake and change; the bytes choose everything. After each frame, their pairs and
+//! events are those of a newly built world, and no pair that the exact reference requires is
+//! missing.
 #![no_main]
 
 use std::sync::OnceLock;
@@ -10,7 +11,8 @@ use sdop::Tier;
 use sdop_judge::ours::Shapes;
 use sdop_judge::ours::configurations::{Mode, rows, variants};
 use sdop_judge::ours::histories::{
-    draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes,
+    Repeated, draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes,
+    judge_periodic_boxes, judge_periodic_meshes,
 };
 
 /// A number below another, of as many bytes as that takes; 0 when none are left.
@@ -34,16 +36,26 @@ fuzz_target!(|data: &[u8]| {
     let mut below = |n| below(n, &mut bytes);
     let tiers = Tier::available();
     let mode = Mode::plain(tiers[below(tiers.len() as u32) as usize]);
-    let judged = if below(2) == 0 {
+    let (is_of_boxes, is_periodic) = (below(2) == 0, below(2) == 0);
+    let judged = if is_of_boxes {
         let history = draw_boxes(&mut below);
-        judge_boxes(&history, &[mode])
+        if is_periodic {
+            judge_periodic_boxes(&Repeated::boxes(&history, &mut below), &[mode])
+        } else {
+            judge_boxes(&history, &[mode])
+        }
     } else {
         let number = below(variants().count() as u32) as usize;
         let variant = variants().nth(number).expect("one of them");
         let row = below(rows(variant).len() as u32) as usize;
         let history = draw_meshes(shapes(number), &mut below);
-        let modes = |n| if n == row { vec![mode] } else { Vec::new() };
-        judge_meshes(shapes(number), &history, variant, modes)
+        if is_periodic {
+            let history = Repeated::meshes(&history, &mut below);
+            judge_periodic_meshes(shapes(number), &history, variant, &[mode])
+        } else {
+            let modes = |n| if n == row { vec![mode] } else { Vec::new() };
+            judge_meshes(shapes(number), &history, variant, modes)
+        }
     };
     assert_eq!(judged.expect("histories are valid").failure, None);
 });

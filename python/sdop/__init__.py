@@ -26,7 +26,7 @@ True
 Lengths have any one unit. Axes are right-handed; rotations are quaternions x, y, z, w of any
 non-zero norm that turn a body's frame into the world's. Columns are float32: arrays of float64 are
 accepted if float32 holds each number exactly, and rejected otherwise, because the answer would be
-about other numbers. `World` keeps float64 translations.
+about other numbers. `World` and the periodic worlds keep float64 as it is.
 
 Classes may be used from several threads; calls on one object take turns, and other threads of
 Python run meanwhile. Arrays are read in place: don't write to one while a call reads it.
@@ -42,6 +42,8 @@ from ._sdop import (
     Culler,
     Events,
     PartCuller,
+    PeriodicBoxes,
+    PeriodicWorld,
     QueryIndex,
     Scene,
     SdopError,
@@ -64,6 +66,8 @@ __all__ = [
     "Events",
     "MissedPair",
     "PartCuller",
+    "PeriodicBoxes",
+    "PeriodicWorld",
     "QueryIndex",
     "Scene",
     "SdopError",

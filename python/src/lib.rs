@@ -12,6 +12,7 @@ mod errors;
 mod exact;
 mod ids;
 mod judge;
+mod periodic;
 mod program;
 mod query;
 mod shape;
@@ -31,6 +32,8 @@ mod _sdop {
     use super::exact::exact_meet;
     #[pymodule_export]
     use super::judge::{Scene, judge};
+    #[pymodule_export]
+    use super::periodic::{PeriodicBoxes, PeriodicWorld};
     #[pymodule_export]
     use super::program::main;
     #[pymodule_export]

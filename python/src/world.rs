@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use sdop::culler::CullerBuilder;
 use sdop::{Body, BodyId, Finder, Groups, Motion, Strategy};
 
 use super::arrays::{check_length, id_column, one_row, pairs, rows, wide_rows};
@@ -47,14 +48,7 @@ impl World {
         finder: &str,
         threads: usize,
     ) -> PyResult<Self> {
-        let (strategy, finder): (Strategy, Finder) = (
-            strategy.parse().map_err(refused)?,
-            finder.parse().map_err(refused)?,
-        );
-        let builder = sdop::Culler::builder()
-            .strategy(strategy)
-            .finder(finder)
-            .threads(threads);
+        let builder = builder(strategy, finder, threads)?;
         let world = sdop::World::with(built(&shapes), &builder).map_err(refused)?;
         Ok(Self(Mutex::new(world)))
     }
@@ -98,20 +92,7 @@ impl World {
         dynamic: bool,
         groups: (u32, u32),
     ) -> PyResult<u64> {
-        let (rotation, translation) = pose(rotation, translation)?;
-        let (member, mask) = groups;
-        let body = Body {
-            shape,
-            motion: if dynamic {
-                Motion::Dynamic
-            } else {
-                Motion::Fixed
-            },
-            rotation,
-            translation,
-            margin,
-            groups: Groups { member, mask },
-        };
+        let body = body(shape, pose(rotation, translation)?, margin, dynamic, groups);
         locked(py, &self.0, |world| world.insert(body))
             .map(BodyId::to_bits)
             .map_err(refused)
@@ -189,15 +170,7 @@ impl World {
     fn body<'py>(&self, py: Python<'py>, id: u64) -> PyResult<Bound<'py, PyDict>> {
         let body =
             locked(py, &self.0, |world| world.body(BodyId::from_bits(id))).map_err(refused)?;
-        let named = PyDict::new(py);
-        named.set_item("shape", body.shape)?;
-        named.set_item("rotation", body.rotation)?;
-        named.set_item("translation", body.translation)?;
-        named.set_item("margin", body.margin)?;
-        named.set_item("dynamic", body.motion.is_dynamic())?;
-        named.set_item("resting", body.motion == Motion::Resting)?;
-        named.set_item("groups", (body.groups.member, body.groups.mask))?;
-        Ok(named)
+        named(py, &body)
     }
 
     /// Finds the pairs that might touch now: ids of shape (m, 2), sorted.
@@ -255,8 +228,53 @@ pub(super) fn motion(name: &str) -> PyResult<Motion> {
     }
 }
 
+/// The choices of a world.
+pub(super) fn builder(strategy: &str, finder: &str, threads: usize) -> PyResult<CullerBuilder> {
+    let (strategy, finder): (Strategy, Finder) = (
+        strategy.parse().map_err(refused)?,
+        finder.parse().map_err(refused)?,
+    );
+    let builder = sdop::Culler::builder().strategy(strategy).finder(finder);
+    Ok(builder.threads(threads))
+}
+
+/// A body of `insert`'s parameters.
+pub(super) fn body(
+    shape: u32,
+    (rotation, translation): ([f32; 4], [f64; 3]),
+    margin: f32,
+    dynamic: bool,
+    (member, mask): (u32, u32),
+) -> Body {
+    Body {
+        shape,
+        motion: if dynamic {
+            Motion::Dynamic
+        } else {
+            Motion::Fixed
+        },
+        rotation,
+        translation,
+        margin,
+        groups: Groups { member, mask },
+    }
+}
+
+/// A body with the names of `insert`'s parameters, and whether it is "resting".
+pub(super) fn named<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> {
+    let named = PyDict::new(py);
+    named.set_item("shape", body.shape)?;
+    named.set_item("rotation", body.rotation)?;
+    named.set_item("translation", body.translation)?;
+    named.set_item("margin", body.margin)?;
+    named.set_item("dynamic", body.motion.is_dynamic())?;
+    named.set_item("resting", body.motion == Motion::Resting)?;
+    named.set_item("groups", (body.groups.member, body.groups.mask))?;
+    Ok(named)
+}
+
 /// A rotation and a translation.
-fn pose(
+pub(super) fn pose(
     rotation: &Bound<'_, PyAny>,
     translation: &Bound<'_, PyAny>,
 ) -> PyResult<([f32; 4], [f64; 3])> {

@@ -14,10 +14,11 @@ def test_blocks_of_the_readme_run(monkeypatch):
     names = {}
     for block in blocks:
         exec(compile(block, "README.md", "exec"), names)
-    assert len(blocks) == 7 and names["pairs"].tolist() == [[0, 1]]
+    assert len(blocks) == 8 and names["pairs"].tolist() == [[0, 1]]
     assert names["near"].tolist() == [[0, names["a"]], [0, names["b"]]]
     assert names["hits"].tolist() == [[0, names["a"]]] and 0 < names["at"][0] < 0.5
     assert names["bodies"].tolist() == [[names["c"], names["d"]]] and names["numbers"].tolist() == [[1, 0]]
+    assert names["found"].tolist() == [[names["left"], names["right"]]] and names["images"].tolist() == [[-1, 0, 0]]
     assert {row["term"] for row in names["quality"]} >= {"precision", "time"} and len(names["prices"]) > 10
 
 

@@ -11,6 +11,7 @@ use crate::compound::CompoundError;
 use crate::culler::CullError;
 use crate::mesh::MeshError;
 use crate::pairs::PairList;
+use crate::periodic::PeriodicError;
 use crate::query::QueryError;
 use crate::volume::VolumeError;
 use crate::world::{BodyId, Event, Events, SnapshotError, WorldError};
@@ -124,6 +125,7 @@ refusals!(
     ContractError,
     CullError,
     MeshError,
+    PeriodicError,
     QueryError,
     VolumeError,
     WorldError,

@@ -13,6 +13,8 @@ mod box_world;
 mod boxes;
 mod compounds;
 mod pair_test;
+mod periodic_boxes;
+mod periodic_world;
 mod queries;
 mod world;
 
@@ -26,6 +28,8 @@ pub use box_world::*;
 pub use boxes::*;
 pub use compounds::*;
 pub use pair_test::*;
+pub use periodic_boxes::*;
+pub use periodic_world::*;
 pub use queries::*;
 pub use world::*;
 
@@ -36,6 +40,8 @@ const _: () = {
     is_for_all_threads::<SdopCompound>();
     is_for_all_threads::<SdopPairTest>();
     is_for_all_threads::<SdopPartCuller>();
+    is_for_all_threads::<SdopPeriodicBoxes>();
+    is_for_all_threads::<SdopPeriodicWorld>();
     is_for_all_threads::<SdopQueryIndex>();
     is_for_all_threads::<SdopShape>();
     is_for_all_threads::<SdopWorld>();

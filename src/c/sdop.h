@@ -51,6 +51,13 @@ typedef struct SdopPairTest SdopPairTest;
 // Finds the pairs of parts within the pairs of bodies that a world reports.
 typedef struct SdopPartCuller SdopPartCuller;
 
+// A long-lived set of boxes in space that repeats along some axes.
+typedef struct SdopPeriodicBoxes SdopPeriodicBoxes;
+
+// A long-lived set of bodies in space that repeats along some axes. Along a periodic axis, the
+// ball about a body, with its margin, has to be smaller than half of the period.
+typedef struct SdopPeriodicWorld SdopPeriodicWorld;
+
 // The bodies of a world, prepared for queries. Many threads may query it at the same time, while
 // none updates it.
 typedef struct SdopQueryIndex SdopQueryIndex;
@@ -185,21 +192,29 @@ typedef struct {
   uint32_t second_part;
 } SdopPartPair;
 
-// The points from + s·(to − from) for 0 ≤ s ≤ 1, world frame.
+// A box in space that repeats. It may be anywhere; along a periodic axis it has to be shorter than
+// half of the period.
 typedef struct {
-  // The point of s = 0.
-  double from[3];
-  // The point of s = 1.
-  double to[3];
-} SdopSegment;
+  // The lower corner.
+  double min[3];
+  // The upper corner.
+  double max[3];
+  // Whether it is scenery; pairs of two such boxes are never reported.
+  bool fixed;
+  // Whether it lies still for the time being; its pairs stay.
+  bool resting;
+  // Which boxes it may collide with; all bits for all.
+  SdopGroups groups;
+} SdopPeriodicBox;
 
-// A body that a segment may meet.
+// Two bodies, of which the second touches the first when it is moved by whole periods.
 typedef struct {
-  // The body.
-  uint64_t id;
-  // An s at or before the first point that the segment shares with the body.
-  double at;
-} SdopHit;
+  // The bodies.
+  SdopIdPair bodies;
+  // The number of periods along each axis by which the second body is moved, from where it was
+  // put.
+  int32_t image[3];
+} SdopPeriodicPair;
 
 // A body to be inserted.
 typedef struct {
@@ -218,6 +233,22 @@ typedef struct {
   // Which bodies it may collide with; all bits for all.
   SdopGroups groups;
 } SdopBody;
+
+// The points from + s·(to − from) for 0 ≤ s ≤ 1, world frame.
+typedef struct {
+  // The point of s = 0.
+  double from[3];
+  // The point of s = 1.
+  double to[3];
+} SdopSegment;
+
+// A body that a segment may meet.
+typedef struct {
+  // The body.
+  uint64_t id;
+  // An s at or before the first point that the segment shares with the body.
+  double at;
+} SdopHit;
 
 #ifdef __cplusplus
 extern "C" {
@@ -524,6 +555,166 @@ bool sdop_pair_test_may_touch(const SdopPairTest *test,
                               uint32_t second,
                               const float (*rotation)[4],
                               const float (*translation)[3]);
+
+// A box between two corners that is neither fixed nor resting, in all groups. Change what differs.
+SdopPeriodicBox sdop_periodic_box_between(double min_x,
+                                          double min_y,
+                                          double min_z,
+                                          double max_x,
+                                          double max_y,
+                                          double max_z);
+
+// Makes a world without boxes. `periods` are three lengths along x, y and z, 0 for an axis without
+// a period. `finder` is "auto" if null; 0 threads are 1.
+//
+// # Safety
+// `periods` are three numbers; `finder` is null or ends with a zero; `out` may be written.
+SdopStatus sdop_periodic_boxes_new(const double (*periods)[3],
+                                   const char *finder,
+                                   size_t threads,
+                                   SdopPeriodicBoxes **out);
+
+// Frees a world; null is fine.
+//
+// # Safety
+// It is from `sdop_periodic_boxes_new` and not used afterwards.
+void sdop_periodic_boxes_free(SdopPeriodicBoxes *world);
+
+// Changes the periods. Boxes stay where they were put. If one is too large for them, nothing
+// changes.
+//
+// # Safety
+// `world` is a handle; `periods` are three numbers.
+SdopStatus sdop_periodic_boxes_set_periods(SdopPeriodicBoxes *world, const double (*periods)[3]);
+
+// Adds a box; `id` gets its id, which stays until the box is removed.
+//
+// # Safety
+// `world` is a handle, `body` a box; `id` may be written.
+SdopStatus sdop_periodic_boxes_insert(SdopPeriodicBoxes *world, const SdopPeriodicBox *body, uint64_t *id);
+
+// Removes a box.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_periodic_boxes_remove(SdopPeriodicBoxes *world, uint64_t id);
+
+// Moves boxes, or changes them in any of their properties: columns of ids and boxes. If one is
+// rejected, those before it have changed.
+//
+// # Safety
+// `world` is a handle; the columns have `count` entries.
+SdopStatus sdop_periodic_boxes_set(SdopPeriodicBoxes *world,
+                                   const uint64_t *ids,
+                                   const SdopPeriodicBox *bodies,
+                                   size_t count);
+
+// Never reports the pair of two boxes again, in any image, until it is included or one of them is
+// removed.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_periodic_boxes_exclude(SdopPeriodicBoxes *world, uint64_t a, uint64_t b);
+
+// Reports the pair of two boxes again when it meets.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_periodic_boxes_include(SdopPeriodicBoxes *world, uint64_t a, uint64_t b);
+
+// Finds the pairs of which an image meets. `pairs` gets their number; read them with
+// `sdop_periodic_boxes_pairs`.
+//
+// # Safety
+// `world` is a handle; `pairs` may be written.
+SdopStatus sdop_periodic_boxes_cull(SdopPeriodicBoxes *world, size_t *pairs);
+
+// Copies the pairs of the last cull into `buffer`, each once, sorted by slots. If they don't fit,
+// `count` says how many there are.
+//
+// # Safety
+// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
+SdopStatus sdop_periodic_boxes_pairs(const SdopPeriodicBoxes *world,
+                                     SdopPeriodicPair *buffer,
+                                     size_t capacity,
+                                     size_t *count);
+
+// Makes a world without bodies. `periods` are three lengths along x, y and z, 0 for an axis
+// without a period. `options` may be null for the defaults.
+//
+// # Safety
+// The column has the stated number of shapes; `periods` are three numbers; `options` is null or
+// options; `out` may be written.
+SdopStatus sdop_periodic_world_new(const SdopShape *const *shapes,
+                                   size_t shape_count,
+                                   const double (*periods)[3],
+                                   const SdopOptions *options,
+                                   SdopPeriodicWorld **out);
+
+// Frees a world; null is fine.
+//
+// # Safety
+// It is from `sdop_periodic_world_new` and not used afterwards.
+void sdop_periodic_world_free(SdopPeriodicWorld *world);
+
+// Changes the periods. Bodies stay where they were put. If one is too large for them, nothing
+// changes.
+//
+// # Safety
+// `world` is a handle; `periods` are three numbers.
+SdopStatus sdop_periodic_world_set_periods(SdopPeriodicWorld *world, const double (*periods)[3]);
+
+// Adds a body; `id` gets its id, which stays until the body is removed.
+//
+// # Safety
+// `world` is a handle, `body` a body; `id` may be written.
+SdopStatus sdop_periodic_world_insert(SdopPeriodicWorld *world, const SdopBody *body, uint64_t *id);
+
+// Removes a body.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_periodic_world_remove(SdopPeriodicWorld *world, uint64_t id);
+
+// Moves bodies, or changes them in any of their properties: columns of ids and bodies. If one is
+// rejected, those before it have changed.
+//
+// # Safety
+// `world` is a handle; the columns have `count` entries.
+SdopStatus sdop_periodic_world_set(SdopPeriodicWorld *world,
+                                   const uint64_t *ids,
+                                   const SdopBody *bodies,
+                                   size_t count);
+
+// Never reports the pair of two bodies again, in any image, until it is included or one of them is
+// removed.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_periodic_world_exclude(SdopPeriodicWorld *world, uint64_t a, uint64_t b);
+
+// Reports the pair of two bodies again when it meets.
+//
+// # Safety
+// `world` is a handle.
+SdopStatus sdop_periodic_world_include(SdopPeriodicWorld *world, uint64_t a, uint64_t b);
+
+// Finds the pairs of which an image may touch. `pairs` gets their number; read them with
+// `sdop_periodic_world_pairs`.
+//
+// # Safety
+// `world` is a handle; `pairs` may be written.
+SdopStatus sdop_periodic_world_cull(SdopPeriodicWorld *world, size_t *pairs);
+
+// Copies the pairs of the last cull into `buffer`, each once, sorted by slots. If they don't fit,
+// `count` says how many there are.
+//
+// # Safety
+// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
+SdopStatus sdop_periodic_world_pairs(const SdopPeriodicWorld *world,
+                                     SdopPeriodicPair *buffer,
+                                     size_t capacity,
+                                     size_t *count);
 
 // Makes an index without bodies.
 //

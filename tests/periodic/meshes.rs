@@ -4,6 +4,7 @@
 use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{Culler, ProceduralShape, Shape};
 use sdop_reference::WidePose;
+use sdop_reference::exact::period::separation;
 
 use super::*;
 
@@ -56,14 +57,11 @@ fn meet(
     periods: [Option<f64>; 3],
     image: [i32; 3],
 ) -> bool {
-    let way = [0, 1, 2].map(|axis| f64::from(image[axis]) * periods[axis].unwrap_or(0.0));
-    let at = [0, 1, 2].map(|axis| b.translation[axis] + way[axis]);
-    for axis in 0..3 {
-        assert_eq!(at[axis] - way[axis], b.translation[axis], "exact");
-    }
+    let image = image.map(i64::from);
+    let apart = separation(a.translation, b.translation, image, periods).unwrap();
     let pose = |body: &Body, at| WidePose::new(body.rotation.map(f64::from), at).unwrap();
     let of = |body: &Body| &meshes[body.shape as usize];
-    sdop_reference::wide::meet((of(a), &pose(a, a.translation)), (of(b), &pose(b, at))).meets
+    sdop_reference::wide::meet((of(a), &pose(a, [0.0; 3])), (of(b), &pose(b, apart))).meets
 }
 
 fn random_body(lengths: [f64; 3], periods: [Option<f64>; 3], random: &mut Random) -> Body {

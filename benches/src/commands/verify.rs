@@ -35,10 +35,11 @@ use report::Report;
 /// tests, finders, k, axes, update modes, SIMD tiers and numbers of threads are tested in every
 /// combination; the matrix at the end counts them. Each list is compared with the exact answers and
 /// with the list of all-pairs; lists of boxes are compared with their definition. Long-lived worlds
-/// go through histories of changes, and their pairs and events are compared with the exact answers
-/// and with those of newly built worlds. The exit code is 1 for a missed pair, a list that differs
-/// from that of all-pairs, or an empty cell of the matrix; for the first two, the smallest scene
-/// that shows it is written. A run that --time cuts short is INCOMPLETE: exit code 3.
+/// go through histories of changes, also in space that repeats, and their pairs and events are
+/// compared with the exact answers and with those of newly built worlds. The exit code is 1 for a
+/// missed pair, a list that differs from that of all-pairs, or an empty cell of the matrix; for the
+/// first two, the smallest scene that shows it is written. A run that --time cuts short is
+/// INCOMPLETE: exit code 3.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop verify\n          sdop verify --seeds 128 --time 600\n          sdop verify data/scenes/paper-500.toml --frames 100\n          \

@@ -1,5 +1,5 @@
-//! Boxes in space that repeats along some axes, in exact fractions: the images in which two meet.
-//! Touching counts.
+//! Space that repeats along some axes, in exact fractions: the images in which two boxes meet, and
+//! how far apart the images of two points are. Touching counts.
 
 use dashu_ratio::RBig;
 
@@ -45,6 +45,27 @@ pub fn meeting_images(
     images
 }
 
+/// The difference of two points, of which the second is moved by whole periods, if f64 holds it.
+#[must_use]
+pub fn separation(
+    a: Vector<f64>,
+    b: Vector<f64>,
+    image: [i64; 3],
+    periods: [Option<f64>; 3],
+) -> Option<Vector<f64>> {
+    let mut apart = [0.0; 3];
+    for (axis, apart) in apart.iter_mut().enumerate() {
+        let lift = |x: f64| RBig::lift(x, 0);
+        let way = RBig::from(image[axis]) * lift(periods[axis].unwrap_or(0.0));
+        let exact = lift(b[axis]) + way - lift(a[axis]);
+        *apart = exact.to_f64_fast();
+        if lift(*apart) != exact {
+            return None;
+        }
+    }
+    Some(apart)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -84,5 +105,14 @@ mod tests {
         assert_eq!(images([3.0, 6.0, -15.0]), [[0; 3]; 0]);
         let wide = [[0.0; 3], [4.0, 8.0, 16.0]];
         assert_eq!(meeting_images(unit, wide, periods).len(), 8);
+    }
+
+    #[test]
+    fn separations_are_exact() {
+        let periods = [Some(0.1), None, Some(3.0)];
+        let apart = |b, image| separation([0.5, 1.0, -1.0], b, image, periods);
+        assert_eq!(apart([0.5, 4.0, 2.0], [0, 0, -1]), Some([0.0, 3.0, 0.0]));
+        assert_eq!(apart([0.5, 4.0, 2.0], [1, 0, 0]), Some([0.1, 3.0, 3.0]));
+        assert_eq!(apart([0.5, 4.0, 2.0], [3, 0, 0]), None, "3 · 0.1 is no f64");
     }
 }

@@ -11,7 +11,10 @@ use crate::ours::boxes;
 use crate::ours::configurations::Rotation;
 use crate::ours::forms::{self, Form};
 use crate::ours::hard::HardCaseGroup;
-use crate::ours::histories::{draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes};
+use crate::ours::histories::{
+    Repeated, draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes,
+    judge_periodic_boxes, judge_periodic_meshes,
+};
 use crate::ours::reference_shapes::Shapes;
 use crate::ours::seeded_draws::{ContactSpec, crowd, probe};
 use sdop::bodies::Bodies;
@@ -76,11 +79,11 @@ pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
 }
 
 /// Long-lived worlds of a seed for one or-DOP, number `number` of all that a seed has: one history
-/// of given boxes and one of meshes, by every strategy and overlap test. The modes of eight or-DOPs
-/// fill every cell.
+/// of given boxes and one of meshes, by every strategy and overlap test, and both in space that
+/// repeats. The modes of eight or-DOPs fill every cell.
 ///
 /// # Errors
-/// As [`judge_meshes`].
+/// As [`judge_meshes`] and [`judge_periodic_meshes`].
 pub fn histories(
     seed: u64,
     number: usize,
@@ -101,6 +104,15 @@ pub fn histories(
     let meshes = draw_meshes(&shapes, &mut below);
     let mut judged = judge_boxes(&boxes, &modes(0))?;
     judged.add(judge_meshes(&shapes, &meshes, (k, axes), modes)?);
+    let boxes = Repeated::boxes(&boxes, &mut below);
+    judged.add(judge_periodic_boxes(&boxes, &modes(0))?);
+    let meshes = Repeated::meshes(&meshes, &mut below);
+    judged.add(judge_periodic_meshes(
+        &shapes,
+        &meshes,
+        (k, axes),
+        &modes(0),
+    )?);
     Ok(Ledger {
         histories: judged,
         ..Ledger::default()

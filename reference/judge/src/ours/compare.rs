@@ -96,7 +96,7 @@ pub fn found(culler: &Culler, settings: &CullSettings) -> Vec<[u32; 2]> {
 
 /// The pairs that one of two sorted lists has more often than the other.
 #[must_use]
-pub fn difference(one: &[[u32; 2]], other: &[[u32; 2]]) -> Vec<[u32; 2]> {
+pub fn difference<P: Copy + Ord>(one: &[P], other: &[P]) -> Vec<P> {
     let mut differing = Vec::new();
     let (mut one, mut other) = (one.iter().peekable(), other.iter().peekable());
     while let Some(&next) = one.peek().into_iter().chain(other.peek()).min() {

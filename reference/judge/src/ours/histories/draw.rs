@@ -6,7 +6,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
 use super::worlds::Properties;
-use super::{Change, ChangeKind, History};
+use super::{Change, ChangeKind, History, WorldKind};
 use crate::ours::boxes::beside;
 use crate::ours::contact::PlacedShape;
 use crate::ours::forms::{Form, FormError, build};
@@ -74,7 +74,7 @@ pub fn draw_boxes(below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
     let kinds = ChangeKind::ALL
         .iter()
         .copied()
-        .filter(|kind| kind.is_of_boxes());
+        .filter(|change| WorldKind::Boxes.has(*change));
     draw(
         &kinds.collect::<Vec<_>>(),
         new,

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::draw::MARGINS;
-use super::state::{Pairs, State, by_number, in_order};
+use super::state::{NumberedPair, Pairs, State, by_number, in_order};
 use super::worlds::JudgedWorld;
 use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, WorldKind};
 use crate::ours::answers::{Answers, Predicate};
@@ -14,18 +14,32 @@ use crate::ours::reference_shapes::{Shapes, grown};
 use sdop::Motion;
 use sdop::bodies::{Aabb, Bodies};
 use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};
-use sdop::culler::Culler;
+use sdop::culler::{Culler, CullerBuilder};
+use sdop::periodic::PeriodicPair;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
-use sdop::world::{Body, BodyId, World, WorldError};
+use sdop::world::{Body, BodyId, World};
 
-/// What a world must say after each frame.
+/// What a world must report after each frame.
 pub(super) struct Truth {
     /// Pairs that must be reported.
     pub required: Vec<Pairs>,
     /// The lists of newly built worlds.
     pub fresh: Vec<Pairs>,
+    /// Whether a list may lack pairs of a newly built world's that are not required.
+    pub may_lack: bool,
+}
+
+impl Truth {
+    /// What is required is all that may be reported.
+    pub fn exact(required: Vec<Pairs>) -> Self {
+        Self {
+            fresh: required.clone(),
+            required,
+            may_lack: false,
+        }
+    }
 }
 
 /// A world that lives through a history.
@@ -44,7 +58,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
         world: W,
         history: &'a History<W::Body>,
         states: &'a [State<W::Body>],
-    ) -> Result<Self, WorldError> {
+    ) -> Result<Self, HistoryError> {
         let mut life = Self {
             world,
             history,
@@ -59,7 +73,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
         Ok(life)
     }
 
-    fn insert(&mut self, body: W::Body) -> Result<(), WorldError> {
+    fn insert(&mut self, body: W::Body) -> Result<(), HistoryError> {
         let id = self.world.insert(body)?;
         self.numbers.insert(id, self.ids.len() as u32);
         self.ids.push(id);
@@ -67,7 +81,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
     }
 
     /// The changes that lead to a frame.
-    pub fn change(&mut self, frame: usize) -> Result<(), WorldError> {
+    pub fn change(&mut self, frame: usize) -> Result<(), HistoryError> {
         let Some(before) = frame.checked_sub(1) else {
             return Ok(());
         };
@@ -97,32 +111,33 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
 
     /// Culls, and returns the pairs that are missed, and those on which the list or the events are
     /// not what they must be.
-    fn compare(&mut self, frame: usize, truth: &Truth) -> Result<[Pairs; 2], WorldError> {
+    fn compare(&mut self, frame: usize, truth: &Truth) -> Result<[Pairs; 2], HistoryError> {
         let listed = self.world.cull()?;
-        let list = by_number(&listed, &self.numbers);
-        let missed = |pair: &&[u32; 2]| list.binary_search(pair).is_err();
-        let missed = truth.required[frame]
-            .iter()
-            .filter(missed)
-            .copied()
-            .collect();
-        let mut differ = difference(&list, &truth.fresh[frame]);
-        if !listed.is_sorted_by(|one, next| one < next) {
-            differ.extend(list.first());
-        }
-        let events = self.world.events();
+        let is_sorted = listed.is_sorted_by(|one, next| one < next);
+        let list = by_number(listed, &self.numbers);
         let outside = |these: &Pairs, those: &Pairs| {
-            let is_outside = |pair: &&[u32; 2]| those.binary_search(pair).is_err();
+            let is_outside = |pair: &&NumberedPair| those.binary_search(pair).is_err();
             these.iter().filter(is_outside).copied().collect::<Pairs>()
         };
-        for (events, wanted) in [
-            (
-                events.begun().collect::<Vec<_>>(),
-                outside(&list, &self.before),
-            ),
-            (events.ended().collect(), outside(&self.before, &list)),
-        ] {
-            differ.extend(difference(&by_number(&events, &self.numbers), &wanted));
+        let missed = outside(&truth.required[frame], &list);
+        let mut differ = match truth.may_lack {
+            true => outside(&list, &truth.fresh[frame]),
+            false => difference(&list, &truth.fresh[frame]),
+        };
+        if !is_sorted {
+            differ.extend(list.first());
+        }
+        if let Some(events) = self.world.events() {
+            let (begun, ended) = (outside(&list, &self.before), outside(&self.before, &list));
+            let numbered = |ids: &mut dyn Iterator<Item = [BodyId; 2]>| {
+                let image = [0; 3];
+                by_number(
+                    ids.map(|bodies| PeriodicPair { bodies, image }),
+                    &self.numbers,
+                )
+            };
+            differ.extend(difference(&numbered(&mut events.begun()), &begun));
+            differ.extend(difference(&numbered(&mut events.ended()), &ended));
         }
         self.before = list;
         Ok([missed, differ])
@@ -135,7 +150,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
         mode: Mode,
         truth: &Truth,
         ledger: &mut HistoryLedger,
-    ) -> Result<(), WorldError> {
+    ) -> Result<(), HistoryError> {
         for frame in 0..self.states.len() {
             self.change(frame)?;
             let [missed, differ] = self.compare(frame, truth)?;
@@ -147,7 +162,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
                 None => Vec::new(),
             };
             for change in ChangeKind::ALL.iter().copied() {
-                if kinds.contains(&change) {
+                if kinds.contains(&change) && kind.has(change) {
                     let cell = HistoryCell {
                         world: kind,
                         change,
@@ -169,8 +184,8 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
                     "a world of {} {fault} bodies {} and {} in frame {frame} of a history, after {} \
                      ({}, {} threads)",
                     kind.name(),
-                    pair[0],
-                    pair[1],
+                    pair.bodies[0],
+                    pair.bodies[1],
                     names.join(", "),
                     mode.tier,
                     mode.threads
@@ -190,12 +205,7 @@ pub fn judge_boxes(
     modes: &[Mode],
 ) -> Result<HistoryLedger, HistoryError> {
     let states = State::all(history)?;
-    let required = required_boxes(&states);
-    // Boxes are compared as they are: what is required is all that may be reported.
-    let truth = Truth {
-        fresh: required.clone(),
-        required,
-    };
+    let truth = Truth::exact(required_boxes(&states)); // boxes are compared as they are
     let mut ledger = HistoryLedger::default();
     for (&mode, &finder) in modes.iter().zip(Finder::ALL.iter().cycle()) {
         let culler = BoxCuller::builder().finder(finder).tier(mode.tier);
@@ -216,7 +226,7 @@ pub(super) fn required_boxes(states: &[State<BoxBody>]) -> Vec<Pairs> {
         let counts = |pair: &[u32; 2]| !parts(*pair) && !pair.iter().all(is_fixed);
         let meeting = meeting(&bounds).into_iter().filter(counts);
         let number = |at: u32| numbers[at as usize] as u32;
-        in_order(meeting.map(|pair| pair.map(number)))
+        in_order(meeting.map(|pair| NumberedPair::new(pair.map(number), [0; 3])))
     };
     states.iter().map(required).collect()
 }
@@ -262,9 +272,12 @@ pub fn judge_meshes(
                 _ => Tier::SCALAR,
             };
             if !truths.contains_key(plain.name()) {
-                let fresh = fresh_lists(shapes, &states, &way, plain)?;
-                let required = required.clone();
-                truths.insert(plain.name(), Truth { required, fresh });
+                let truth = Truth {
+                    required: required.clone(),
+                    fresh: fresh_lists(shapes, &states, &way, plain)?,
+                    may_lack: false,
+                };
+                truths.insert(plain.name(), truth);
             }
             let life = Life::new(world(shapes, &way, mode)?, history, &states)?;
             life.live(
@@ -291,10 +304,14 @@ fn needs(way: &CullSettings, predicate: Predicate) -> bool {
     }
 }
 
-fn world(shapes: &Shapes, way: &CullSettings, mode: Mode) -> Result<World, WorldError> {
+/// Culls in this way and mode.
+pub(super) fn culler(way: &CullSettings, mode: Mode) -> CullerBuilder {
     let culler = Culler::builder().settings(way).updates(mode.updates);
-    let culler = culler.tier(mode.tier).threads(mode.threads).worth_waking(0);
-    World::with(shapes.built.clone(), &culler)
+    culler.tier(mode.tier).threads(mode.threads).worth_waking(0)
+}
+
+fn world(shapes: &Shapes, way: &CullSettings, mode: Mode) -> Result<World, HistoryError> {
+    Ok(World::with(shapes.built.clone(), &culler(way, mode))?)
 }
 
 /// What all-pairs finds in newly built worlds.
@@ -303,7 +320,7 @@ fn fresh_lists(
     states: &[State<Body>],
     way: &CullSettings,
     tier: Tier,
-) -> Result<Vec<Pairs>, WorldError> {
+) -> Result<Vec<Pairs>, HistoryError> {
     let way = CullSettings {
         pairs: Finder::AllPairs,
         ..way.clone()
@@ -316,7 +333,7 @@ fn fresh_lists(
 }
 
 /// The shapes for the reference, each grown by every margin, rounded inward.
-fn with_margins(shapes: &Shapes) -> Result<Shapes, HistoryError> {
+pub(super) fn with_margins(shapes: &Shapes) -> Result<Shapes, HistoryError> {
     let all = shapes.built.iter();
     let all = all.flat_map(|shape| MARGINS.map(|margin| grown(shape, margin)));
     Ok(Shapes {
@@ -324,6 +341,12 @@ fn with_margins(shapes: &Shapes) -> Result<Shapes, HistoryError> {
         judged: all.collect::<Result<_, _>>()?,
         widened: Vec::new(),
     })
+}
+
+/// The number of a body's shape among those [`with_margins`].
+pub(super) fn grown_shape(body: &Body) -> u32 {
+    let margin = MARGINS.iter().position(|&known| known == body.margin);
+    body.shape * MARGINS.len() as u32 + margin.unwrap_or(0) as u32
 }
 
 /// The exact answers about the present bodies, grown by their margins.
@@ -335,11 +358,10 @@ fn answers(
 ) -> Result<Answers, HistoryError> {
     let mut bodies = Bodies::default();
     for (_, body) in state.present() {
-        let margin = MARGINS.iter().position(|&known| known == body.margin);
-        let shape = body.shape * MARGINS.len() as u32 + margin.unwrap_or(0) as u32;
         // Drawn translations are f32.
         let translation = body.translation.map(|x| x as f32);
-        bodies.push(shape, body.motion.is_dynamic(), body.rotation, translation);
+        let is_dynamic = body.motion.is_dynamic();
+        bodies.push(grown_shape(&body), is_dynamic, body.rotation, translation);
     }
     Ok(Answers::judge(shapes, &bodies, k, predicates)?)
 }
@@ -357,5 +379,6 @@ fn required_of(state: &State<Body>, answers: &Answers, way: &CullSettings) -> Pa
         answers.pairs.iter().enumerate().filter(|(n, pair)| {
             !parts(**pair) && answers.required(strategy, overlap, &interest, *n)
         });
-    in_order(counted.map(|(_, pair)| pair.map(|at| numbers[at as usize] as u32)))
+    let number = |at: u32| numbers[at as usize] as u32;
+    in_order(counted.map(|(_, pair)| NumberedPair::new(pair.map(number), [0; 3])))
 }

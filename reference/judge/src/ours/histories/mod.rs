@@ -1,9 +1,11 @@
 //! Histories of long-lived worlds: frames in which a few bodies are inserted, removed, moved, put
 //! to rest, woken, fixed or changed. After each frame, a world's pairs are compared with the exact
 //! answers and with those of a newly built world, and its events with the difference of its lists.
+//! Worlds in which space repeats live through the same histories.
 
 mod draw;
 mod judge;
+mod periodic;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -13,10 +15,12 @@ use std::collections::BTreeMap;
 
 pub use draw::{draw_boxes, draw_meshes, history_shapes};
 pub use judge::{judge_boxes, judge_meshes};
+pub use periodic::{Repeated, judge_periodic_boxes, judge_periodic_meshes};
 
 use super::configurations::{Rotation, rows, variants};
 use super::reference_shapes::InvalidInput;
 use sdop::choice::choices;
+use sdop::periodic::PeriodicError;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::world::WorldError;
 
@@ -26,6 +30,9 @@ pub enum HistoryError {
     /// What a world refuses.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// What a periodic world refuses.
+    #[error(transparent)]
+    Periodic(#[from] PeriodicError),
     /// Numbers that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),
@@ -59,14 +66,6 @@ choices! {
     }
 }
 
-impl ChangeKind {
-    /// Whether given boxes can change in this way.
-    #[must_use]
-    pub fn is_of_boxes(self) -> bool {
-        !matches!(self, Self::Margin | Self::Reshaped | Self::Interest)
-    }
-}
-
 /// A change; bodies are numbered in the order of their insertion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change<B> {
@@ -91,13 +90,18 @@ pub struct History<B> {
     pub frames: Vec<Vec<(ChangeKind, Change<B>)>>,
 }
 
-/// The world that is judged: given boxes, or meshes by a strategy with an overlap test.
+/// The world that is judged: given boxes, or meshes by a strategy with an overlap test, in space
+/// that may repeat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WorldKind {
     /// A `BoxWorld`.
     Boxes,
     /// A `World`.
     Meshes(Strategy, Option<Overlap>),
+    /// A `PeriodicBoxes`.
+    PeriodicBoxes,
+    /// A `PeriodicWorld`, with the default overlap test.
+    PeriodicMeshes(Strategy),
 }
 
 impl WorldKind {
@@ -108,6 +112,20 @@ impl WorldKind {
         Self::Meshes(way.strategy, has_test.then_some(way.overlap))
     }
 
+    /// Whether its bodies can change in this way.
+    #[must_use]
+    pub fn has(self, change: ChangeKind) -> bool {
+        let is_of_meshes = matches!(
+            change,
+            ChangeKind::Margin | ChangeKind::Reshaped | ChangeKind::Interest
+        );
+        match self {
+            Self::Boxes | Self::PeriodicBoxes => !is_of_meshes,
+            Self::Meshes(..) => true,
+            Self::PeriodicMeshes(_) => change != ChangeKind::Interest,
+        }
+    }
+
     /// What tables call it.
     #[must_use]
     pub fn name(self) -> String {
@@ -115,6 +133,8 @@ impl WorldKind {
             Self::Boxes => "given boxes".to_owned(),
             Self::Meshes(strategy, None) => strategy.to_string(),
             Self::Meshes(strategy, Some(overlap)) => format!("{strategy} {overlap}"),
+            Self::PeriodicBoxes => "periodic boxes".to_owned(),
+            Self::PeriodicMeshes(strategy) => format!("periodic {strategy}"),
         }
     }
 }
@@ -139,9 +159,11 @@ impl HistoryCell {
         let rows = variants().next().map(rows).unwrap_or_default();
         let worlds = [WorldKind::Boxes].into_iter();
         let worlds = worlds.chain(rows.iter().map(WorldKind::of));
+        let worlds = worlds.chain([WorldKind::PeriodicBoxes]);
+        let worlds = worlds.chain(periodic::STRATEGIES.map(WorldKind::PeriodicMeshes));
         let mut cells = Vec::new();
         for world in worlds {
-            let has = |kind: &ChangeKind| world != WorldKind::Boxes || kind.is_of_boxes();
+            let has = |change: &ChangeKind| world.has(*change);
             for change in ChangeKind::ALL.iter().copied().filter(has) {
                 for mode in rotation.modes() {
                     let cell = Self {

@@ -4,14 +4,40 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::worlds::JudgedWorld;
-use super::{Change, History};
+use super::{Change, History, HistoryError};
 use sdop::Groups;
 use sdop::bodies::Aabb;
 use sdop::boxes::BoxWorld;
-use sdop::world::{BodyId, WorldError};
+use sdop::periodic::PeriodicPair;
+use sdop::world::BodyId;
 
-/// Pairs of bodies' numbers, the lower one first, sorted.
-pub type Pairs = Vec<[u32; 2]>;
+/// Two bodies by their numbers, the lower one first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct NumberedPair {
+    /// The bodies.
+    pub bodies: [u32; 2],
+    /// The number of periods along each axis by which the second body is moved.
+    pub image: [i32; 3],
+}
+
+impl NumberedPair {
+    /// Two bodies in either order.
+    pub fn new([a, b]: [u32; 2], image: [i32; 3]) -> Self {
+        match a <= b {
+            true => Self {
+                bodies: [a, b],
+                image,
+            },
+            false => Self {
+                bodies: [b, a],
+                image: image.map(|n| -n),
+            },
+        }
+    }
+}
+
+/// Pairs of numbers, sorted.
+pub type Pairs = Vec<NumberedPair>;
 
 /// The bodies after some frames of a history.
 #[derive(Clone, Debug)]
@@ -29,7 +55,7 @@ pub struct State<B> {
 
 impl<B: Copy> State<B> {
     /// After each frame, the first bodies' frame before the others.
-    pub fn all(history: &History<B>) -> Result<Vec<Self>, WorldError> {
+    pub fn all(history: &History<B>) -> Result<Vec<Self>, HistoryError> {
         let mut state = Self {
             bodies: history.first.iter().copied().map(Some).collect(),
             excluded: Vec::new(),
@@ -84,7 +110,7 @@ impl<B: Copy> State<B> {
     }
 
     /// A newly built world, and the pairs that it finds.
-    pub fn fresh<W: JudgedWorld<Body = B>>(&self, mut world: W) -> Result<Pairs, WorldError> {
+    pub fn fresh<W: JudgedWorld<Body = B>>(&self, mut world: W) -> Result<Pairs, HistoryError> {
         let mut ids = vec![None; self.bodies.len()];
         for (number, body) in self.present() {
             ids[number] = Some(world.insert(body)?);
@@ -101,29 +127,31 @@ impl<B: Copy> State<B> {
         let numbers = numbers
             .filter_map(|(id, number)| Some(((*id)?, number)))
             .collect();
-        Ok(by_number(&world.cull()?, &numbers))
+        Ok(by_number(world.cull()?, &numbers))
     }
 }
 
 /// Pairs of ids as pairs of numbers.
-pub fn by_number(pairs: &[[BodyId; 2]], numbers: &HashMap<BodyId, u32>) -> Pairs {
+pub fn by_number(
+    pairs: impl IntoIterator<Item = PeriodicPair>,
+    numbers: &HashMap<BodyId, u32>,
+) -> Pairs {
     let number = |id| numbers.get(&id).copied().unwrap_or(u32::MAX);
-    in_order(pairs.iter().map(|pair| pair.map(number)))
+    let numbered = pairs
+        .into_iter()
+        .map(|pair| NumberedPair::new(pair.bodies.map(number), pair.image));
+    in_order(numbered)
 }
 
-/// The lower number of each pair first, sorted.
-pub fn in_order(pairs: impl Iterator<Item = [u32; 2]>) -> Pairs {
-    let ordered = |mut pair: [u32; 2]| {
-        pair.sort_unstable();
-        pair
-    };
-    let mut pairs: Pairs = pairs.map(ordered).collect();
+/// The pairs, sorted.
+pub fn in_order(pairs: impl Iterator<Item = NumberedPair>) -> Pairs {
+    let mut pairs: Pairs = pairs.collect();
     pairs.sort_unstable();
     pairs
 }
 
 /// The slot that each body gets in a world, by number. Slots are given again after a cull.
-fn slots<B>(history: &History<B>) -> Result<Vec<usize>, WorldError> {
+fn slots<B>(history: &History<B>) -> Result<Vec<usize>, HistoryError> {
     let (mut world, mut ids) = (BoxWorld::new(), Vec::new());
     let apart = |number: usize| Aabb::new([number as f32; 3], [number as f32; 3]);
     for number in 0..history.first.len() {

@@ -11,6 +11,7 @@ use super::worlds::JudgedWorld;
 use super::*;
 use crate::ours::configurations::Mode;
 use sdop::boxes::{BoxBody, BoxWorld};
+use sdop::periodic::PeriodicPair;
 use sdop::simd::Tier;
 use sdop::world::{BodyId, Events};
 
@@ -36,20 +37,20 @@ impl Blind {
 impl JudgedWorld for Blind {
     type Body = BoxBody;
 
-    fn insert(&mut self, body: BoxBody) -> Result<BodyId, WorldError> {
+    fn insert(&mut self, body: BoxBody) -> Result<BodyId, HistoryError> {
         let id = self.world.insert(body)?;
         self.known.push((id, body));
         Ok(id)
     }
 
-    fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
+    fn remove(&mut self, id: BodyId) -> Result<(), HistoryError> {
         match self.sees(ChangeKind::Removed) {
-            true => self.world.remove(id),
+            true => JudgedWorld::remove(&mut self.world, id),
             false => Ok(()),
         }
     }
 
-    fn change(&mut self, id: BodyId, _: BoxBody, to: BoxBody) -> Result<(), WorldError> {
+    fn change(&mut self, id: BodyId, _: BoxBody, to: BoxBody) -> Result<(), HistoryError> {
         let at = self
             .known
             .iter()
@@ -66,26 +67,26 @@ impl JudgedWorld for Blind {
             body.groups = to.groups;
         }
         self.known[at].1 = body;
-        self.world.set(id, body)
+        Ok(self.world.set(id, body)?)
     }
 
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), WorldError> {
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), HistoryError> {
         match self.sees(ChangeKind::Excluded) {
             true => JudgedWorld::exclude(&mut self.world, pair, excluded),
             false => Ok(()),
         }
     }
 
-    fn interest(&mut self, _: &[BodyId]) -> Result<(), WorldError> {
+    fn interest(&mut self, _: &[BodyId]) -> Result<(), HistoryError> {
         Ok(())
     }
 
-    fn cull(&mut self) -> Result<Vec<[BodyId; 2]>, WorldError> {
+    fn cull(&mut self) -> Result<Vec<PeriodicPair>, HistoryError> {
         JudgedWorld::cull(&mut self.world)
     }
 
-    fn events(&mut self) -> Events {
-        self.world.events()
+    fn events(&mut self) -> Option<Events> {
+        JudgedWorld::events(&mut self.world)
     }
 }
 
@@ -96,10 +97,7 @@ fn wrong(to: Option<ChangeKind>) -> u64 {
         let history = drawn(seed);
         let states = State::all(&history).unwrap();
         let required = required_boxes(&states);
-        let truth = Truth {
-            fresh: required.clone(),
-            required,
-        };
+        let truth = Truth::exact(required);
         let world = Blind {
             world: BoxWorld::new(),
             to,
@@ -162,7 +160,7 @@ fn every_kind_of_change_is_drawn() {
         let all = ChangeKind::ALL
             .iter()
             .copied()
-            .filter(|kind| kind.is_of_boxes());
+            .filter(|change| WorldKind::Boxes.has(*change));
         assert_eq!(seen, all.collect::<Vec<_>>(), "seed {seed}");
     }
 }

@@ -1,10 +1,12 @@
-//! The common interface of both long-lived worlds: what a history does to them.
+//! The common interface of the long-lived worlds: what a history does to them.
 
+use super::HistoryError;
 use sdop::boxes::{BoxBody, BoxWorld};
-use sdop::world::{Body, BodyId, Events, World, WorldError};
+use sdop::periodic::{ImageWorld, Periodic, PeriodicBox, PeriodicPair};
+use sdop::world::{Body, BodyId, Events, World};
 use sdop::{Groups, Motion};
 
-/// A body's properties that both worlds have.
+/// A body's properties that all worlds have.
 pub trait Properties: Copy + PartialEq {
     /// Whether it is dynamic, resting or fixed.
     fn motion(&mut self) -> &mut Motion;
@@ -12,25 +14,20 @@ pub trait Properties: Copy + PartialEq {
     fn groups(&mut self) -> &mut Groups;
 }
 
-impl Properties for BoxBody {
-    fn motion(&mut self) -> &mut Motion {
-        &mut self.motion
-    }
+macro_rules! properties {
+    ($($body:ty),+) => {
+        $(impl Properties for $body {
+            fn motion(&mut self) -> &mut Motion {
+                &mut self.motion
+            }
 
-    fn groups(&mut self) -> &mut Groups {
-        &mut self.groups
-    }
+            fn groups(&mut self) -> &mut Groups {
+                &mut self.groups
+            }
+        })+
+    };
 }
-
-impl Properties for Body {
-    fn motion(&mut self) -> &mut Motion {
-        &mut self.motion
-    }
-
-    fn groups(&mut self) -> &mut Groups {
-        &mut self.groups
-    }
-}
+properties!(Body, BoxBody, PeriodicBox);
 
 /// A world that is judged.
 pub trait JudgedWorld {
@@ -38,57 +35,65 @@ pub trait JudgedWorld {
     type Body: Properties;
 
     /// Adds a body.
-    fn insert(&mut self, body: Self::Body) -> Result<BodyId, WorldError>;
+    fn insert(&mut self, body: Self::Body) -> Result<BodyId, HistoryError>;
     /// Removes a body.
-    fn remove(&mut self, id: BodyId) -> Result<(), WorldError>;
+    fn remove(&mut self, id: BodyId) -> Result<(), HistoryError>;
     /// Changes a body by the narrowest call that does it.
-    fn change(&mut self, id: BodyId, from: Self::Body, to: Self::Body) -> Result<(), WorldError>;
+    fn change(&mut self, id: BodyId, from: Self::Body, to: Self::Body) -> Result<(), HistoryError>;
     /// Excludes two bodies, or includes them again.
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), WorldError>;
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), HistoryError>;
     /// Sets the bodies of interest, where it has some.
-    fn interest(&mut self, ids: &[BodyId]) -> Result<(), WorldError>;
-    /// Finds the pairs.
-    fn cull(&mut self) -> Result<Vec<[BodyId; 2]>, WorldError>;
-    /// What has begun and ended.
-    fn events(&mut self) -> Events;
+    fn interest(&mut self, ids: &[BodyId]) -> Result<(), HistoryError>;
+    /// Finds the pairs. No body is moved where space does not repeat.
+    fn cull(&mut self) -> Result<Vec<PeriodicPair>, HistoryError>;
+    /// What has begun and ended, where the world has events.
+    fn events(&mut self) -> Option<Events>;
 }
 
-/// The calls that both worlds have alike.
+/// The calls that all worlds have alike.
 macro_rules! forwarded {
     ($body:ty) => {
         type Body = $body;
 
-        fn insert(&mut self, body: $body) -> Result<BodyId, WorldError> {
-            self.insert(body)
+        fn insert(&mut self, body: $body) -> Result<BodyId, HistoryError> {
+            Ok(self.insert(body)?)
         }
 
-        fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
-            self.remove(id)
+        fn remove(&mut self, id: BodyId) -> Result<(), HistoryError> {
+            Ok(self.remove(id)?)
         }
 
-        fn exclude(&mut self, [a, b]: [BodyId; 2], excluded: bool) -> Result<(), WorldError> {
-            let changed = if excluded {
-                self.exclude(a, b)
+        fn exclude(&mut self, [a, b]: [BodyId; 2], excluded: bool) -> Result<(), HistoryError> {
+            if excluded {
+                self.exclude(a, b)?;
             } else {
-                self.include(a, b)
-            };
-            changed.map(|_| ())
+                self.include(a, b)?;
+            }
+            Ok(())
+        }
+    };
+}
+
+/// The calls that worlds without periods have alike.
+macro_rules! unrepeated {
+    () => {
+        fn cull(&mut self) -> Result<Vec<PeriodicPair>, HistoryError> {
+            let image = [0; 3];
+            let pairs = self.cull()?.iter();
+            Ok(pairs.map(|bodies| PeriodicPair { bodies, image }).collect())
         }
 
-        fn cull(&mut self) -> Result<Vec<[BodyId; 2]>, WorldError> {
-            Ok(self.cull()?.iter().collect())
-        }
-
-        fn events(&mut self) -> Events {
-            self.events()
+        fn events(&mut self) -> Option<Events> {
+            Some(self.events())
         }
     };
 }
 
 impl JudgedWorld for BoxWorld {
     forwarded!(BoxBody);
+    unrepeated!();
 
-    fn change(&mut self, id: BodyId, from: BoxBody, to: BoxBody) -> Result<(), WorldError> {
+    fn change(&mut self, id: BodyId, from: BoxBody, to: BoxBody) -> Result<(), HistoryError> {
         let moved = BoxBody {
             bounds: to.bounds,
             ..from
@@ -98,21 +103,23 @@ impl JudgedWorld for BoxWorld {
             ..from
         };
         match to {
-            to if to == moved => self.set_bounds(id, to.bounds),
-            to if to == rested => self.set_motion(id, to.motion),
-            to => self.set(id, to),
+            to if to == moved => self.set_bounds(id, to.bounds)?,
+            to if to == rested => self.set_motion(id, to.motion)?,
+            to => self.set(id, to)?,
         }
+        Ok(())
     }
 
-    fn interest(&mut self, _: &[BodyId]) -> Result<(), WorldError> {
+    fn interest(&mut self, _: &[BodyId]) -> Result<(), HistoryError> {
         Ok(())
     }
 }
 
 impl JudgedWorld for World {
     forwarded!(Body);
+    unrepeated!();
 
-    fn change(&mut self, id: BodyId, from: Body, to: Body) -> Result<(), WorldError> {
+    fn change(&mut self, id: BodyId, from: Body, to: Body) -> Result<(), HistoryError> {
         let moved = Body {
             rotation: to.rotation,
             translation: to.translation,
@@ -123,13 +130,37 @@ impl JudgedWorld for World {
             ..from
         };
         match to {
-            to if to == moved => self.set_pose(id, to.rotation, to.translation),
-            to if to == rested => self.set_motion(id, to.motion),
-            to => self.set(id, to),
+            to if to == moved => self.set_pose(id, to.rotation, to.translation)?,
+            to if to == rested => self.set_motion(id, to.motion)?,
+            to => self.set(id, to)?,
         }
+        Ok(())
     }
 
-    fn interest(&mut self, ids: &[BodyId]) -> Result<(), WorldError> {
-        self.set_interest(ids)
+    fn interest(&mut self, ids: &[BodyId]) -> Result<(), HistoryError> {
+        Ok(self.set_interest(ids)?)
+    }
+}
+
+impl<W: ImageWorld> JudgedWorld for Periodic<W>
+where
+    W::Body: Properties,
+{
+    forwarded!(W::Body);
+
+    fn change(&mut self, id: BodyId, _: W::Body, to: W::Body) -> Result<(), HistoryError> {
+        Ok(self.set(id, to)?)
+    }
+
+    fn interest(&mut self, _: &[BodyId]) -> Result<(), HistoryError> {
+        Ok(())
+    }
+
+    fn cull(&mut self) -> Result<Vec<PeriodicPair>, HistoryError> {
+        Ok(self.cull()?.to_vec())
+    }
+
+    fn events(&mut self) -> Option<Events> {
+        None
     }
 }

@@ -1,0 +1,276 @@
+//! Long-lived worlds of boxes in which space repeats along some axes.
+
+use std::ffi::c_char;
+
+use super::border::{
+    Refusal, SdopIdPair, SdopStatus, call, column, fill, free, give, handle, put, shared,
+};
+use super::boxes::builder;
+use crate::bodies::{Groups, Motion};
+use crate::periodic::{PeriodicBox, PeriodicBoxes, PeriodicPair};
+use crate::world::BodyId;
+
+/// A long-lived set of boxes in space that repeats along some axes.
+#[derive(Debug)]
+pub struct SdopPeriodicBoxes(PeriodicBoxes);
+
+/// A box in space that repeats. It may be anywhere; along a periodic axis it has to be shorter than
+/// half of the period.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SdopPeriodicBox {
+    /// The lower corner.
+    pub min: [f64; 3],
+    /// The upper corner.
+    pub max: [f64; 3],
+    /// Whether it is scenery; pairs of two such boxes are never reported.
+    pub fixed: bool,
+    /// Whether it lies still for the time being; its pairs stay.
+    pub resting: bool,
+    /// Which boxes it may collide with; all bits for all.
+    pub groups: Groups,
+}
+
+impl From<SdopPeriodicBox> for PeriodicBox {
+    fn from(body: SdopPeriodicBox) -> Self {
+        Self {
+            min: body.min,
+            max: body.max,
+            motion: Motion::of(!body.fixed, body.resting),
+            groups: body.groups,
+        }
+    }
+}
+
+/// Two bodies, of which the second touches the first when it is moved by whole periods.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SdopPeriodicPair {
+    /// The bodies.
+    pub bodies: SdopIdPair,
+    /// The number of periods along each axis by which the second body is moved, from where it was
+    /// put.
+    pub image: [i32; 3],
+}
+
+impl From<&PeriodicPair> for SdopPeriodicPair {
+    fn from(pair: &PeriodicPair) -> Self {
+        Self {
+            bodies: pair.bodies.into(),
+            image: pair.image,
+        }
+    }
+}
+
+/// The periods that C gives: 0 for an axis without one.
+///
+/// # Safety
+/// The pointer is null or to three numbers.
+pub(super) unsafe fn periods(given: *const [f64; 3]) -> Result<[Option<f64>; 3], Refusal> {
+    // SAFETY: the caller's promise.
+    let given = unsafe { shared(given, "periods") }?;
+    Ok(given.map(|period| (period != 0.0).then_some(period)))
+}
+
+/// A box between two corners that is neither fixed nor resting, in all groups. Change what differs.
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_periodic_box_between(
+    min_x: f64,
+    min_y: f64,
+    min_z: f64,
+    max_x: f64,
+    max_y: f64,
+    max_z: f64,
+) -> SdopPeriodicBox {
+    SdopPeriodicBox {
+        min: [min_x, min_y, min_z],
+        max: [max_x, max_y, max_z],
+        fixed: false,
+        resting: false,
+        groups: Groups::ALL,
+    }
+}
+
+/// Makes a world without boxes. `periods` are three lengths along x, y and z, 0 for an axis without
+/// a period. `finder` is "auto" if null; 0 threads are 1.
+///
+/// # Safety
+/// `periods` are three numbers; `finder` is null or ends with a zero; `out` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_new(
+    periods: *const [f64; 3],
+    finder: *const c_char,
+    threads: usize,
+    out: *mut *mut SdopPeriodicBoxes,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (periods, culler) = unsafe { (self::periods(periods)?, builder(finder, threads)?) };
+        let boxes = PeriodicBoxes::with(&culler, periods)?;
+        // SAFETY: the caller's promise.
+        unsafe { give(out, SdopPeriodicBoxes(boxes)) }
+    })
+}
+
+/// Frees a world; null is fine.
+///
+/// # Safety
+/// It is from `sdop_periodic_boxes_new` and not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_free(world: *mut SdopPeriodicBoxes) {
+    // SAFETY: the caller's promise.
+    unsafe { free(world) }
+}
+
+/// Changes the periods. Boxes stay where they were put. If one is too large for them, nothing
+/// changes.
+///
+/// # Safety
+/// `world` is a handle; `periods` are three numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_set_periods(
+    world: *mut SdopPeriodicBoxes,
+    periods: *const [f64; 3],
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, periods) = unsafe { (handle(world, "world")?, self::periods(periods)?) };
+        Ok(it.0.set_periods(periods)?)
+    })
+}
+
+/// Adds a box; `id` gets its id, which stays until the box is removed.
+///
+/// # Safety
+/// `world` is a handle, `body` a box; `id` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_insert(
+    world: *mut SdopPeriodicBoxes,
+    body: *const SdopPeriodicBox,
+    id: *mut u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
+        let inserted = it.0.insert(PeriodicBox::from(body))?;
+        // SAFETY: the caller's promise.
+        unsafe { put(id, inserted.to_bits(), "id") }
+    })
+}
+
+/// Removes a box.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_remove(
+    world: *mut SdopPeriodicBoxes,
+    id: u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        Ok(it.0.remove(BodyId::from_bits(id))?)
+    })
+}
+
+/// Moves boxes, or changes them in any of their properties: columns of ids and boxes. If one is
+/// rejected, those before it have changed.
+///
+/// # Safety
+/// `world` is a handle; the columns have `count` entries.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_set(
+    world: *mut SdopPeriodicBoxes,
+    ids: *const u64,
+    bodies: *const SdopPeriodicBox,
+    count: usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        let (ids, bodies) =
+            unsafe { (column(ids, count, "ids")?, column(bodies, count, "bodies")?) };
+        for (&id, &body) in ids.iter().zip(bodies) {
+            it.0.set(BodyId::from_bits(id), PeriodicBox::from(body))?;
+        }
+        Ok(())
+    })
+}
+
+/// Never reports the pair of two boxes again, in any image, until it is included or one of them is
+/// removed.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_exclude(
+    world: *mut SdopPeriodicBoxes,
+    a: u64,
+    b: u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        it.0.exclude(BodyId::from_bits(a), BodyId::from_bits(b))?;
+        Ok(())
+    })
+}
+
+/// Reports the pair of two boxes again when it meets.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_include(
+    world: *mut SdopPeriodicBoxes,
+    a: u64,
+    b: u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        it.0.include(BodyId::from_bits(a), BodyId::from_bits(b))?;
+        Ok(())
+    })
+}
+
+/// Finds the pairs of which an image meets. `pairs` gets their number; read them with
+/// `sdop_periodic_boxes_pairs`.
+///
+/// # Safety
+/// `world` is a handle; `pairs` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_cull(
+    world: *mut SdopPeriodicBoxes,
+    pairs: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let found = unsafe { handle(world, "world") }?.0.cull()?.len();
+        // SAFETY: the caller's promise.
+        unsafe { put(pairs, found, "pairs") }
+    })
+}
+
+/// Copies the pairs of the last cull into `buffer`, each once, sorted by slots. If they don't fit,
+/// `count` says how many there are.
+///
+/// # Safety
+/// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_pairs(
+    world: *const SdopPeriodicBoxes,
+    buffer: *mut SdopPeriodicPair,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { shared(world, "world") }?;
+        let pairs = it.0.pairs().iter().map(SdopPeriodicPair::from);
+        // SAFETY: the caller's promise.
+        unsafe { fill(pairs, buffer, capacity, count) }
+    })
+}

@@ -1,0 +1,205 @@
+//! Long-lived worlds of meshes in which space repeats along some axes.
+
+use super::bodies::{SdopOptions, SdopShape, builder, shapes};
+use super::border::{SdopStatus, call, column, fill, free, give, handle, put, shared};
+use super::periodic_boxes::{SdopPeriodicPair, periods};
+use super::world::SdopBody;
+use crate::periodic::PeriodicWorld;
+use crate::world::{Body, BodyId};
+
+/// A long-lived set of bodies in space that repeats along some axes. Along a periodic axis, the
+/// ball about a body, with its margin, has to be smaller than half of the period.
+#[derive(Debug)]
+pub struct SdopPeriodicWorld(PeriodicWorld);
+
+/// Makes a world without bodies. `periods` are three lengths along x, y and z, 0 for an axis
+/// without a period. `options` may be null for the defaults.
+///
+/// # Safety
+/// The column has the stated number of shapes; `periods` are three numbers; `options` is null or
+/// options; `out` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_new(
+    shapes: *const *const SdopShape,
+    shape_count: usize,
+    periods: *const [f64; 3],
+    options: *const SdopOptions,
+    out: *mut *mut SdopPeriodicWorld,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (shapes, periods, culler) = unsafe {
+            (
+                self::shapes(shapes, shape_count)?,
+                self::periods(periods)?,
+                builder(options)?,
+            )
+        };
+        let world = PeriodicWorld::with(shapes, &culler, periods)?;
+        // SAFETY: the caller's promise.
+        unsafe { give(out, SdopPeriodicWorld(world)) }
+    })
+}
+
+/// Frees a world; null is fine.
+///
+/// # Safety
+/// It is from `sdop_periodic_world_new` and not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_free(world: *mut SdopPeriodicWorld) {
+    // SAFETY: the caller's promise.
+    unsafe { free(world) }
+}
+
+/// Changes the periods. Bodies stay where they were put. If one is too large for them, nothing
+/// changes.
+///
+/// # Safety
+/// `world` is a handle; `periods` are three numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_set_periods(
+    world: *mut SdopPeriodicWorld,
+    periods: *const [f64; 3],
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, periods) = unsafe { (handle(world, "world")?, self::periods(periods)?) };
+        Ok(it.0.set_periods(periods)?)
+    })
+}
+
+/// Adds a body; `id` gets its id, which stays until the body is removed.
+///
+/// # Safety
+/// `world` is a handle, `body` a body; `id` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_insert(
+    world: *mut SdopPeriodicWorld,
+    body: *const SdopBody,
+    id: *mut u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
+        let inserted = it.0.insert(Body::from(body))?;
+        // SAFETY: the caller's promise.
+        unsafe { put(id, inserted.to_bits(), "id") }
+    })
+}
+
+/// Removes a body.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_remove(
+    world: *mut SdopPeriodicWorld,
+    id: u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        Ok(it.0.remove(BodyId::from_bits(id))?)
+    })
+}
+
+/// Moves bodies, or changes them in any of their properties: columns of ids and bodies. If one is
+/// rejected, those before it have changed.
+///
+/// # Safety
+/// `world` is a handle; the columns have `count` entries.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_set(
+    world: *mut SdopPeriodicWorld,
+    ids: *const u64,
+    bodies: *const SdopBody,
+    count: usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        let (ids, bodies) =
+            unsafe { (column(ids, count, "ids")?, column(bodies, count, "bodies")?) };
+        for (&id, &body) in ids.iter().zip(bodies) {
+            it.0.set(BodyId::from_bits(id), Body::from(body))?;
+        }
+        Ok(())
+    })
+}
+
+/// Never reports the pair of two bodies again, in any image, until it is included or one of them is
+/// removed.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_exclude(
+    world: *mut SdopPeriodicWorld,
+    a: u64,
+    b: u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        it.0.exclude(BodyId::from_bits(a), BodyId::from_bits(b))?;
+        Ok(())
+    })
+}
+
+/// Reports the pair of two bodies again when it meets.
+///
+/// # Safety
+/// `world` is a handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_include(
+    world: *mut SdopPeriodicWorld,
+    a: u64,
+    b: u64,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        it.0.include(BodyId::from_bits(a), BodyId::from_bits(b))?;
+        Ok(())
+    })
+}
+
+/// Finds the pairs of which an image may touch. `pairs` gets their number; read them with
+/// `sdop_periodic_world_pairs`.
+///
+/// # Safety
+/// `world` is a handle; `pairs` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_cull(
+    world: *mut SdopPeriodicWorld,
+    pairs: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let found = unsafe { handle(world, "world") }?.0.cull()?.len();
+        // SAFETY: the caller's promise.
+        unsafe { put(pairs, found, "pairs") }
+    })
+}
+
+/// Copies the pairs of the last cull into `buffer`, each once, sorted by slots. If they don't fit,
+/// `count` says how many there are.
+///
+/// # Safety
+/// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_pairs(
+    world: *const SdopPeriodicWorld,
+    buffer: *mut SdopPeriodicPair,
+    capacity: usize,
+    count: *mut usize,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { shared(world, "world") }?;
+        let pairs = it.0.pairs().iter().map(SdopPeriodicPair::from);
+        // SAFETY: the caller's promise.
+        unsafe { fill(pairs, buffer, capacity, count) }
+    })
+}
