@@ -94,8 +94,7 @@ mod tests {
     /// Held and peak are what was allocated.
     #[test]
     fn allocator_counts_held_and_peak() {
-        // Other tests allocate meanwhile, but not half a gigabyte. Memory that nobody writes to costs
-        // none.
+        // Other tests allocate less meanwhile. Memory that nobody writes to costs none.
         const GIGABYTE: usize = 1 << 30;
         let (kept, memory) = measure(|| {
             drop(Vec::<u8>::with_capacity(7 * GIGABYTE / 2));
