@@ -247,7 +247,7 @@ impl BoxIndex {
                 work += self.look_into(run, &tagged, hits);
             }
             let met = hits.numbers[..hits.count].iter();
-            let met = met.map(|&number| self.boxes.entry(number as usize));
+            let met = met.map(|&number| self.boxes.entry(number));
             let allowed = met.filter(|met| seeker.may_meet(met, rules));
             found.extend(allowed.map(|met| met.slot));
             sort_each_once(found, start);
@@ -283,7 +283,7 @@ impl BoxIndex {
         hits.make_room(run.len() + ROOM);
         let (mut count, entries) = (hits.count, &mut hits.numbers[..]);
         let (first, rooms) = self.boxes.rooms(run);
-        let (mut number, end) = (first as u32, (first + run.len()) as u32);
+        let (mut number, end) = (first, first + run.len());
         for room in rooms {
             for entry in room {
                 entries[count] = number;
@@ -300,7 +300,7 @@ impl BoxIndex {
 #[derive(Clone, Debug, Default)]
 struct Hits {
     /// Numbers of entries, of which the first `count` are in use.
-    numbers: Vec<u32>,
+    numbers: Vec<usize>,
     count: usize,
 }
 

@@ -1,4 +1,4 @@
-"""Two points that are nearer than r_max: do freud's LinkCell and AABBQuery report them?
+"""Two points that are nearer than r_max, or just as far apart: do freud's LinkCell and AABBQuery report them?
 
     pip install freud-analysis numpy && python inside_radius.py
 
@@ -23,8 +23,9 @@ def is_found(make, side, place, distance):
 
 
 print("freud", freud.__version__)
-for power in (22, 20, 18, 16):
-    distance = 1.0 - 2.0**-power
+for power in (None, 22, 20, 18, 16):
+    distance = 1.0 if power is None else 1.0 - 2.0**-power
+    said = "1" if power is None else f"1 - 2^-{power}"
     for side in SIDES:
         counts = {name: sum(is_found(make, side, place, distance) for place in PLACES) for name, make in FINDERS.items()}
-        print(f"1 - 2^-{power} apart in a box of side {side:g}: reported in {counts} of {len(PLACES)} places")
+        print(f"{said} apart in a box of side {side:g}: reported in {counts} of {len(PLACES)} places")
