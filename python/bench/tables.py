@@ -1,5 +1,5 @@
-"""Two tables as JSON: what a call costs beyond Rust, and pairs of boxes by `sdop` and by other
-libraries.
+"""Three tables as JSON: what a call costs beyond Rust, pairs of boxes, and pairs of equal balls, by
+`sdop` and by other libraries.
 
     python python/bench/tables.py > python.json
     python python/bench/tables.py --quick      # small sizes and few rounds: a trial
@@ -22,6 +22,7 @@ from math import comb
 
 import numpy as np
 import sdop
+import spheres
 from libraries import LIBRARIES, Array, Collected, version_of
 
 FRAMES = 8
@@ -70,7 +71,7 @@ def in_order(pairs: Array) -> Array:
 def check(name: str, answer: Array | Collected, wanted: Array) -> None:
     is_same = answer.is_same(wanted) if isinstance(answer, Collected) else np.array_equal(in_order(answer), wanted)
     if not is_same:
-        raise SystemExit(f"{name} has other pairs than numpy's or sdop's: no time is worth printing")
+        raise SystemExit(f"{name} has other pairs than the reference: no time is worth printing")
 
 
 def in_turns(calls: dict[str, Callable[[], float]], rounds: dict[str, int]) -> dict[str, list[float]]:
@@ -87,14 +88,14 @@ def in_turns(calls: dict[str, Callable[[], float]], rounds: dict[str, int]) -> d
     return taken
 
 
-def box_pairs(n: int, rounds: int) -> list[dict]:
-    frames = frames_of_boxes(n)
-    made = {it.name: it(frames[0]) for it in LIBRARIES if n <= it.most}
+def compared(made: dict[str, Callable[[Array], object]], reference: str, frames: list[Array], rounds: int) -> tuple[float, dict[str, dict]]:
+    """Pairs per frame, and each library's seconds per frame, also as multiples of the first one's.
+    Answers are checked by those of `reference`.
+    """
     counted = 0
     slowest = dict.fromkeys(made, 0.0)
     for frame in frames:
-        reference = made.get("numpy, all pairs", made["sdop.box_pairs"])
-        wanted = in_order(reference(frame))
+        wanted = in_order(made[reference](frame))
         counted += len(wanted)
         for name, call in made.items():
             start = time.perf_counter()
@@ -114,17 +115,34 @@ def box_pairs(n: int, rounds: int) -> list[dict]:
     slow = {name for name, seconds in slowest.items() if seconds > SLOW}
     calls = {name: timed(call, frames[:1] if name in slow else frames) for name, call in made.items()}
     taken = in_turns(calls, {name: min(rounds, FEW_ROUNDS) if name in slow else rounds for name in made})
-    found = {it.name: it for it in LIBRARIES}
+    ours = taken[next(iter(made))]
+
+    def times(values: list[float]) -> dict:
+        ratios = [value / our for value, our in zip(values, ours, strict=False)]
+        return {"seconds": median(values), "times_ours": median(ratios)}
+
+    return counted / len(frames), {name: times(values) for name, values in taken.items()}
+
+
+def box_pairs(n: int, rounds: int) -> list[dict]:
+    frames = frames_of_boxes(n)
+    known = {it.name: it for it in LIBRARIES if n <= it.most}
+    reference = "numpy, all pairs" if "numpy, all pairs" in known else "sdop.box_pairs"
+    pairs, taken = compared({name: it(frames[0]) for name, it in known.items()}, reference, frames, rounds)
     return [
-        {
-            "boxes": n,
-            "library": name,
-            "version": version_of(found[name]),
-            "pairs_per_frame": counted / len(frames),
-            "seconds": median(values),
-            "times_ours": median([value / ours for value, ours in zip(values, taken["sdop.box_pairs"], strict=False)]),
-        }
-        for name, values in taken.items()
+        {"boxes": n, "library": name, "version": version_of(known[name]), "pairs_per_frame": pairs, **times}
+        for name, times in taken.items()
+    ]
+
+
+def sphere_pairs(n: int, is_periodic: bool, rounds: int) -> list[dict]:
+    frames, side = spheres.frames_of_points(n, FRAMES, PAIRS_PER_BOX, SEED)
+    period = side if is_periodic else None
+    known = {it.name: it for it in spheres.LIBRARIES if n <= it.most}
+    pairs, taken = compared({name: it(frames[0], period) for name, it in known.items()}, spheres.REFERENCE.name, frames, rounds)
+    return [
+        {"balls": n, "periodic": is_periodic, "library": name, "version": version_of(known[name]), "pairs_per_frame": pairs, **times}
+        for name, times in taken.items()
     ]
 
 
@@ -176,7 +194,7 @@ def machine() -> dict:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small sizes and few rounds")
-    parser.add_argument("--sizes", type=int, nargs="+", help="numbers of boxes for the second table alone")
+    parser.add_argument("--sizes", type=int, nargs="+", help="numbers of boxes and balls, without the first table")
     arguments = parser.parse_args()
     quick = arguments.quick
     sizes = arguments.sizes or ([100, 1_000] if quick else [1_000, 10_000, 100_000])
@@ -186,6 +204,7 @@ def main() -> None:
         "machine": machine(),
         "overhead": [row for n in called for row in overhead(n, rounds)],
         "box_pairs": [row for n in sizes for row in box_pairs(n, rounds)],
+        "sphere_pairs": [row for n in sizes for periodic in (False, True) for row in sphere_pairs(n, periodic, rounds)],
     }
     print(json.dumps(record, indent=1))
 

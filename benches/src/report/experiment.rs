@@ -235,7 +235,7 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "python",
-        about: "what a call from Python costs beyond Rust, and box pairs by Python's libraries",
+        about: "calls from Python beyond Rust; pairs of boxes and balls by Python's libraries",
         steps: &[ExperimentStep::Script("python.json", &["python/bench/run"])],
         deterministic: &[],
         scenes: &[],
