@@ -134,7 +134,7 @@ LIBRARIES = [Sdop, Vesin, VesinSkin, Freud, FreudCells, Scipy]
 
 
 def frames_of_points(n: int, frames: int, pairs_per_ball: float, seed: int) -> tuple[list[Array], float]:
-    """Drifting points in a cube from the origin on, and its side: its period, where there is one."""
+    """Drifting points in a cube from the origin on, and its side, which may be its period."""
     draws = np.random.default_rng(seed)
     # A ball meets those whose centres are within `REACH`, and each pair belongs to two.
     volume = n * (4.0 / 3.0 * np.pi) * REACH**3 / (2.0 * pairs_per_ball)

@@ -1,4 +1,4 @@
-"""Two points that are nearer than r_max, or just as far apart: do freud's LinkCell and AABBQuery report them?
+"""Two points at r_max, or nearer: do freud's LinkCell and AABBQuery report them?
 
     pip install freud-analysis numpy && python inside_radius.py
 
