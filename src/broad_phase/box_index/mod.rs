@@ -226,13 +226,13 @@ impl BoxIndex {
                 search.ends.push((search.names.len(), false));
             }
         }
-        search.runs.extend(search.names.iter().map(|&name| {
+        for &name in &search.names {
             let run = self.cells[self.find(name)].boxes;
             if !run.is_empty() {
                 self.boxes.prefetch(run);
             }
-            run
-        }));
+            search.runs.push(run);
+        }
         let (mut work, mut first) = (search.runs.len(), 0);
         for (seeker, &(end, is_everywhere)) in seekers.iter().zip(&search.ends) {
             let start = found.len();
@@ -276,8 +276,8 @@ impl BoxIndex {
         search.ends.push((search.names.len(), false));
     }
 
-    /// Appends the boxes of a cell that meet this one. Nearly all cells have few
-    /// boxes, so there is no branch that depends on how many, or on which of them meet.
+    /// Appends the boxes of a cell that meet this one. Nearly all cells have few boxes, so there is
+    /// no branch that depends on how many, or on which of them meet.
     #[inline(always)]
     fn look_into(&self, run: Run, &seeker: &TaggedBox, hits: &mut Hits) -> usize {
         hits.make_room(run.len() + ROOM);

@@ -30,7 +30,8 @@ pub(super) const STRATEGIES: [Strategy; 2] = [Strategy::Sphere, Strategy::SDopSe
 const LEAST_OF_BOXES: f64 = 17.0;
 const LEAST_OF_MESHES: f64 = 9.0;
 
-/// A step of all translations of meshes, in which those of f32 and their differences are exact.
+/// Translations of meshes are multiples of this step before periods are added, which are multiples
+/// of 2⁻⁴⁹. Meshes that may meet are less than 16 apart, so that f64 holds the difference.
 const STEP: f64 = 1.0 / (1_u64 << 46) as f64;
 
 /// A history in space that repeats.
@@ -271,7 +272,7 @@ fn touching_images(
     let mut outcome = Ok(());
     images.retain(|&image| {
         let apart = separation(a.translation, b.translation, image, periods);
-        let apart = apart.unwrap_or_else(|| unreachable!("translations are whole steps"));
+        let apart = apart.unwrap_or_else(|| unreachable!("a multiple of 2⁻⁴⁹ below 16"));
         let second = judged(b, apart).unwrap_or_else(|error| {
             outcome = Err(error);
             first
