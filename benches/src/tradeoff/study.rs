@@ -13,7 +13,7 @@ use super::result::{Tradeoff, VariantResult};
 use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
-use super::units::{ComparedVariants, Counts, Settings, StudyPart};
+use super::units::{ComparedVariants, SeedCounts, Settings, StudyPart};
 use super::variant::Variant;
 use super::vary::Variation;
 use crate::cost::pass::Pass;
@@ -26,7 +26,7 @@ use crate::measure::turns::Regime;
 #[derive(Debug, Default)]
 pub struct Findings {
     compared: Option<ComparedVariants>,
-    seeds: Vec<Counts>,
+    seeds: Vec<SeedCounts>,
     budgets: Vec<BudgetRow>,
     shapes: Vec<ShapeSurvival>,
     passes: Vec<Pass>,
@@ -126,7 +126,7 @@ impl Findings {
 struct VariantMeasurements<'a> {
     /// The scene's name and its number of bodies.
     scene: (&'a str, usize),
-    seeds: &'a [Counts],
+    seeds: &'a [SeedCounts],
     passes: Vec<&'a Pass>,
 }
 

@@ -131,7 +131,7 @@ enum TradeoffUnit {
 #[serde(deny_unknown_fields)]
 pub(super) enum StudyPart {
     Compared(ComparedVariants),
-    Seed(Counts),
+    Seed(SeedCounts),
     Budgets(Vec<BudgetRow>),
     Shape(ShapeSurvival),
     Pass(Pass),
@@ -158,7 +158,7 @@ pub(super) struct ComparedVariants {
 /// Counts of one seed.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Counts {
+pub(super) struct SeedCounts {
     /// The counts of each variant.
     pub(super) tallies: Vec<Tally>,
     /// Counts of interest sets, only with the first seed.
@@ -270,7 +270,7 @@ impl Comparison {
         }
     }
 
-    fn counts(&self, seed: u64) -> Result<Counts, TradeoffError> {
+    fn counts(&self, seed: u64) -> Result<SeedCounts, TradeoffError> {
         let scene = with_seed(&self.file, seed)?;
         let samples = samples(&scene, self.plan.samples)?;
         let truth = ExactJudge::new(&scene.shapes)?.truth(&samples, self.plan.cache.as_deref())?;
@@ -280,7 +280,7 @@ impl Comparison {
         } else {
             Vec::new()
         };
-        Ok(Counts {
+        Ok(SeedCounts {
             tallies: self.variants.iter().map(tally).collect::<Result<_, _>>()?,
             interest,
         })

@@ -63,7 +63,7 @@ pub use crate::contestant::{Contestant, Filter, WorldBox};
 pub use case::{Case, Frame};
 pub use claim::Claim;
 pub use run::{Judge, JudgeError, Options, examine, judge, judge_function, judge_pair_test};
-pub use score::{Count, Miss, Outcome};
+pub use score::{Miss, Outcome, PairCounts};
 pub use sdop::bodies::Bodies;
 pub use sdop::volume::Shape;
 pub use subject::{Scene, Subject};

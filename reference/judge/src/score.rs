@@ -12,7 +12,7 @@ use crate::ours::reference_shapes::InvalidInput;
 
 /// Pairs counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Count {
+pub struct PairCounts {
     /// Pairs judged, over all frames.
     pub judged: u64,
     /// Pairs for which the claim holds.
@@ -31,7 +31,7 @@ pub struct Count {
     pub both_static: u64,
 }
 
-impl Count {
+impl PairCounts {
     /// Adds another count.
     pub fn add(&mut self, other: &Self) {
         self.judged += other.judged;
@@ -88,7 +88,7 @@ pub struct CaseScore {
     /// How it ended.
     pub outcome: Outcome,
     /// Pairs counted; all zero unless it was judged.
-    pub count: Count,
+    pub count: PairCounts,
     /// The first missed pair.
     pub miss: Option<Miss>,
     /// Pairs by frame, sorted.
@@ -99,7 +99,7 @@ impl CaseScore {
     fn without_answers(outcome: Outcome) -> Self {
         Self {
             outcome,
-            count: Count::default(),
+            count: PairCounts::default(),
             miss: None,
             lists: Vec::new(),
         }
@@ -247,7 +247,7 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
         Truth::new(case.claim, &case.shapes)?,
         Truth::new(Claim::Sphere, &case.shapes)?,
     );
-    let (mut count, mut miss, mut parted) = (Count::default(), None, Vec::new());
+    let (mut count, mut miss, mut parted) = (PairCounts::default(), None, Vec::new());
     count.judged = case.pairs();
     for (number, (frame, list)) in case.frames.iter().zip(&lists).enumerate() {
         let required = truth.pairs(frame)?;
@@ -276,7 +276,7 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
         (Some(Miss { frame, pair }), ..) => {
             let (
                 [i, j],
-                Count {
+                PairCounts {
                     missed, required, ..
                 },
             ) = (pair, count);
@@ -307,7 +307,7 @@ fn explain(
     [truth, balls]: [&Truth; 2],
     frame: &Frame,
     pair: [u32; 2],
-    count: &mut Count,
+    count: &mut PairCounts,
 ) -> Result<(), InvalidInput> {
     count.extra += 1;
     let is_fixed = |body: &u32| !frame.bodies.dynamic[*body as usize];

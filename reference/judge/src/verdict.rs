@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::answer::AnswerError;
 use super::case::group_of;
 use super::claim::Claim;
-use super::score::{Count, Miss, Outcome};
+use super::score::{Miss, Outcome, PairCounts};
 use super::shrink::SmallestCase;
 
 /// A case's line.
@@ -21,7 +21,7 @@ pub struct CaseVerdict {
     #[serde(flatten)]
     pub outcome: Outcome,
     /// Pairs counted.
-    pub pairs: Count,
+    pub pairs: PairCounts,
     /// The first missed pair.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub miss: Option<Miss>,
@@ -74,7 +74,7 @@ pub struct GroupVerdict {
     /// Cases without an answer that could be judged.
     pub errors: u32,
     /// Pairs.
-    pub pairs: Count,
+    pub pairs: PairCounts,
 }
 
 /// What a run shows.
@@ -206,8 +206,8 @@ impl Verdict {
 
     /// Pairs over all cases.
     #[must_use]
-    pub fn pairs(&self) -> Count {
-        let mut sum = Count::default();
+    pub fn pairs(&self) -> PairCounts {
+        let mut sum = PairCounts::default();
         self.cases.iter().for_each(|case| sum.add(&case.pairs));
         sum
     }

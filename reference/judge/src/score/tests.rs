@@ -56,7 +56,7 @@ fn extra_pairs_count_by_cause() {
     let first: &[[u32; 2]] = &[[0, 1], [0, 2], [0, 4], [3, 4]];
     let given = answers(&[first, &[[0, 3]], &[[0, 1]]]);
     let judged = judge_answers(&case, &given).unwrap();
-    let count = Count {
+    let count = PairCounts {
         judged: 3 * 9,
         required: 2 + 6,
         missed: 1 + 5,
@@ -104,7 +104,7 @@ fn misses_before_a_skip_count() {
     for right in [&[][..], &[&[[0, 1], [1, 2]][..]]] {
         let judged = judge(right);
         assert!(matches!(judged.outcome, Outcome::Skipped { why } if why == "enough"));
-        assert_eq!(judged.count, Count::default());
+        assert_eq!(judged.count, PairCounts::default());
     }
     let judged = judge(&[&[[0, 1], [1, 2]], &[]]);
     assert!(matches!(judged.outcome, Outcome::Fail { .. }));

@@ -8,12 +8,12 @@ fn case(name: &str, outcome: Outcome, pairs: [u64; 4]) -> CaseVerdict {
         name: name.to_owned(),
         flag: "a bug".to_owned(),
         outcome,
-        pairs: Count {
+        pairs: PairCounts {
             judged,
             required,
             missed,
             extra,
-            ..Count::default()
+            ..PairCounts::default()
         },
         miss: None,
         known: false,
