@@ -14,6 +14,7 @@ mod movers;
 mod pair_test;
 mod regions;
 mod saves;
+mod single_changes;
 
 use std::collections::{BTreeSet, HashMap};
 
