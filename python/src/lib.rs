@@ -33,7 +33,7 @@ mod _sdop {
     #[pymodule_export]
     use super::judge::{Scene, judge};
     #[pymodule_export]
-    use super::periodic::{PeriodicBoxes, PeriodicWorld};
+    use super::periodic::{PeriodicBoxes, PeriodicEvents, PeriodicWorld};
     #[pymodule_export]
     use super::program::main;
     #[pymodule_export]

@@ -47,6 +47,31 @@ fn changed<W: ImageWorld>(
     world.set(id, body)
 }
 
+/// The changes between two calls of `events`: pairs in the form of `cull`, sorted.
+#[pyclass(frozen, module = "sdop")]
+pub struct PeriodicEvents(sdop::periodic::PeriodicEvents);
+
+#[pymethods]
+impl PeriodicEvents {
+    /// Pairs reported now and not before.
+    #[getter]
+    fn begun<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
+        arrays(py, self.0.begun())
+    }
+
+    /// Pairs reported now and before.
+    #[getter]
+    fn persisting<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
+        arrays(py, self.0.persisting())
+    }
+
+    /// Pairs reported before and not now, with their former images.
+    #[getter]
+    fn ended<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
+        arrays(py, self.0.ended())
+    }
+}
+
 /// A class with its own methods, and those of both periodic worlds.
 macro_rules! periodic_class {
     ($(#[$doc:meta])* $name:ident, $world:ty, { $($own:tt)* }) => {
@@ -114,6 +139,12 @@ macro_rules! periodic_class {
             /// The pairs of the last cull, in the form of `cull`.
             fn pairs<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
                 arrays(py, &locked(py, &self.0, |world| world.pairs().to_vec()))
+            }
+
+            /// What has changed between the last call of `events` and the last cull. Two bodies are
+            /// one pair, whatever their image.
+            fn events(&self, py: Python<'_>) -> PeriodicEvents {
+                PeriodicEvents(locked(py, &self.0, |world| world.events()))
             }
 
             fn __len__(&self, py: Python<'_>) -> usize {

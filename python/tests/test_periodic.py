@@ -118,12 +118,16 @@ def test_bodies_come_rest_and_go():
     world.set_motion(b, "dynamic")
     ids, images = world.cull()
     assert ids.tolist() == [[a, b], [a, c], [b, c]] and images.tolist() == [[-1, 0, 0], [0, 0, 0], [1, 0, 0]]
+    assert world.events().begun[0].tolist() == [[a, b], [a, c], [b, c]]
     assert world.exclude(a, b) and not world.exclude(b, a) and len(world.cull()[0]) == 2
     assert world.include(a, b) and len(world.cull()[0]) == 3
     world.set_motion(b, "resting")
     assert len(world.cull()[0]) == 3 and len(world) == 3 and b in world
     world.remove(b)
     assert b not in world and world.cull()[0].tolist() == [[a, c]]
+    events = world.events()
+    assert events.persisting[0].tolist() == [[a, c]] and len(events.begun[0]) == 0
+    assert [rows.tolist() for rows in events.ended] == [[[a, b], [b, c]], [[-1, 0, 0], [1, 0, 0]]]
     other = world.insert([7, 0, 0, 8, 1, 1], groups=(2, 2))
     world.set_bounds(a, [[0, 0, 0], [1, 1, 1]])
     assert len(world.cull()[0]) == 3 and other in world

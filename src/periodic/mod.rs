@@ -38,6 +38,7 @@
 
 mod boxes;
 mod error;
+mod events;
 mod images;
 #[cfg(feature = "shapes")]
 mod meshes;
@@ -46,6 +47,7 @@ mod world;
 
 pub use boxes::PeriodicBox;
 pub use error::PeriodicError;
+pub use events::PeriodicEvents;
 pub use images::ImageWorld;
 pub use world::{Periodic, PeriodicPair};
 

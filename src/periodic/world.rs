@@ -1,8 +1,8 @@
 //! A world with periodic axes: bodies, their images, and the pairs of both.
 
-use super::PeriodicError;
 use super::images::{ImageWorld, PlacedBody, Placement};
 use super::periods::Periods;
+use super::{PeriodicError, PeriodicEvents};
 use crate::simd::in_default_mode;
 use crate::world::{BodyId, WorldError};
 
@@ -47,6 +47,8 @@ pub struct Periodic<W: ImageWorld> {
     pairs: Vec<PeriodicPair>,
     /// Those of them that were found at the images of a border.
     across: Vec<PeriodicPair>,
+    /// The pairs when events were last read.
+    seen: Vec<PeriodicPair>,
 }
 
 /// What is in a slot of the world.
@@ -80,6 +82,7 @@ impl<W: ImageWorld> Periodic<W> {
             are_all_changed: false,
             pairs: Vec::new(),
             across: Vec::new(),
+            seen: Vec::new(),
         })
     }
 
@@ -217,6 +220,14 @@ impl<W: ImageWorld> Periodic<W> {
     #[must_use]
     pub fn pairs(&self) -> &[PeriodicPair] {
         &self.pairs
+    }
+
+    /// The pairs that began, persisted or ended between the last call of this method and the last
+    /// cull. It takes one pass over the pairs of both.
+    pub fn events(&mut self) -> PeriodicEvents {
+        let events = PeriodicEvents::between(&self.seen, &self.pairs);
+        self.seen.clone_from(&self.pairs);
+        events
     }
 
     /// The slot of a present body.

@@ -4,6 +4,7 @@
 
 mod borders;
 mod boxes;
+mod events;
 #[path = "../support/forms.rs"]
 mod forms;
 mod layouts;

@@ -1,0 +1,53 @@
+//! Events of a periodic world: what has begun and ended since they were last read.
+
+use super::PeriodicPair;
+
+/// The pairs that have begun, persist or have ended between two culls of a periodic world, each
+/// kind sorted by slots. It doesn't borrow the world.
+///
+/// Two bodies are one pair wherever they touch: if one is moved by a whole period and touches the
+/// other in another image, their pair persists, and has the later image.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PeriodicEvents {
+    begun: Vec<PeriodicPair>,
+    persisting: Vec<PeriodicPair>,
+    ended: Vec<PeriodicPair>,
+}
+
+impl PeriodicEvents {
+    /// The events between two culls, from their sorted pairs.
+    pub(super) fn between(before: &[PeriodicPair], now: &[PeriodicPair]) -> Self {
+        let mut events = Self::default();
+        let mut before = before.iter().peekable();
+        for &pair in now {
+            while let Some(&gone) = before.next_if(|old| old.bodies < pair.bodies) {
+                events.ended.push(gone);
+            }
+            match before.next_if(|old| old.bodies == pair.bodies) {
+                Some(_) => events.persisting.push(pair),
+                None => events.begun.push(pair),
+            }
+        }
+        events.ended.extend(before);
+        events
+    }
+
+    /// Pairs reported now and not before.
+    #[must_use]
+    pub fn begun(&self) -> &[PeriodicPair] {
+        &self.begun
+    }
+
+    /// Pairs reported now and before.
+    #[must_use]
+    pub fn persisting(&self) -> &[PeriodicPair] {
+        &self.persisting
+    }
+
+    /// Pairs reported before and not now, with their former images; those of a body removed since
+    /// then are among them.
+    #[must_use]
+    pub fn ended(&self) -> &[PeriodicPair] {
+        &self.ended
+    }
+}
