@@ -5,8 +5,7 @@ use super::answers::Answers;
 use super::index::{QueryIndex, SolidBody, TREES};
 use super::tree::{BOXES_PER_GROUP, BoxGroup, LaneContent, MOST_WAITING, Node, lanes_of};
 use super::volume::{Line, QueryError};
-use crate::bodies::Aabb;
-use crate::rounding::query::{Course, crossing};
+use crate::rounding::query::{ALL, Course, earlier, later};
 use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};
 use crate::world::BodyId;
 
@@ -46,41 +45,41 @@ impl LineCourses {
     /// enters their boxes.
     #[inline(always)]
     fn meeting(&self, group: &BoxGroup, limit: f64) -> (u32, [f64; BOXES_PER_GROUP]) {
-        let (mut first, mut last) = ([0.0_f64; BOXES_PER_GROUP], [limit; BOXES_PER_GROUP]);
+        let mut first = [-ALL; BOXES_PER_GROUP];
+        let mut last = [ALL; BOXES_PER_GROUP];
         for axis in 0..3 {
-            let (lo, hi) = (&group.lo[axis], &group.hi[axis]);
+            let (course, lo, hi) = (self.axes[axis], &group.lo[axis], &group.hi[axis]);
+            let [near, far] = if course.is_falling() {
+                [hi, lo]
+            } else {
+                [lo, hi]
+            };
             for lane in 0..BOXES_PER_GROUP {
-                let ends = [lo[lane], hi[lane]].map(f64::from);
-                let [enters, leaves] = crossing(self.axes[axis], ends);
-                first[lane] = if enters > first[lane] {
-                    enters
-                } else {
-                    first[lane]
-                };
-                last[lane] = if leaves < last[lane] {
-                    leaves
-                } else {
-                    last[lane]
-                };
+                let [enters, leaves] = course.between([near[lane], far[lane]].map(f64::from));
+                first[lane] = larger(enters, first[lane]);
+                last[lane] = smaller(leaves, last[lane]);
             }
         }
         let mut meeting = 0;
         for lane in 0..BOXES_PER_GROUP {
-            meeting |= u32::from(first[lane] <= last[lane]) << lane;
+            first[lane] = larger(earlier(first[lane]), 0.0);
+            let is_met = first[lane] <= smaller(later(last[lane]), limit);
+            meeting |= u32::from(is_met) << lane;
         }
         (meeting & group.present, first)
     }
+}
 
-    /// The parameter at which the line enters a box, if it may meet it.
-    fn enters(&self, aabb: &Aabb) -> Option<f64> {
-        let [mut first, mut last] = [0.0, self.limit];
-        for axis in 0..3 {
-            let ends = [aabb.min[axis], aabb.max[axis]].map(f64::from);
-            let [enters, leaves] = crossing(self.axes[axis], ends);
-            (first, last) = (f64::max(first, enters), f64::min(last, leaves));
-        }
-        (first <= last).then_some(first)
-    }
+/// The larger of two numbers, as one instruction.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, as one instruction.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 impl QueryIndex {
@@ -260,7 +259,7 @@ impl<T: FnMut(LineHit, f64) -> f64> LineSearch<'_, T> {
             return;
         }
         let at = match self.index.solid(tree, place) {
-            SolidBody::Box(aabb) => self.courses.enters(&aabb),
+            SolidBody::Box(_) => Some(enters),
             SolidBody::Shape(body) => body.crossed_by(&self.track),
         };
         if let Some(at) = at.filter(|at| at <= limit) {

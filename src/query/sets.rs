@@ -37,8 +37,13 @@ impl QueryIndex {
                 }
             });
         });
-        let mut pairs: Vec<_> = tasks.into_iter().flat_map(|(_, _, found)| found).collect();
-        pairs.sort_unstable();
+        let mut pairs = Vec::with_capacity(tasks.iter().map(|(_, _, found)| found.len()).sum());
+        tasks
+            .iter()
+            .for_each(|(_, _, found)| pairs.extend_from_slice(found));
+        pairs.sort_unstable_by_key(|[one, other]: &[BodyId; 2]| {
+            (one.slot() as u64) << 32 | other.slot() as u64
+        });
         pairs
     }
 }
@@ -86,6 +91,9 @@ impl Kernel for GroupPairs<'_> {
 /// The boxes of a group, moved.
 fn seen_from(group: &BoxGroup, by: [f64; 3]) -> BoxGroup {
     let mut seen = group.clone();
+    if by == [0.0; 3] {
+        return seen;
+    }
     for lane in group.lanes() {
         seen.set(lane, &moved(&group.get(lane), by));
     }

@@ -311,14 +311,18 @@ impl PosedShape<'_> {
             && !other.separates(self, apart.map(|x| -x), out)
     }
 
-    /// Whether a slab's normal separates another body, seen from this one's translation.
+    /// Whether a slab's normal separates another body, seen from this one's translation. Its ball's
+    /// centre is within its own slabs, so it can only be beyond the end that is nearer to that.
     fn separates(&self, other: &PosedShape<'_>, apart: [f64; 3], out: f64) -> bool {
         let seen = turn_back(&self.rotation, apart);
         self.slabs().any(|(direction, length, [lo, hi])| {
             let at = dot(direction, seen);
             let e = turn_back(&other.rotation, rotate_of(&self.rotation, direction));
-            at - other.shape.support(e.map(|x| -x)) > hi + length * out
-                || at + other.shape.support(e) < lo - length * out
+            if 2.0 * (at + dot(e, other.shape.centre)) > lo + hi {
+                at - other.shape.support(e.map(|x| -x)) > hi + length * out
+            } else {
+                at + other.shape.support(e) < lo - length * out
+            }
         })
     }
 

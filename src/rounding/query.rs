@@ -33,6 +33,9 @@ pub const STILL: f64 = exp2(-800);
 /// 2¹²⁹, and a ray is no slower than 2⁻⁶⁰ along some axis.
 pub const STILL_FLOOR: f64 = exp2(-600);
 
+/// 2¹⁰⁰⁰: beyond the parameters of all points near any body.
+pub const ALL: f64 = exp2(1000);
+
 /// The distance by which slabs are moved out if sizes sum to `size`, per length of their normals.
 #[inline(always)]
 #[must_use]
@@ -90,19 +93,41 @@ impl Course {
     }
 }
 
+impl Course {
+    /// Whether the position falls as s grows.
+    #[inline(always)]
+    #[must_use]
+    pub fn is_falling(self) -> bool {
+        self.inverse < 0.0
+    }
+
+    /// The parameters s at which a line is at two ends, the first of which it reaches first, in
+    /// f64: off by up to [`WIDENING`] of themselves. A line that doesn't move is between the ends
+    /// for all s or for none.
+    #[inline(always)]
+    #[must_use]
+    pub fn between(self, [near, far]: [f64; 2]) -> [f64; 2] {
+        let Self { at, inverse } = self;
+        if inverse == 0.0 {
+            let is_between = near - STILL_FLOOR <= at && at <= far + STILL_FLOOR;
+            return if is_between { [-ALL, ALL] } else { [ALL, -ALL] };
+        }
+        [(near - at) * inverse, (far - at) * inverse]
+    }
+}
+
 /// The parameters s, from the first to the last, for which a line is between two ends, including
 /// all exact ones. If there are none, the first is above the last.
 #[inline(always)]
 #[must_use]
 pub fn crossing(course: Course, [lo, hi]: [f64; 2]) -> [f64; 2] {
-    let Course { at, inverse } = course;
-    if inverse == 0.0 {
-        let is_between = lo - STILL_FLOOR <= at && at <= hi + STILL_FLOOR;
-        let all = f64::INFINITY;
-        return if is_between { [-all, all] } else { [all, -all] };
-    }
-    let (near, far) = if inverse > 0.0 { (lo, hi) } else { (hi, lo) };
-    [earlier((near - at) * inverse), later((far - at) * inverse)]
+    let [near, far] = if course.is_falling() {
+        [hi, lo]
+    } else {
+        [lo, hi]
+    };
+    let [first, last] = course.between([near, far]);
+    [earlier(first), later(last)]
 }
 
 /// A parameter that is certainly not later than the exact one.

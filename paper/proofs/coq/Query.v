@@ -13,8 +13,8 @@ Definition widening : R := 8 * v.
 Definition still : R := / IZR (2 ^ 800).
 Definition still_floor : R := / IZR (2 ^ 600).
 
-(* src/rounding/query.rs: earlier, later; Course::new, crossing. No parameter of a still line is
-   before minus infinity or after infinity. *)
+(* src/rounding/query.rs: earlier, later; Course::new, Course::between, crossing. For a still line
+   the code has ends of 2^1000, which are beyond every parameter, in place of Always and Never. *)
 Definition widened (s : R) : R := add64 g (mul64 g (Rabs s) widening) query_floor.
 Definition earlier (s : R) : R := sub64 g s (widened s).
 Definition later (s : R) : R := add64 g s (widened s).

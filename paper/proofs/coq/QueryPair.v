@@ -275,7 +275,8 @@ Proof.
 Qed.
 End Support.
 
-(* src/query/shape.rs: PosedShape::separates. `down` and `up` are the supports of the other body. *)
+(* src/query/shape.rs: PosedShape::separates. `down` and `up` are the supports of the other body. The
+   code compares only the end that is nearer to the other's centre, so it separates less often. *)
 Definition seen_normal (a b : solid) (s : slab) : point :=
   turned_back (rotation_of g (turn b)) (turned (rotation_of g (turn a)) (normal s)).
 Definition separates (a b : solid) (hb : facets) (apart : point) (out : R) : Prop :=
