@@ -29,8 +29,10 @@ mod parry;
 mod partners;
 #[cfg(feature = "physx")]
 mod physx;
+mod queries;
 mod rapier;
 mod record;
+mod robots;
 mod roster;
 mod scenes;
 mod threads;
@@ -96,6 +98,8 @@ struct Cli {
 enum OtherCommand {
     Narrow(narrow::Args),
     Movers(movers::Args),
+    Queries(queries::Args),
+    Robots(robots::Args),
     Control(control::Args),
     Kernels(kernels::Args),
     Verdicts(verdicts::Args),
@@ -108,6 +112,8 @@ fn main() -> miette::Result<()> {
     match &cli.other {
         Some(OtherCommand::Narrow(args)) => return narrow::run(args),
         Some(OtherCommand::Movers(args)) => return movers::run(args),
+        Some(OtherCommand::Queries(args)) => return queries::run(args),
+        Some(OtherCommand::Robots(args)) => return robots::run(args),
         Some(OtherCommand::Control(args)) => {
             return threads::outside_of_pools(|| control::run(args));
         }

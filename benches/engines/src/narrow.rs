@@ -26,6 +26,7 @@ use serde::Serialize;
 
 use crate::boxes::Frame;
 use crate::entry::{Engine, Entry, Setup, Work};
+use crate::parry;
 
 /// Measure narrow phases on the pairs that culling leaves
 #[derive(clap::Args)]
@@ -58,8 +59,6 @@ struct MethodTiming {
 /// Whether two bodies touch, for one method.
 type PairVerdict<'a> = Box<dyn Fn(&Bodies, [u32; 2]) -> miette::Result<bool> + 'a>;
 
-const PARRY_VERSION: &str = "0.31.1";
-
 /// Tests of single pairs, applied to all pairs: judged like engines, and timed only here.
 pub const ENTRIES: [Entry; 3] = [
     entry(
@@ -70,11 +69,11 @@ pub const ENTRIES: [Entry; 3] = [
     ),
     entry(
         "parry3d GJK on hulls",
-        PARRY_VERSION,
+        parry::VERSION,
         Work::Hulls,
         |setup| Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, convex)?))),
     ),
-    entry("parry3d meshes", PARRY_VERSION, Work::Meshes, |setup| {
+    entry("parry3d meshes", parry::VERSION, Work::Meshes, |setup| {
         Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, mesh)?)))
     }),
 ];

@@ -10,7 +10,7 @@ use crate::boxes::{Frame, Slabs, lower, upper};
 use crate::entry::{Entry, Setup, Work};
 use crate::threads::Threads;
 
-const VERSION: &str = "0.31.1";
+pub const VERSION: &str = "0.31.1";
 
 /// Two ways to keep a tree: refitted and improved a little each frame, or built anew.
 pub const ENTRIES: [Entry; 2] = [

@@ -20,7 +20,7 @@ use crate::entry::{Entry, Setup, Work};
 use crate::incremental::{Change, Extras, Found, HUNDRED_THOUSAND, Incremental, MoverEntry, Moves};
 use crate::threads::Threads;
 
-const VERSION: &str = "0.36.1";
+pub const VERSION: &str = "0.36.1";
 
 /// One way to drive it.
 pub const ENTRIES: [Entry; 1] = [Entry {
@@ -33,7 +33,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
 }];
 
 /// A length unit for which the skin rounds away, and rapier's own.
-const NO_SKIN: f32 = 1e-30;
+pub const NO_SKIN: f32 = 1e-30;
 const DEFAULT_UNIT: f32 = 1.0;
 /// The skin of a leaf for a unit of 1.
 const SKIN: f32 = 0.04;
@@ -130,7 +130,8 @@ impl Rapier {
     }
 }
 
-fn change(event: &BroadPhasePairEvent) -> Change {
+/// A pair that begins or ends.
+pub fn change(event: &BroadPhasePairEvent) -> Change {
     let (pair, begins) = match event {
         BroadPhasePairEvent::AddPair(pair) => (pair, true),
         BroadPhasePairEvent::DeletePair(pair) => (pair, false),

@@ -47,6 +47,10 @@ peers! {
             "a million boxes in sorted order";
         "movers"       "movers",
             "engines that are given what has changed, where few boxes move";
+        "queries"      "queries",
+            "queries on boxes that rest: single ones and batches";
+        "robots"       "robots",
+            "robots of thirty parts that move: pairs of parts";
         "spreads-1m"   "--sizes 1000000 --scenes mixed,clustered --order random --threads 1 --peers sdop,parry3d refit,Embree",
             "a million of mixed radii and in clusters";
     }
