@@ -1,4 +1,4 @@
-//! [`WidePose`]: exact mesh intersection for poses of f64.
+//! [`WidePose`]: exact intersection of meshes and volumes for poses of f64.
 //!
 //! [`Pose`] takes f32, and the error bounds of volumes assume that. Whether two meshes meet depends
 //! on the poses through [`Relative`](crate::exact::relative::Relative) alone. Intervals and
@@ -19,10 +19,17 @@
 //! |Δ| underflows only where it is 0, so what a product loses is below 2⁻¹⁰⁷⁰, far below u times
 //! the f32 vertices of any mesh that has an extent. Sums too large make the bound NaN, and
 //! integers decide.
+//!
+//! Volumes have no such bound for f64 here, and intervals decide them first.
 
+use dashu_int::IBig;
+use dashu_ratio::RBig;
+
+use crate::exact::common::lifted;
 use crate::exact::meeting::{self, Meeting};
-use crate::linear::largest;
-use crate::number::power_of_two;
+use crate::exact::{Decision, Interval, axes, cascade, sphere};
+use crate::linear::{Vector, add, apply, conjugate_product, largest, norm_squared, rotation};
+use crate::number::{Number, power_of_two};
 use crate::{InvalidInput, Pose, Shape};
 
 /// Components that are smaller than the largest by more than this power of two are refused.
@@ -56,6 +63,46 @@ impl WidePose {
         }
         Ok(Self(Pose::of_f64(scaled, t)))
     }
+
+    /// The pose of a part: its local pose, then the pose of its body. `None` if f64 doesn't hold
+    /// the exact product of the quaternions or the exact translation.
+    #[must_use]
+    pub fn composed(body: ([f32; 4], Vector<f64>), part: ([f32; 4], Vector<f64>)) -> Option<Self> {
+        let [outer, inner] = [body.0, part.0].map(|q| q.map(|x| RBig::lift(f64::from(x), 0)));
+        let norm = norm_squared(&outer);
+        if norm == RBig::ZERO {
+            return None;
+        }
+        let turned = apply(&rotation(&outer), &lifted(part.1)).map(|x| x / &norm);
+        let [x, y, z] = add(&lifted(body.1), &turned).map(held);
+        let [i, j, k, w] = outer;
+        let [i, j, k, w] = conjugate_product(&[-i, -j, -k, w], &inner).map(held);
+        Self::new([i?, j?, k?, w?], [x?, y?, z?]).ok()
+    }
+
+    /// The quaternion (x, y, z, w), whose largest magnitude is 1 or more and below 2.
+    #[must_use]
+    pub fn quaternion(&self) -> [f64; 4] {
+        self.0.quaternion()
+    }
+
+    /// The translation.
+    #[must_use]
+    pub fn translation(&self) -> Vector<f64> {
+        self.0.translation()
+    }
+
+    /// Where the pose takes a point, rounded.
+    #[must_use]
+    pub fn point(&self, x: &Vector<f64>) -> Vector<f64> {
+        add(&self.0.turn(x), &self.translation())
+    }
+}
+
+/// The fraction, if it is an f64.
+fn held(exact: RBig) -> Option<f64> {
+    let rounded = exact.to_f64_fast();
+    (RBig::lift(rounded, 0) == exact).then_some(rounded)
 }
 
 /// The quaternion times the power of two that takes its largest magnitude to 1 or more, below 2:
@@ -80,4 +127,25 @@ fn largest_of([x, y, z, w]: [f64; 4]) -> f64 {
 /// Whether two posed meshes intersect, and which stages decided it.
 pub fn meet(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Meeting {
     meeting::meet((a.0.mesh(), &a.1.0), (b.0.mesh(), &b.1.0))
+}
+
+/// Whether the balls of two posed shapes overlap.
+pub fn balls_overlap(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Decision<bool> {
+    let (a, b) = ((&a.0.ball, &a.1.0), (&b.0.ball, &b.1.0));
+    cascade(
+        || None,
+        || sphere::judge::<Interval>(a, b, 0),
+        || sphere::judge::<IBig>(a, b, sphere::common_unit(a, b)),
+    )
+}
+
+/// Whether no face normal of the first or-DOP separates it from the second: the one-sided test.
+pub fn slabs_overlap(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Decision<bool> {
+    let (a, b) = ((&a.1.0, &a.0.polytope), (&b.1.0, &b.0.polytope));
+    cascade(
+        || None,
+        || axes::one_sided::<Interval>(a, b),
+        || axes::one_sided::<IBig>(a, b),
+    )
+    .map(|separated| !separated)
 }

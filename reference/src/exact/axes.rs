@@ -39,7 +39,7 @@ pub fn overlap_two_sided(a: Posed, b: Posed) -> Decision<bool> {
     .map(|separated| !separated)
 }
 
-fn one_sided<N: Number>(a: Posed, b: Posed) -> Option<bool> {
+pub(crate) fn one_sided<N: Number>(a: Posed, b: Posed) -> Option<bool> {
     any_normal(a.1, &Corners::<N>::new(a, b))
 }
 

@@ -23,7 +23,7 @@ use crate::linear::{
 use crate::number::{Number, dyadic};
 use crate::pose::Pose;
 
-pub(super) type Rational = Vector<RBig>;
+pub(crate) type Rational = Vector<RBig>;
 
 /// A point with rational coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -159,7 +159,7 @@ fn vertex_inside(view: &View, pose: &Pose) -> Option<Point> {
     Some(Point(world(pose, &lifted(*vertex))))
 }
 
-pub(super) fn lifted(v: Vector<f64>) -> Rational {
+pub(crate) fn lifted(v: Vector<f64>) -> Rational {
     v.map(|x| RBig::lift(x, 0))
 }
 

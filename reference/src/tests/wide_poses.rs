@@ -156,3 +156,25 @@ fn lost_components_are_refused() {
         assert!(matches!(refused(q, t), InvalidInput::NotFinite(_)));
     }
 }
+
+/// A point of a part is where the poses of the part and of its body take it, in this order.
+#[test]
+fn parts_have_composed_poses() {
+    let part = ([0.0, 0.0, 3.0, 3.0], [105.0, 0.0, 35.0 * exp2(-20)]);
+    let body = ([5.0, 3.0, 1.0, 0.0], [0.5, 0.0, -exp2(30)]);
+    let composed = WidePose::composed(body, part).unwrap();
+    let [inner, outer] = [part, body].map(|(q, t)| WidePose::new(q.map(f64::from), t).unwrap());
+    for point in [[0.0; 3], [1.0, -2.0, 0.75]] {
+        let [at, wanted] = [composed.point(&point), outer.point(&inner.point(&point))];
+        let off = (0..3).map(|axis| (at[axis] - wanted[axis]).abs());
+        assert!(off.fold(0.0, f64::max) < exp2(-20), "{at:?} {wanted:?}");
+    }
+    assert_eq!(composed.translation()[0], 45.5 + 10.0 * exp2(-20));
+    let thirds = ([1.0, 1.0, 1.0, 0.0], [0.0; 3]);
+    assert_eq!(
+        WidePose::composed(thirds, part).map(|pose| pose.translation()[1]),
+        Some(70.0)
+    );
+    let part = (part.0, [1.0, 0.0, 0.0]);
+    assert_eq!(WidePose::composed(thirds, part), None, "a third is no f64");
+}

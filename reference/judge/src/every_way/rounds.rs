@@ -12,8 +12,8 @@ use crate::ours::configurations::Rotation;
 use crate::ours::forms::{self, Form};
 use crate::ours::hard::HardCaseGroup;
 use crate::ours::histories::{
-    Repeated, draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_meshes,
-    judge_periodic_boxes, judge_periodic_meshes,
+    Repeated, Robots, draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_compounds,
+    judge_meshes, judge_periodic_boxes, judge_periodic_meshes,
 };
 use crate::ours::reference_shapes::Shapes;
 use crate::ours::seeded_draws::{ContactSpec, crowd, probe};
@@ -79,11 +79,11 @@ pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
 }
 
 /// Long-lived worlds of a seed for one or-DOP, number `number` of all that a seed has: one history
-/// of given boxes and one of meshes, by every strategy and overlap test, and both in space that
-/// repeats. The modes of eight or-DOPs fill every cell.
+/// of given boxes and one of meshes, by every strategy and overlap test, both in space that
+/// repeats, and one of compounds. The modes of eight or-DOPs fill every cell.
 ///
 /// # Errors
-/// As [`judge_meshes`] and [`judge_periodic_meshes`].
+/// As [`judge_meshes`], [`judge_periodic_meshes`] and [`judge_compounds`].
 pub fn histories(
     seed: u64,
     number: usize,
@@ -113,6 +113,9 @@ pub fn histories(
         (k, axes),
         &modes(0),
     )?);
+    let robots = Robots::draw(shapes, &mut below)?;
+    let history = robots.history(&mut below);
+    judged.add(judge_compounds(&robots, &history, (k, axes), modes)?);
     Ok(Ledger {
         histories: judged,
         ..Ledger::default()

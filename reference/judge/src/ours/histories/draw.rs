@@ -108,17 +108,19 @@ pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> Histo
                 ..spec.start(shape, &mut rng)
             },
         };
-        Body {
-            motion: motion(below),
-            groups: groups(below),
-            margin: MARGINS[below(2) as usize * below(MARGINS.len() as u32) as usize],
-            ..Body::at(
-                shape as u32,
-                placed.rotation,
-                placed.translation.map(f64::from),
-            )
-        }
+        let translation = placed.translation.map(f64::from);
+        let body = Body::at(shape as u32, placed.rotation, translation);
+        with_properties(body, below)
     };
+    draw_bodies(count, new, below)
+}
+
+/// A history of bodies in as many shapes as are counted, each body drawn by `new` next to others.
+pub(super) fn draw_bodies(
+    shapes: u32,
+    new: impl Fn(&[Body], &mut dyn FnMut(u32) -> u32) -> Body,
+    below: &mut dyn FnMut(u32) -> u32,
+) -> History<Body> {
     let moved = |from: &Body, to: &Body, part: u32| Body {
         rotation: [to, to, from][part as usize].rotation,
         translation: [to, from, to][part as usize].translation,
@@ -130,11 +132,21 @@ pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> Histo
             ..body
         },
         _ => Body {
-            shape: (body.shape + 1 + below(count - 1)) % count,
+            shape: (body.shape + 1 + below(shapes - 1)) % shapes,
             ..body
         },
     };
     draw(ChangeKind::ALL, new, moved, own, below)
+}
+
+/// A body at a pose, with properties that are drawn.
+pub(super) fn with_properties(body: Body, below: &mut dyn FnMut(u32) -> u32) -> Body {
+    Body {
+        motion: motion(below),
+        groups: groups(below),
+        margin: MARGINS[below(2) as usize * below(MARGINS.len() as u32) as usize],
+        ..body
+    }
 }
 
 /// A margin other than this one.
@@ -145,7 +157,7 @@ fn next_margin(margin: f32, below: &mut dyn FnMut(u32) -> u32) -> f32 {
 }
 
 /// One of the bodies, if there are some.
-fn other<B: Copy>(bodies: &[B], below: &mut dyn FnMut(u32) -> u32) -> Option<B> {
+pub(super) fn other<B: Copy>(bodies: &[B], below: &mut dyn FnMut(u32) -> u32) -> Option<B> {
     let at = (!bodies.is_empty()).then(|| below(bodies.len() as u32) as usize);
     at.map(|at| bodies[at])
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::draw::MARGINS;
 use super::state::{NumberedPair, Pairs, State, by_number, in_order};
-use super::worlds::JudgedWorld;
+use super::worlds::{JudgedWorld, ReportedPair};
 use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, WorldKind};
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::meeting;
@@ -15,7 +15,6 @@ use sdop::Motion;
 use sdop::bodies::{Aabb, Bodies};
 use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};
 use sdop::culler::{Culler, CullerBuilder};
-use sdop::periodic::PeriodicPair;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
@@ -29,6 +28,8 @@ pub(super) struct Truth {
     pub fresh: Vec<Pairs>,
     /// Whether a list may lack pairs of a newly built world's that are not required.
     pub may_lack: bool,
+    /// All pairs that may be reported, where that is known otherwise than from a new world.
+    pub allowed: Option<Vec<Pairs>>,
 }
 
 impl Truth {
@@ -38,8 +39,15 @@ impl Truth {
             fresh: required.clone(),
             required,
             may_lack: false,
+            allowed: None,
         }
     }
+}
+
+/// Those of the first list that are not in the second.
+fn outside(these: &Pairs, those: &Pairs) -> Pairs {
+    let is_outside = |pair: &&NumberedPair| those.binary_search(pair).is_err();
+    these.iter().filter(is_outside).copied().collect()
 }
 
 /// A world that lives through a history.
@@ -115,26 +123,22 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
         let listed = self.world.cull()?;
         let is_sorted = listed.is_sorted_by(|one, next| one < next);
         let list = by_number(listed, &self.numbers);
-        let outside = |these: &Pairs, those: &Pairs| {
-            let is_outside = |pair: &&NumberedPair| those.binary_search(pair).is_err();
-            these.iter().filter(is_outside).copied().collect::<Pairs>()
-        };
         let missed = outside(&truth.required[frame], &list);
         let mut differ = match truth.may_lack {
             true => outside(&list, &truth.fresh[frame]),
             false => difference(&list, &truth.fresh[frame]),
         };
+        if let Some(allowed) = &truth.allowed {
+            differ.extend(outside(&list, &allowed[frame]));
+        }
         if !is_sorted {
             differ.extend(list.first());
         }
         if let Some(events) = self.world.events() {
             let (begun, ended) = (outside(&list, &self.before), outside(&self.before, &list));
             let numbered = |ids: &mut dyn Iterator<Item = [BodyId; 2]>| {
-                let image = [0; 3];
-                by_number(
-                    ids.map(|bodies| PeriodicPair { bodies, image }),
-                    &self.numbers,
-                )
+                let pairs = ids.map(|bodies| ReportedPair::of(bodies, None));
+                by_number(pairs, &self.numbers)
             };
             differ.extend(difference(&numbered(&mut events.begun()), &begun));
             differ.extend(difference(&numbered(&mut events.ended()), &ended));
@@ -181,11 +185,9 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
             if let (Some((fault, pair)), None) = (wrong, &ledger.failure) {
                 let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
                 ledger.failure = Some(format!(
-                    "a world of {} {fault} bodies {} and {} in frame {frame} of a history, after {} \
+                    "a world of {} {fault} {pair} in frame {frame} of a history, after {} \
                      ({}, {} threads)",
                     kind.name(),
-                    pair.bodies[0],
-                    pair.bodies[1],
                     names.join(", "),
                     mode.tier,
                     mode.threads
@@ -226,7 +228,7 @@ pub(super) fn required_boxes(states: &[State<BoxBody>]) -> Vec<Pairs> {
         let counts = |pair: &[u32; 2]| !parts(*pair) && !pair.iter().all(is_fixed);
         let meeting = meeting(&bounds).into_iter().filter(counts);
         let number = |at: u32| numbers[at as usize] as u32;
-        in_order(meeting.map(|pair| NumberedPair::new(pair.map(number), [0; 3])))
+        in_order(meeting.map(|pair| NumberedPair::of(pair.map(number))))
     };
     states.iter().map(required).collect()
 }
@@ -276,6 +278,7 @@ pub fn judge_meshes(
                     required: required.clone(),
                     fresh: fresh_lists(shapes, &states, &way, plain)?,
                     may_lack: false,
+                    allowed: None,
                 };
                 truths.insert(plain.name(), truth);
             }
@@ -380,5 +383,5 @@ fn required_of(state: &State<Body>, answers: &Answers, way: &CullSettings) -> Pa
             !parts(**pair) && answers.required(strategy, overlap, &interest, *n)
         });
     let number = |at: u32| numbers[at as usize] as u32;
-    in_order(counted.map(|(_, pair)| NumberedPair::new(pair.map(number), [0; 3])))
+    in_order(counted.map(|(_, pair)| NumberedPair::of(pair.map(number))))
 }

@@ -1,11 +1,14 @@
 //! Histories of long-lived worlds: frames in which a few bodies are inserted, removed, moved, put
 //! to rest, woken, fixed or changed. After each frame, a world's pairs are compared with the exact
 //! answers and with those of a newly built world, and its events with the difference of its lists.
-//! Worlds in which space repeats live through the same histories.
+//! Worlds in which space repeats live through the same histories, and worlds of compounds through
+//! histories of robots whose parts touch.
 
+mod compounds;
 mod draw;
 mod judge;
 mod periodic;
+mod robots;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -13,13 +16,16 @@ mod worlds;
 
 use std::collections::BTreeMap;
 
+pub use compounds::judge_compounds;
 pub use draw::{draw_boxes, draw_meshes, history_shapes};
 pub use judge::{judge_boxes, judge_meshes};
 pub use periodic::{Repeated, judge_periodic_boxes, judge_periodic_meshes};
+pub use robots::Robots;
 
 use super::configurations::{Rotation, rows, variants};
 use super::reference_shapes::InvalidInput;
 use sdop::choice::choices;
+use sdop::compound::CompoundError;
 use sdop::periodic::PeriodicError;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::world::WorldError;
@@ -33,6 +39,9 @@ pub enum HistoryError {
     /// What a periodic world refuses.
     #[error(transparent)]
     Periodic(#[from] PeriodicError),
+    /// Parts that no compound can have.
+    #[error(transparent)]
+    Compound(#[from] CompoundError),
     /// Numbers that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),
@@ -90,8 +99,8 @@ pub struct History<B> {
     pub frames: Vec<Vec<(ChangeKind, Change<B>)>>,
 }
 
-/// The world that is judged: given boxes, or meshes by a strategy with an overlap test, in space
-/// that may repeat.
+/// The world that is judged: given boxes, meshes by a strategy with an overlap test, both in space
+/// that may repeat, or compounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WorldKind {
     /// A `BoxWorld`.
@@ -102,6 +111,8 @@ pub enum WorldKind {
     PeriodicBoxes,
     /// A `PeriodicWorld`, with the default overlap test.
     PeriodicMeshes(Strategy),
+    /// A `World` with a `PartCuller`, with the default overlap test.
+    Compounds(Strategy),
 }
 
 impl WorldKind {
@@ -121,7 +132,7 @@ impl WorldKind {
         );
         match self {
             Self::Boxes | Self::PeriodicBoxes => !is_of_meshes,
-            Self::Meshes(..) => true,
+            Self::Meshes(..) | Self::Compounds(_) => true,
             Self::PeriodicMeshes(_) => change != ChangeKind::Interest,
         }
     }
@@ -135,6 +146,7 @@ impl WorldKind {
             Self::Meshes(strategy, Some(overlap)) => format!("{strategy} {overlap}"),
             Self::PeriodicBoxes => "periodic boxes".to_owned(),
             Self::PeriodicMeshes(strategy) => format!("periodic {strategy}"),
+            Self::Compounds(strategy) => format!("compounds {strategy}"),
         }
     }
 }
@@ -161,6 +173,7 @@ impl HistoryCell {
         let worlds = worlds.chain(rows.iter().map(WorldKind::of));
         let worlds = worlds.chain([WorldKind::PeriodicBoxes]);
         let worlds = worlds.chain(periodic::STRATEGIES.map(WorldKind::PeriodicMeshes));
+        let worlds = worlds.chain(compounds::strategies().map(WorldKind::Compounds));
         let mut cells = Vec::new();
         for world in worlds {
             let has = |change: &ChangeKind| world.has(*change);

@@ -203,6 +203,7 @@ pub fn judge_periodic_meshes(
             required: required(&states, meeting)?,
             fresh: fresh.collect::<Result<_, _>>()?,
             may_lack: strategy != Strategy::Sphere,
+            allowed: None,
         };
         for (&mode, &finder) in modes.iter().zip(Finder::ALL.iter().cycle()) {
             let life = Life::new(world(strategy, finder, mode)?, history, &states)?;
@@ -237,7 +238,7 @@ fn required<B: Properties>(
                 let pair = [numbers[i] as u32, numbers[j] as u32];
                 for image in meeting(&bodies[i], &bodies[j])? {
                     // No position is that many periods away.
-                    pairs.push(NumberedPair::new(pair, image.map(|n| n as i32)));
+                    pairs.push(NumberedPair::new(pair, None, image.map(|n| n as i32)));
                 }
             }
         }

@@ -1,37 +1,56 @@
 //! The bodies of a history after some frames.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::sync::Arc;
 
-use super::worlds::JudgedWorld;
+use super::worlds::{JudgedWorld, ReportedPair};
 use super::{Change, History, HistoryError};
 use sdop::Groups;
 use sdop::bodies::Aabb;
 use sdop::boxes::BoxWorld;
-use sdop::periodic::PeriodicPair;
 use sdop::world::BodyId;
 
-/// Two bodies by their numbers, the lower one first.
+/// Two bodies, or two parts of them, by their numbers, the body of the lower number first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct NumberedPair {
     /// The bodies.
     pub bodies: [u32; 2],
+    /// A part of each; `None` is the pair of the bodies.
+    pub parts: Option<[u32; 2]>,
     /// The number of periods along each axis by which the second body is moved.
     pub image: [i32; 3],
 }
 
 impl NumberedPair {
     /// Two bodies in either order.
-    pub fn new([a, b]: [u32; 2], image: [i32; 3]) -> Self {
+    pub fn of(bodies: [u32; 2]) -> Self {
+        Self::new(bodies, None, [0; 3])
+    }
+
+    /// Two bodies in either order, the parts in the same order, and the image of the second.
+    pub fn new([a, b]: [u32; 2], parts: Option<[u32; 2]>, image: [i32; 3]) -> Self {
         match a <= b {
             true => Self {
                 bodies: [a, b],
+                parts,
                 image,
             },
             false => Self {
                 bodies: [b, a],
+                parts: parts.map(|[i, j]| [j, i]),
                 image: image.map(|n| -n),
             },
+        }
+    }
+}
+
+impl fmt::Display for NumberedPair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [a, b] = self.bodies;
+        match self.parts {
+            None => write!(f, "bodies {a} and {b}"),
+            Some([i, j]) => write!(f, "part {i} of body {a} and part {j} of body {b}"),
         }
     }
 }
@@ -133,13 +152,13 @@ impl<B: Copy> State<B> {
 
 /// Pairs of ids as pairs of numbers.
 pub fn by_number(
-    pairs: impl IntoIterator<Item = PeriodicPair>,
+    pairs: impl IntoIterator<Item = ReportedPair>,
     numbers: &HashMap<BodyId, u32>,
 ) -> Pairs {
     let number = |id| numbers.get(&id).copied().unwrap_or(u32::MAX);
     let numbered = pairs
         .into_iter()
-        .map(|pair| NumberedPair::new(pair.bodies.map(number), pair.image));
+        .map(|pair| NumberedPair::new(pair.bodies.map(number), pair.parts, pair.image));
     in_order(numbered)
 }
 

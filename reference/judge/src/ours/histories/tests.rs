@@ -7,11 +7,10 @@ use rand_chacha::ChaCha8Rng;
 
 use super::judge::{Life, Truth, required_boxes};
 use super::state::State;
-use super::worlds::JudgedWorld;
+use super::worlds::{JudgedWorld, ReportedPair};
 use super::*;
 use crate::ours::configurations::Mode;
 use sdop::boxes::{BoxBody, BoxWorld};
-use sdop::periodic::PeriodicPair;
 use sdop::simd::Tier;
 use sdop::world::{BodyId, Events};
 
@@ -81,7 +80,7 @@ impl JudgedWorld for Blind {
         Ok(())
     }
 
-    fn cull(&mut self) -> Result<Vec<PeriodicPair>, HistoryError> {
+    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
         JudgedWorld::cull(&mut self.world)
     }
 

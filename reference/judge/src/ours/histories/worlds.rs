@@ -2,7 +2,8 @@
 
 use super::HistoryError;
 use sdop::boxes::{BoxBody, BoxWorld};
-use sdop::periodic::{ImageWorld, Periodic, PeriodicBox, PeriodicPair};
+use sdop::compound::PartCuller;
+use sdop::periodic::{ImageWorld, Periodic, PeriodicBox};
 use sdop::world::{Body, BodyId, Events, World};
 use sdop::{Groups, Motion};
 
@@ -29,6 +30,29 @@ macro_rules! properties {
 }
 properties!(Body, BoxBody, PeriodicBox);
 
+/// A pair as a world reports it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ReportedPair {
+    /// The bodies.
+    pub bodies: [BodyId; 2],
+    /// A part of each; `None` is the pair of the bodies.
+    pub parts: Option<[u32; 2]>,
+    /// The number of periods by which the second body is moved.
+    pub image: [i32; 3],
+}
+
+impl ReportedPair {
+    /// Two bodies, or two parts of them, where space does not repeat.
+    pub fn of(bodies: [BodyId; 2], parts: Option<[u32; 2]>) -> Self {
+        let image = [0; 3];
+        Self {
+            bodies,
+            parts,
+            image,
+        }
+    }
+}
+
 /// A world that is judged.
 pub trait JudgedWorld {
     /// What it holds.
@@ -45,7 +69,7 @@ pub trait JudgedWorld {
     /// Sets the bodies of interest, where it has some.
     fn interest(&mut self, ids: &[BodyId]) -> Result<(), HistoryError>;
     /// Finds the pairs. No body is moved where space does not repeat.
-    fn cull(&mut self) -> Result<Vec<PeriodicPair>, HistoryError>;
+    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError>;
     /// What has begun and ended, where the world has events.
     fn events(&mut self) -> Option<Events>;
 }
@@ -77,10 +101,9 @@ macro_rules! forwarded {
 /// The calls that worlds without periods have alike.
 macro_rules! unrepeated {
     () => {
-        fn cull(&mut self) -> Result<Vec<PeriodicPair>, HistoryError> {
-            let image = [0; 3];
+        fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
             let pairs = self.cull()?.iter();
-            Ok(pairs.map(|bodies| PeriodicPair { bodies, image }).collect())
+            Ok(pairs.map(|bodies| ReportedPair::of(bodies, None)).collect())
         }
 
         fn events(&mut self) -> Option<Events> {
@@ -156,10 +179,66 @@ where
         Ok(())
     }
 
-    fn cull(&mut self) -> Result<Vec<PeriodicPair>, HistoryError> {
-        Ok(self.cull()?.to_vec())
+    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
+        let pairs = self.cull()?.iter().map(|pair| ReportedPair {
+            bodies: pair.bodies,
+            parts: None,
+            image: pair.image,
+        });
+        Ok(pairs.collect())
     }
 
+    fn events(&mut self) -> Option<Events> {
+        None
+    }
+}
+
+/// A world of compounds with a culler of their parts, which has followed it from the start.
+pub struct CompoundWorld {
+    pub world: World,
+    pub parts: PartCuller,
+}
+
+impl JudgedWorld for CompoundWorld {
+    type Body = Body;
+
+    fn insert(&mut self, body: Body) -> Result<BodyId, HistoryError> {
+        JudgedWorld::insert(&mut self.world, body)
+    }
+
+    fn remove(&mut self, id: BodyId) -> Result<(), HistoryError> {
+        JudgedWorld::remove(&mut self.world, id)
+    }
+
+    fn change(&mut self, id: BodyId, from: Body, to: Body) -> Result<(), HistoryError> {
+        self.world.change(id, from, to)
+    }
+
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), HistoryError> {
+        JudgedWorld::exclude(&mut self.world, pair, excluded)
+    }
+
+    fn interest(&mut self, ids: &[BodyId]) -> Result<(), HistoryError> {
+        self.world.interest(ids)
+    }
+
+    /// The pairs of parts, each pair of bodies before those of its parts.
+    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
+        self.world.cull()?;
+        self.parts.cull(&self.world)?;
+        let mut listed: Vec<ReportedPair> = Vec::new();
+        let mut bodies = self.parts.body_pairs();
+        for pair in self.parts.pairs() {
+            if listed.last().is_none_or(|last| last.bodies != pair.bodies) {
+                listed.extend(bodies.next().map(|ids| ReportedPair::of(ids, None)));
+            }
+            listed.push(ReportedPair::of(pair.bodies, Some(pair.parts)));
+        }
+        listed.extend(bodies.map(|ids| ReportedPair::of(ids, None)));
+        Ok(listed)
+    }
+
+    /// Events are of the world's pairs, of which some may have no pairs of parts.
     fn events(&mut self) -> Option<Events> {
         None
     }
