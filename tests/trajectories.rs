@@ -79,6 +79,8 @@ fn shipped_scenes_move_as_recorded() {
             100,
             "0fe4718d762e27401017829b759822bde95a6361b84ddf263f2f184e3ec63018",
         ),
+        ("sleep-10k.toml", 20, "to be recorded"),
+        ("scenery-10k.toml", 20, "to be recorded"),
     ];
     let found = golden.map(|(name, steps, _)| (name, steps, trajectory(&shipped(name), steps)));
     assert_eq!(
