@@ -108,14 +108,14 @@ fn rest_matches_its_definition() {
         (3, "response = \"elastic\""),
     ] {
         let scene = scene(&format!(
-            "seed = {seed}\n[box]\nside = 24\n\
+            "seed = {seed}\n[box]\nside = 14\n\
              [[bodies]]\nshape = \"box\"\ncount = 150\nradius = [0.5, 1]\nspeed = [0.1, 0.9]\n\
              [[bodies]]\nshape = \"box\"\ncount = 20\nradius = 1\nstatic = true\n\
              [[bodies]]\nshape = \"box\"\ncount = 8\nradius = 1\nspeed = [1, 4]\n\
              [effects]\nmotion = true\nspin = {{ rate = [1, 2] }}\n{REST}\n{others}\n"
         ));
         let [moved, stayed] = follow(&scene, 60);
-        assert!(moved > 600 && stayed > 600, "seed {seed}: {moved} {stayed}");
+        assert!(moved > 500 && stayed > 500, "seed {seed}: {moved} {stayed}");
     }
 }
 
