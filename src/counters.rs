@@ -28,6 +28,40 @@ impl AddAssign for VolumeCounters {
     }
 }
 
+/// Bodies in the frames of a world that searches only for the partners of bodies that have changed,
+/// and keeps the pairs of all others; summed over frames. All are 0 in frames that find all pairs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RestCounters {
+    /// Bodies that were inserted, removed or set to another value since the frame before: their
+    /// partners were searched for.
+    pub queried: u64,
+    /// Those among them that weren't queried in the frame before.
+    pub thawed: u64,
+    /// All other bodies: pairs of two of them were kept.
+    pub kept: u64,
+}
+
+impl AddAssign for RestCounters {
+    fn add_assign(&mut self, more: Self) {
+        self.queried += more.queried;
+        self.thawed += more.thawed;
+        self.kept += more.kept;
+    }
+}
+
+impl RestCounters {
+    /// What was added since `before`.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            queried: self.queried - before.queried,
+            thawed: self.thawed - before.thawed,
+            kept: self.kept - before.kept,
+        }
+    }
+}
+
 /// All counters of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -46,6 +80,9 @@ pub struct Counters {
     pub untested: u64,
     /// Pairs reported.
     pub reported: u64,
+    /// Bodies that were queried or kept, in a world.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub rest: RestCounters,
 }
 
 impl VolumeCounters {
@@ -72,6 +109,7 @@ impl Counters {
             obb: self.obb.since(&before.obb),
             untested: self.untested - before.untested,
             reported: self.reported - before.reported,
+            rest: self.rest.since(&before.rest),
         }
     }
 }

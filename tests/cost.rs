@@ -3,10 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::num::NonZeroU32;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use sdop::counters::pair_count;
+use sdop::counters::{RestCounters, pair_count};
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop_bench::cost::calibrate::{Calibration, Effort};
@@ -101,6 +102,56 @@ fn counts_equal_in_tiers() {
     }
 }
 
+/// The pairs that each variant reports, frame by frame.
+#[derive(Default)]
+struct PairRecorder(Vec<Vec<Vec<[u32; 2]>>>);
+
+impl Observer for PairRecorder {
+    fn frame(&mut self, number: usize, _: u32, culling: &Culling) {
+        let mut pairs = culling.pairs();
+        pairs.sort_unstable();
+        self.0[number].push(pairs);
+    }
+}
+
+/// A world reports the pairs of a culler, and each frame either queries or keeps each body.
+#[test]
+fn worlds_query_or_keep_each_body() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes/sleep-10k.toml");
+    let mut file = SceneFile::read(&path).unwrap();
+    for (group, count) in file.spec.bodies.iter_mut().zip([588, 12]) {
+        *group.get_mut().count.as_mut().unwrap().get_mut() = NonZeroU32::new(count).unwrap();
+    }
+    let (scene, frames) = (file.build().unwrap(), 40);
+    for tier in Tier::available() {
+        for strategy in [
+            Strategy::Sphere,
+            Strategy::Aabb,
+            Strategy::KDop,
+            Strategy::SDopSequential,
+        ] {
+            let culler = Variant::strategy(&scene.cull, strategy);
+            assert!(culler.may_be_in_world());
+            let variants = [culler.clone(), culler.in_world()];
+            let mut pairs = PairRecorder(vec![Vec::new(); 2]);
+            let mut poses = SceneFrames::new(&scene, frames).unwrap();
+            let pass = pass(&scene, &variants, tier, &mut poses, None, &mut pairs).unwrap();
+            assert_eq!(pairs.0[0], pairs.0[1], "{strategy}, {tier}");
+            let [culler, world] = [0, 1].map(|at| pass.culled[at].counts.culler);
+            assert_eq!(culler.rest, RestCounters::default());
+            let RestCounters {
+                queried,
+                thawed,
+                kept,
+            } = world.rest;
+            assert_eq!(queried + kept, u64::from(frames) * 600);
+            // Twelve bodies move, and wake some others.
+            assert!((39 * 12..39 * 37).contains(&queried), "{queried}");
+            assert!((12..queried / 2).contains(&thawed), "{thawed}");
+        }
+    }
+}
+
 /// Calibration never sees the scene it predicts.
 #[test]
 fn calibration_is_independent_of_scene() {
@@ -183,6 +234,8 @@ fn prices_and_terms_add_up() {
         .map(|&strategy| Variant::strategy(&scene.cull, strategy))
         .collect();
     variants.push(Variant::hulls(&scene.cull));
+    variants.push(Variant::spheres(&scene.cull).in_world());
+    variants.push(Variant::strategy(&scene.cull, Strategy::SDopSequential).in_world());
     let tier = Tier::detect();
     let mut calibration = Calibration::new(&scene, &variants, tier, effort).unwrap();
     let mut frames = SceneFrames::new(&scene, 17).unwrap();
@@ -205,8 +258,8 @@ fn prices_and_terms_add_up() {
                 let what = format!("{} {regime} {price:?}", variant.name);
                 // So few frames may give the tests' time to the call; the stage has a price all the
                 // same.
-                let stage =
-                    costs.frame + costs.body + costs.row + costs.handle + costs.hit + costs.miss;
+                let bodies = costs.body + costs.row + costs.query + costs.thaw + costs.keep;
+                let stage = costs.frame + bodies + costs.handle + costs.hit + costs.miss;
                 let tests = passed.culled[at].counts.of(price.volume).tests;
                 let many = tests > 32 * u64::from(passed.culled[at].frames);
                 assert!(stage > 0.0 || !many, "{what}");
@@ -217,6 +270,9 @@ fn prices_and_terms_add_up() {
                     costs.frame,
                     costs.body,
                     costs.row,
+                    costs.query,
+                    costs.thaw,
+                    costs.keep,
                     costs.handle,
                     costs.hit,
                     costs.miss,

@@ -20,7 +20,7 @@ fn shipped() -> Vec<PathBuf> {
 #[test]
 fn every_shipped_scene_builds_and_steps() {
     let files = shipped();
-    assert!(files.len() >= 19);
+    assert!(files.len() >= 21);
     for path in files {
         let scene = SceneFile::read(&path).unwrap().build().unwrap();
         assert_eq!(

@@ -79,6 +79,16 @@ fn shipped_scenes_move_as_recorded() {
             100,
             "0fe4718d762e27401017829b759822bde95a6361b84ddf263f2f184e3ec63018",
         ),
+        (
+            "sleep-10k.toml",
+            20,
+            "7925fff5bfeddd1c78ee4b5aab5a372faa4fded82f892429453db89e74be387c",
+        ),
+        (
+            "scenery-10k.toml",
+            20,
+            "d1040222af277e30e314b30390ee267bd931cad8a9c78c1b1b9972f442505d5a",
+        ),
     ];
     let found = golden.map(|(name, steps, _)| (name, steps, trajectory(&shipped(name), steps)));
     assert_eq!(

@@ -6,9 +6,16 @@
 use super::BoxWorld;
 use crate::bodies::PairRules;
 use crate::broad_phase::{BoxIndex, IndexedBox, tags};
+use crate::counters::RestCounters;
 use crate::simd::in_default_mode;
 
 impl BoxWorld {
+    /// Counters of the culls that kept the pairs of unchanged boxes, summed over all culls.
+    #[must_use]
+    pub fn rest_counters(&self) -> &RestCounters {
+        &self.rest_counters
+    }
+
     /// Updates the pairs of the last cull by the boxes that have changed. Returns false, without a
     /// change, if finding all pairs would be faster, or if these boxes are in more than `most`
     /// pairs.
@@ -16,11 +23,15 @@ impl BoxWorld {
         if !self.movers.are_few() {
             return false;
         }
-        if !self.movers.changed().is_empty() {
-            if !in_default_mode(|| self.find_changed(most)) {
-                return false;
-            }
+        let is_any_changed = !self.movers.changed().is_empty();
+        if is_any_changed && !in_default_mode(|| self.find_changed(most)) {
+            return false;
+        }
+        self.rest_counters += self.movers.counters(&self.ids);
+        if is_any_changed {
             self.movers.change_pairs(&mut self.log, &self.ids);
+        } else {
+            self.movers.none_changed();
         }
         self.ids.settle();
         true

@@ -4,7 +4,7 @@ use super::BoxCullerBuilder;
 use super::frame::BoxFrames;
 use crate::bodies::contract::check_number;
 use crate::bodies::{Aabb, ExcludedPairs, Groups, Motion, PairFilter};
-use crate::counters::VolumeCounters;
+use crate::counters::{RestCounters, VolumeCounters};
 use crate::strategy::Output;
 use crate::threads::Threads;
 use crate::world::{BodyId, Events, Ids, LivePairs, Movers, WorldError, WorldPairs};
@@ -74,6 +74,7 @@ pub struct BoxWorld {
     pub(super) ids: Ids,
     pub(super) frames: BoxFrames,
     pub(super) counters: VolumeCounters,
+    pub(super) rest_counters: RestCounters,
     pub(super) log: LivePairs,
     pub(super) movers: Movers,
     /// Number of slots whose groups don't collide with all.
@@ -113,6 +114,7 @@ impl BoxWorld {
             ids: Ids::default(),
             frames,
             counters: VolumeCounters::default(),
+            rest_counters: RestCounters::default(),
             log: LivePairs::default(),
             movers: Movers::default(),
             grouped: 0,

@@ -9,7 +9,7 @@ use std::time::Instant;
 use super::Culler;
 use crate::bodies::{Aabb, Bodies, Places};
 use crate::broad_phase::Balls;
-use crate::counters::VolumeCounters;
+use crate::counters::{RestCounters, VolumeCounters};
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
 use crate::rounding::{down, sphere::apart, up, widen};
@@ -103,7 +103,8 @@ impl Culler {
     }
 
     /// Counts a frame whose pairs were found from its changed bodies alone, and its seconds.
-    pub(crate) fn count_sampled(&mut self, pairs: usize, seconds: f64) {
+    pub(crate) fn count_sampled(&mut self, counted: RestCounters, pairs: usize, seconds: f64) {
+        self.counters.rest += counted;
         self.counters.reported += pairs as u64;
         self.seconds.total += seconds;
     }

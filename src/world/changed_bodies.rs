@@ -22,17 +22,21 @@ impl World {
             return false;
         }
         let start = Instant::now();
-        if !self.movers.changed().is_empty() {
-            if !in_default_mode(|| self.find_changed(most)) {
-                return false;
-            }
+        let is_any_changed = !self.movers.changed().is_empty();
+        if is_any_changed && !in_default_mode(|| self.find_changed(most)) {
+            return false;
+        }
+        let counted = self.movers.counters(&self.ids);
+        if is_any_changed {
             self.movers.change_pairs(&mut self.log, &self.ids);
             self.sweep_margins(true);
+        } else {
+            self.movers.none_changed();
         }
         self.ids.settle();
         let pairs = self.log.pairs(&self.ids).len();
         self.culler
-            .count_sampled(pairs, start.elapsed().as_secs_f64());
+            .count_sampled(counted, pairs, start.elapsed().as_secs_f64());
         true
     }
 

@@ -10,6 +10,7 @@
 use super::{Ids, LivePairs};
 use crate::bodies::PairRules;
 use crate::broad_phase::{BoxIndex, IndexedBox, Search};
+use crate::counters::RestCounters;
 
 /// Changed bodies are searched one by one if they are at most one in this number of bodies.
 /// Otherwise finding all pairs anew is faster.
@@ -30,12 +31,19 @@ const PREFETCH_DISTANCE: usize = 8;
 const LEAST_SERVICE: u32 = 8;
 const LONGEST_PAUSE: u32 = 64;
 
+/// The number of the first cull. Those of earlier changes are lower by two at least.
+const FIRST_CULL: u32 = 2;
+
 /// The bodies that have changed since the last cull, and an index of all.
 #[derive(Clone, Debug)]
 pub(crate) struct Movers {
     changed: Vec<u32>,
-    /// Whether each slot's body has changed.
-    is_changed: Vec<bool>,
+    /// The cull before which each slot's body last changed.
+    changed_before: Vec<u32>,
+    /// The number of the next cull.
+    cull: u32,
+    /// How many of the changed bodies weren't searched for in the cull before.
+    thawed: usize,
     /// Whether the next cull finds all pairs, because many bodies have changed or the pairs of the
     /// last cull aren't known.
     are_many: bool,
@@ -61,7 +69,9 @@ impl Default for Movers {
     fn default() -> Self {
         Self {
             changed: Vec::new(),
-            is_changed: Vec::new(),
+            changed_before: Vec::new(),
+            cull: FIRST_CULL,
+            thawed: 0,
             are_many: true,
             index: None,
             indexed: 0,
@@ -84,11 +94,13 @@ impl Movers {
         if self.are_many {
             return;
         }
-        if self.is_changed.len() <= slot {
-            self.is_changed.resize(slot + 1, false);
+        if self.changed_before.len() <= slot {
+            self.changed_before.resize(slot + 1, 0);
         }
-        if !std::mem::replace(&mut self.is_changed[slot], true) {
+        let former = std::mem::replace(&mut self.changed_before[slot], self.cull);
+        if former != self.cull {
             self.changed.push(slot as u32);
+            self.thawed += usize::from(former + 1 != self.cull);
             self.are_many = self.changed.len() * BODIES_PER_CHANGE > ids.slots();
         }
     }
@@ -101,7 +113,8 @@ impl Movers {
     /// Notes that a cull has found all pairs of the present bodies.
     pub fn all_found(&mut self) {
         self.changed.clear();
-        self.is_changed.fill(false);
+        // No body has changed before the number that is skipped: the next cull thaws them all.
+        self.number_next(2);
         self.are_many = false;
         self.pause = self.pause.saturating_sub(1);
     }
@@ -116,6 +129,20 @@ impl Movers {
         }
     }
 
+    /// Notes that a cull has kept all pairs, because no body has changed.
+    pub fn none_changed(&mut self) {
+        self.number_next(1);
+    }
+
+    /// Gives the next cull a number that is higher by `step`.
+    fn number_next(&mut self, step: u32) {
+        self.thawed = 0;
+        self.cull = self.cull.checked_add(step).unwrap_or_else(|| {
+            self.changed_before.fill(0);
+            FIRST_CULL
+        });
+    }
+
     fn back_off(&mut self) {
         self.last_pause = (2 * self.last_pause).clamp(1, LONGEST_PAUSE);
         self.pause = self.last_pause;
@@ -124,6 +151,17 @@ impl Movers {
     /// Whether the pairs of the last cull can be updated by the changed bodies.
     pub fn are_few(&self) -> bool {
         !self.are_many && (self.pause == 0 || self.changed.is_empty())
+    }
+
+    /// The counters of a cull that searches only for the partners of the changed bodies.
+    pub fn counters(&self, ids: &Ids) -> RestCounters {
+        let is_present = |&&slot: &&u32| ids.present()[slot as usize];
+        let present = self.changed.iter().filter(is_present).count();
+        RestCounters {
+            queried: self.changed.len() as u64,
+            thawed: self.thawed as u64,
+            kept: (ids.len() - present) as u64,
+        }
     }
 
     /// The slots of the bodies that have changed.
@@ -226,7 +264,7 @@ impl Movers {
             changes.replace(slot, found);
             for &(other, has_begun) in &*differences {
                 // A changed partner finds this body itself.
-                let finds_itself = self.is_changed.get(other as usize) == Some(&true);
+                let finds_itself = self.changed_before.get(other as usize) == Some(&self.cull);
                 if !finds_itself {
                     changes.set_partner(other, slot, has_begun);
                 }
@@ -237,9 +275,8 @@ impl Movers {
             changes.done();
         }
         log.compact();
-        for slot in self.changed.drain(..) {
-            self.is_changed[slot as usize] = false;
-        }
+        self.changed.clear();
+        self.number_next(1);
         self.served = self.served.saturating_add(1);
     }
 }

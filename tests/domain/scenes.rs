@@ -228,7 +228,7 @@ fn seeding_by_body_is_independent() {
     assert_eq!(different.len(), 100);
 }
 
-/// What needs one order over all pairs is refused on many ranks.
+/// What needs one order over all pairs, or the contacts of all bodies, is refused on many ranks.
 #[test]
 fn global_orders_are_rejected_on_ranks() {
     let refusal = |file: &Scene| on(2, file).unwrap_err().to_string();
@@ -237,10 +237,16 @@ fn global_orders_are_rejected_on_ranks() {
     scene.cull.budget = Some(sdop::settings::Budget::Tests(10));
     assert_eq!(refusal(&scene), "strategy s-dop-time-critical on 2 ranks");
     assert!(on(1, &scene).is_ok());
-    let response = build(
-        "name = \"r\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n[effects]\nresponse = \"elastic\"\n",
-    );
-    assert_eq!(refusal(&response), "effect response on 2 ranks");
+    for (name, line) in [
+        ("response", "response = \"elastic\""),
+        ("rest", "rest = { speed = 1, after = 1 }"),
+    ] {
+        let scene = build(&format!(
+            "name = \"r\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n[effects]\n{line}\n",
+        ));
+        assert_eq!(refusal(&scene), format!("effect {name} on 2 ranks"));
+        assert!(on(1, &scene).is_ok());
+    }
     let fine = parse(
         "name = \"f\"\nframes = 1\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0.1, 0, 0]]\n",
     );

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod response;
+mod rest;
 
 use std::path::Path;
 
@@ -47,7 +48,8 @@ fn after(scene: &Scene, steps: usize) -> (Bodies, Velocities) {
 }
 
 /// What each effect does to a crowd: its line of `[effects]`, and the one column that it changes
-/// there; the walls of a crowd that stays inside change nothing.
+/// there; the walls of a crowd that stays inside change nothing, and none of it is slow enough to
+/// rest.
 const EACH: &[(&str, &str, Option<Column>)] = &[
     (
         "gravity",
@@ -56,6 +58,7 @@ const EACH: &[(&str, &str, Option<Column>)] = &[
     ),
     ("brownian", "share = 0.5, speed = 1", Some(Column::Velocity)),
     ("response", "\"elastic\"", Some(Column::Velocity)),
+    ("rest", "speed = 0.5, after = 0.5", None),
     ("motion", "true", Some(Column::Translation)),
     ("spin", "rate = 1", Some(Column::Rotation)),
     ("walls", "\"specular\"", None),

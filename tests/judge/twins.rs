@@ -19,6 +19,12 @@ enum Flaw {
     Static,
     /// Adds a new body one frame too late.
     Late,
+    /// Keeps the verdict of a pair while one of its bodies sleeps.
+    OneAsleep,
+    /// Loses the pairs of a body in the frame in which it wakes.
+    LostOnWaking,
+    /// Takes over a body's move only when the body has moved in two frames.
+    FirstMove,
     /// Asks the mask of the first body alone.
     OneMask,
     /// Knows eight groups.
@@ -44,6 +50,8 @@ enum Flaw {
 struct State {
     boxes: Vec<WorldBox>,
     pairs: Vec<[u32; 2]>,
+    /// Whether each body moved in the frame.
+    moved: Vec<bool>,
 }
 
 struct Twin {
@@ -81,12 +89,32 @@ impl Twin {
         number.filter(|&number| number < self.state.boxes.len())
     }
 
+    /// Whether a body has another pose than in the frame before.
+    fn has_moved(&self, bodies: &Bodies, body: usize) -> bool {
+        let pose = |bodies: &Bodies, i: usize| (bodies.rotation[i], bodies.translation[i]);
+        let former = self.former(body);
+        former.is_none_or(|former| pose(&self.seen.1, former) != pose(bodies, body))
+    }
+
+    /// Whether it reports a pair whose boxes meet or don't.
+    fn reports(&self, meets: bool, pair: [u32; 2], moved: &[bool]) -> bool {
+        let moved_before = |body: u32| self.state.moved.get(body as usize) != Some(&false);
+        let wakes = |body: &u32| moved[*body as usize] && !moved_before(*body);
+        match self.flaw {
+            Flaw::OneAsleep if pair.iter().any(|&body| !moved[body as usize]) => {
+                self.state.pairs.contains(&pair)
+            }
+            Flaw::LostOnWaking => meets && !pair.iter().any(wakes),
+            _ => meets,
+        }
+    }
+
     /// The box that it works with; `None` when it doesn't know the body yet.
     fn known(&self, bodies: &Bodies, body: usize) -> Option<WorldBox> {
         let (former, old) = (self.former(body), &self.seen.1);
-        let pose = |bodies: &Bodies, i: usize| (bodies.rotation[i], bodies.translation[i]);
         let kept = match self.flaw {
-            Flaw::SamePose => former.filter(|&f| pose(old, f) == pose(bodies, body)),
+            Flaw::SamePose => former.filter(|_| !self.has_moved(bodies, body)),
+            Flaw::FirstMove => former.filter(|&f| !self.state.moved[f]),
             Flaw::SameNumber => Some(body).filter(|&body| body < self.state.boxes.len()),
             Flaw::Static => former.filter(|_| !bodies.dynamic[body]),
             Flaw::Unsaved => former.filter(|&f| self.seen.0[f] == self.given[body]),
@@ -133,6 +161,9 @@ impl Contestant for Twin {
         let all: Vec<Option<WorldBox>> = (0..bodies.len())
             .map(|body| self.known(bodies, body))
             .collect();
+        let moved: Vec<bool> = (0..bodies.len())
+            .map(|body| self.has_moved(bodies, body))
+            .collect();
         let mut pairs = Vec::new();
         for j in 0..all.len() {
             for i in 0..j {
@@ -144,7 +175,8 @@ impl Contestant for Twin {
                 }
                 let pair = [i as u32, j as u32];
                 let moves = bodies.dynamic[i] || bodies.dynamic[j];
-                if moves && self.meet([&a, &b], [i, j]) && !self.parts(pair) {
+                let meets = self.reports(self.meet([&a, &b], [i, j]), pair, &moved);
+                if moves && meets && !self.parts(pair) {
                     pairs.push(pair);
                 }
             }
@@ -159,6 +191,7 @@ impl Contestant for Twin {
         self.state = State {
             boxes: boxes.collect(),
             pairs,
+            moved,
         };
         self.seen = (self.given.clone(), bodies.clone());
         self.was = None;
@@ -227,6 +260,11 @@ fn groups_catch_their_twins() {
             Claim::Aabb,
             "stale/all-at-once",
             &[Flaw::Late, Flaw::SamePose, Flaw::SameNumber],
+        ),
+        (
+            Claim::Aabb,
+            "stale/sleep",
+            &[Flaw::OneAsleep, Flaw::LostOnWaking, Flaw::FirstMove],
         ),
         (
             Claim::Filter,

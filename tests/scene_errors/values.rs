@@ -12,8 +12,8 @@ fn unknown_keys_suggest_the_nearest() {
     );
     assert_eq!(
         changed("walls", "wals"),
-        "a.toml:12:1: unknown field `wals`, expected one of `gravity`, `brownian`, `response`, `motion`, `spin`, \
-         `walls` | did you mean `walls`?"
+        "a.toml:12:1: unknown field `wals`, expected one of `gravity`, `brownian`, `response`, `rest`, `motion`, \
+         `spin`, `walls` | did you mean `walls`?"
     );
     assert_eq!(
         changed("\"specular\"", "\"bouncy\""),
@@ -78,6 +78,18 @@ fn invalid_values_are_located() {
     assert_eq!(
         changed("radius = 1", "sizes = { u = 1 }"),
         "a.toml:8:11: the shape \"box\" has no size \"u\" | its sizes are x, y, z"
+    );
+    assert_eq!(
+        changed("motion = true", "rest = { speed = 0, after = 1 }"),
+        "a.toml:11:18: invalid value: integer `0`, expected a number above 0, at most 2^60"
+    );
+    assert_eq!(
+        changed("motion = true", "rest = { speed = 1 }"),
+        "a.toml:11:8: missing field `after` | add `after`"
+    );
+    assert_eq!(
+        changed("motion = true", "rest = { sped = 1, after = 1 }"),
+        "a.toml:11:10: unknown field `sped`, expected one of `speed`, `rate`, `after` | did you mean `speed`?"
     );
     assert_eq!(
         changed("name = \"s\"", ""),

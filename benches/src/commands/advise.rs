@@ -2,7 +2,9 @@
 
 use miette::miette;
 use sdop::settings::{CullSettings, Strategy};
-use sdop_bench::tradeoff::advise::{Advice, Candidate, CandidateFilter, FRAMES, advise};
+use sdop_bench::tradeoff::advise::{
+    Advice, Candidate, CandidateFilter, FRAMES, WorldTimes, advise,
+};
 
 use super::Outcome;
 use super::output::{Format, emit, rows};
@@ -16,7 +18,9 @@ const DEFAULT_CHECK_NANOSECONDS: f64 = 1000.0;
 /// Measures every finder, then spheres, boxes, S-DOP at each k with both kinds of axes, and hulls,
 /// on the scene's first frames. For each volume it adds the culling time and the narrow phase's
 /// time for the pairs that are left. Every volume reports all pairs that meet; they differ in time
-/// and in false pairs. With --pairs or --axes, only that finder or these axes are tried.
+/// and in false pairs. With --pairs or --axes, only that finder or these axes are tried. For a
+/// scene with `rest`, the cheapest volume is also timed in a World, which keeps the pairs of
+/// sleeping bodies.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop advise data/scenes/paper-500.toml --narrow-ns 200")]
 pub struct Args {
@@ -103,6 +107,24 @@ fn text(advice: &Advice) -> String {
         table(&advice.candidates),
         table(&advice.finders),
     );
+    if let Some(WorldTimes {
+        variant,
+        culler,
+        world,
+    }) = &advice.world
+    {
+        let way = if world.mean < culler.mean {
+            "Use"
+        } else {
+            "Don't use"
+        };
+        text = format!(
+            "{text}\n\n{way} a World, which is given moved bodies and keeps the pairs of all others: {variant} takes {} there, \
+             and {} in a Culler.",
+            us(world.mean),
+            us(culler.mean),
+        );
+    }
     if let Some(warning) = advice.conditions.warning() {
         text = format!("{text}\n{warning}");
     }

@@ -38,7 +38,8 @@ const EFFORT: Effort = Effort {
 /// scene's shapes alone, so that T is a true prediction; scenes named by --also have the same
 /// prices. The residual is measured / predicted - 1; if it exceeds 5 %, the row names the
 /// assumption that fails. Without --strategy, all strategies for which the scene has settings are
-/// measured.
+/// measured. A scene with `rest` is also culled by worlds, which keep the pairs of sleeping bodies:
+/// F is then a price per queried, thawed and kept body.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {
@@ -310,6 +311,9 @@ fn volume_rows(report: &CostReport) -> Table {
         "hits",
         "bodies with hits",
         "further slabs",
+        "queried",
+        "thawed",
+        "kept",
         "Nu·Cu, µs",
         "F, µs",
         "Nv·Cv, µs",
@@ -325,6 +329,9 @@ fn volume_rows(report: &CostReport) -> Table {
                 decimal(terms.hits),
                 decimal(terms.rows),
                 decimal(terms.further),
+                decimal(terms.queried),
+                decimal(terms.thawed),
+                decimal(terms.kept),
                 us(terms.update, widths.update),
                 us(terms.finding, widths.finding),
                 us(terms.test, widths.test),

@@ -4,7 +4,7 @@ use sdop_bench::cost::table::PriceRow;
 use sdop_bench::reproduce::Estimate;
 
 /// The columns, each with its unit.
-pub const COLUMNS: [&str; 11] = [
+pub const COLUMNS: [&str; 14] = [
     "strategy",
     "volume",
     "Co, ms",
@@ -12,6 +12,9 @@ pub const COLUMNS: [&str; 11] = [
     "F, ns per frame",
     "F, ns per body",
     "F, ns per body with hits",
+    "F, ns per queried body",
+    "F, ns per thawed body",
+    "F, ns per kept body",
     "F, ns per listed pair",
     "Cv hit, ns",
     "Cv miss, ns",
@@ -29,6 +32,9 @@ pub fn cells(price: &PriceRow, number: impl Fn(&Estimate) -> String) -> Vec<Stri
         ns(&price.frame),
         ns(&price.body),
         ns(&price.row),
+        ns(&price.query),
+        ns(&price.thaw),
+        ns(&price.keep),
         ns(&price.handle),
         ns(&price.hit),
         ns(&price.miss),

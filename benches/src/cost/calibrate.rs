@@ -12,6 +12,7 @@ use super::expected;
 use super::explain::{self, HitPremium, Round, TurnObservation, VariantTurns};
 use super::level::CacheLevel;
 use super::predict::Prices;
+use super::world_calibration::WorldCalibration;
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::culling::Culling;
 use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn};
@@ -26,7 +27,7 @@ use sdop_judge::contestant::Contestant;
 
 /// The step from a calibration scene of a round to the next one. It shares no divisor with the
 /// number of scenes.
-const SCENE_STEP: usize = 7;
+pub(super) const SCENE_STEP: usize = 7;
 /// The calibration scene with the most pairs, on which hits and misses are distinguished.
 const MOST_PAIRS: usize = SCENES - 1;
 
@@ -88,6 +89,7 @@ pub struct Calibration {
     prepared: Vec<PreparedVariant>,
     variants: usize,
     spheres: usize,
+    worlds: WorldCalibration,
     subjects: Vec<(Scene, Trajectory)>,
     turns: Turns,
     tier: Tier,
@@ -97,7 +99,8 @@ pub struct Calibration {
 
 impl Calibration {
     /// Prepares the calibration scenes. Spheres alone are always calibrated, and or-DOPs after
-    /// spheres whenever they refine: their prices are the same for every strategy.
+    /// spheres whenever they refine: their prices are the same for every strategy. Worlds, which
+    /// come last among the variants, have calibration scenes and prices of their own.
     ///
     /// # Errors
     /// The effects can't be simulated.
@@ -108,7 +111,11 @@ impl Calibration {
         effort: Effort,
     ) -> Result<Self, SimulationError> {
         let spheres = Variant::spheres(&scene.cull);
-        let mut all = variants.to_vec();
+        let (worlds, variants): (Vec<Variant>, Vec<Variant>) = variants
+            .iter()
+            .cloned()
+            .partition(|variant| variant.in_world);
+        let mut all = variants.clone();
         let shared =
             std::iter::once(spheres.clone()).chain(variants.iter().filter_map(explain::anchor));
         for variant in shared {
@@ -126,6 +133,7 @@ impl Calibration {
                 .map(|variant| PreparedVariant::new(variant, scene))
                 .collect(),
             variants: variants.len(),
+            worlds: WorldCalibration::new(scene, &worlds, tier)?,
             spheres: all
                 .iter()
                 .position(|one| is_same(one, &spheres))
@@ -163,6 +171,7 @@ impl Calibration {
             lanes: expected::lanes(self.tier),
             level: self.level,
         };
+        let mut worlds = self.worlds.round(round)?;
         let prices = std::array::from_fn(|regime| {
             let all: Vec<_> = self
                 .prepared
@@ -171,6 +180,7 @@ impl Calibration {
                 .collect();
             let mut prices = explain::prices(&all, round);
             prices.truncate(self.variants);
+            prices.append(&mut worlds[regime]);
             prices
         });
         Ok(CalibrationRound {
@@ -250,7 +260,7 @@ pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
 }
 
 /// Seconds to build each of a variant's volumes for all shapes once.
-fn volume_seconds(variant: &Variant, shapes: &[Shape]) -> Vec<f64> {
+pub(super) fn volume_seconds(variant: &Variant, shapes: &[Shape]) -> Vec<f64> {
     let mut waiting = WaitingTime::of_this_thread();
     let seconds = |volume: Volume| {
         let (waited, start) = (waiting.seconds(), Instant::now());

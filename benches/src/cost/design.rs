@@ -31,7 +31,7 @@ const MOST_SIZE_RATIO: f64 = 4.0;
 /// Densities if every pair is tested: shares of pairs whose balls meet.
 const MEETING_SHARES: [f64; DENSITIES] = [0.0002, 0.002, 0.01, 0.04, 0.12];
 /// Densities if a finder rejects most pairs: numbers of balls that meet one ball.
-const PARTNERS: [f64; DENSITIES] = [0.25, 1.0, 2.0, 5.0, 12.0];
+pub(super) const PARTNERS: [f64; DENSITIES] = [0.25, 1.0, 2.0, 5.0, 12.0];
 /// The seed of all calibration draws; scenes count their seeds from 1.
 const SEED: u64 = 0xca11_b8a7_e000_0000;
 
@@ -63,7 +63,7 @@ pub(super) fn grid(level: CacheLevel) -> [(usize, f64); SCENES] {
 }
 
 /// The smallest size, and those of a level, in a geometric sequence.
-fn sizes(level: CacheLevel) -> [usize; SIZES] {
+pub(super) fn sizes(level: CacheLevel) -> [usize; SIZES] {
     let [fewest, most] = level.bodies().map(|bodies| bodies as f64);
     let fewest = fewest.max(FEWEST_BODIES as f64);
     let most = match level {
@@ -84,7 +84,7 @@ fn sizes(level: CacheLevel) -> [usize; SIZES] {
 ///
 /// They keep the scene's order, in which bodies of one shape are together: such pairs are faster to
 /// test than mixed ones.
-fn resample(scene: &Scene, n: usize, share: f64, stream: u64) -> Scene {
+pub(super) fn resample(scene: &Scene, n: usize, share: f64, stream: u64) -> Scene {
     let mut draws = Stream::new(SEED, stream);
     let original = &scene.bodies;
     let body = |i: usize| i * original.len() / n;

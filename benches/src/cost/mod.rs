@@ -15,18 +15,22 @@
 //! | Cv of a miss | tests, which grow as the square of bodies | finding, or refining for or-DOPs |
 //! | Cv of a hit | the share of hits at one number of bodies; of a second test, lists of known shares | the same |
 //! | Cv of a further slab | the share of hits: how many vectors of world-aligned slabs continue | finding |
+//! | F per queried, thawed and kept body | shares of sleeping bodies, in worlds | finding |
 //! | F per listed pair | pairs that are listed for a second test, in addition to the costs of spheres alone | finding, refining |
 
 pub mod calibrate;
 pub mod design;
 mod expected;
 mod explain;
+mod explain_world;
 mod fit;
 pub mod level;
 pub mod pass;
 pub mod predict;
 pub mod study;
 pub mod table;
+mod world_calibration;
+mod world_design;
 
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +51,13 @@ pub struct VolumeCosts {
     pub body: f64,
     /// F per body that has a hit among its candidates: listing a vector of hits, full or not.
     pub row: f64,
+    /// F per body of a world whose partners are searched for: setting it, moving it in the index,
+    /// the search, and changing its pairs.
+    pub query: f64,
+    /// F per such body that wasn't queried in the frame before, in addition.
+    pub thaw: f64,
+    /// F per body of a world that is kept as it is.
+    pub keep: f64,
     /// F per pair that passed the test before: listing it for this one, and with an object of
     /// interest selecting and merging it.
     pub handle: f64,

@@ -4,8 +4,9 @@
 //!
 //! is the paper's equation 1 with F, pair finding, as a separate stage. F has a price per frame,
 //! per body, per body that has hits, and per pair that is passed to a second test. (Such a pair is
-//! listed; with an object of interest it is also selected and merged.) Cv has separate prices for
-//! hits and for misses, and for world-aligned volumes a third, for slabs after the first.
+//! listed; with an object of interest it is also selected and merged.) In a world that keeps pairs,
+//! F has prices per body that is queried, thawed or kept instead. Cv has separate prices for hits
+//! and for misses, and for world-aligned volumes a third, for slabs after the first.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +15,7 @@ use super::expected;
 use super::level::CacheLevel;
 use crate::measure::counts::{Counts, Volume};
 use crate::measure::estimate::{Estimate, or_infinite};
+use sdop::counters::RestCounters;
 
 /// Prices of one volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,6 +60,15 @@ pub struct Terms {
     /// Slabs after the first on which tests are compared, per frame, as expected from the counts.
     #[serde(default)]
     pub further: f64,
+    /// Bodies that a world queries, per frame; these terms are those of its first volume.
+    #[serde(default)]
+    pub queried: f64,
+    /// Those among them that it didn't query in the frame before.
+    #[serde(default)]
+    pub thawed: f64,
+    /// Bodies that it keeps.
+    #[serde(default)]
+    pub kept: f64,
     /// Co: its part of the construction, in seconds, once.
     pub construct: f64,
     /// Nu·Cu.
@@ -165,6 +176,9 @@ impl Terms {
             hits: over(|t| t.hits),
             rows: over(|t| t.rows),
             further: over(|t| t.further),
+            queried: over(|t| t.queried),
+            thawed: over(|t| t.thawed),
+            kept: over(|t| t.kept),
             construct: over(|t| t.construct),
             update: over(|t| t.update),
             finding: over(|t| t.finding),
@@ -192,7 +206,9 @@ impl FirstTest {
             [counters.updates, counters.tests, counters.hits].map(|count| count as f64 / frames);
         // Oriented volumes have no first test: each candidate is listed. World-aligned ones list as
         // spheres do, which is lost among their slabs: times don't tell its price.
+        // A world tests listed pairs one by one.
         let (lists_hits, is_aligned) = match volume {
+            _ if counts.culler.rest != RestCounters::default() => (false, false),
             Volume::Sphere => (true, false),
             Volume::Aabb | Volume::KDop => (false, true),
             Volume::OrDop | Volume::Obb | Volume::Hull => (false, false),
@@ -237,6 +253,14 @@ impl Prices {
                 .checked_sub(1)
                 .and_then(|before| self.volumes.get(before));
             let handed_on = before.map_or(0, |before| counts.of(before.volume).hits);
+            let rest = &counts.culler.rest;
+            let [queried, thawed, kept] = [rest.queried, rest.thawed, rest.kept].map(|count| {
+                if place == 0 {
+                    count as f64 / frames
+                } else {
+                    0.0
+                }
+            });
             let idle = match (place, price.volume) {
                 (1.., Volume::OrDop) => expected::idle(first.tests, self.lanes),
                 _ => 0.0,
@@ -248,11 +272,17 @@ impl Prices {
                 hits,
                 rows,
                 further,
+                queried,
+                thawed,
+                kept,
                 construct: costs.construct + bodies * costs.construct_body,
                 update: costs.update * counters.updates as f64 / frames,
                 finding: costs.frame
                     + bodies * costs.body
                     + rows * costs.row
+                    + queried * costs.query
+                    + thawed * costs.thaw
+                    + kept * costs.keep
                     + handed_on as f64 / frames * costs.handle
                     + idle * costs.miss,
                 test: hits * costs.hit + misses * costs.miss + further * costs.further,
@@ -281,6 +311,9 @@ impl Prices {
                 frame: over(|c| c.frame),
                 body: over(|c| c.body),
                 row: over(|c| c.row),
+                query: over(|c| c.query),
+                thaw: over(|c| c.thaw),
+                keep: over(|c| c.keep),
                 handle: over(|c| c.handle),
                 hit: over(|c| c.hit),
                 miss: over(|c| c.miss),
@@ -306,6 +339,9 @@ mod tests {
             hits: 1.0,
             rows: 0.0,
             further: 0.0,
+            queried: 0.0,
+            thawed: 0.0,
+            kept: 0.0,
             construct: 9.0,
             update,
             finding: 0.0,

@@ -106,8 +106,11 @@ impl StudiedScene {
 
     /// Checks that this scene and the first one have the same calibration scenes.
     fn is_like(&self, first: &Self) -> Result<(), CostError> {
+        let rests = |studied: &Self| studied.scene.effects.rest.is_some();
         let differ = if self.scene.cull != first.scene.cull {
             "`[cull]` tables"
+        } else if rests(self) != rests(first) {
+            "effects, one with `rest` and one without it,"
         } else if self.meshes() != first.meshes() {
             "meshes or radii"
         } else {
@@ -167,7 +170,12 @@ pub fn study(
     };
     scenes.iter().try_for_each(|other| other.is_like(first))?;
     let of_strategy = |&strategy| Variant::strategy(&first.scene.cull, strategy);
-    let variants: Vec<Variant> = plan.strategies.iter().map(of_strategy).collect();
+    let mut variants: Vec<Variant> = plan.strategies.iter().map(of_strategy).collect();
+    if first.scene.effects.rest.is_some() {
+        let worlds = variants.iter().filter(|variant| variant.may_be_in_world());
+        let worlds: Vec<Variant> = worlds.cloned().map(Variant::in_world).collect();
+        variants.extend(worlds);
+    }
     let mut calibrations: BTreeMap<CacheLevel, Calibration> = BTreeMap::new();
     for studied in &scenes {
         if let Entry::Vacant(free) = calibrations.entry(studied.level()) {

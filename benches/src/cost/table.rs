@@ -273,6 +273,15 @@ pub struct PriceRow {
     /// F per body that has a hit, seconds; 0 in earlier records.
     #[serde(default = "nothing")]
     pub row: Estimate,
+    /// F per queried body of a world, seconds; 0 in earlier records, as the next two.
+    #[serde(default = "nothing")]
+    pub query: Estimate,
+    /// F per thawed body of a world, in addition, seconds.
+    #[serde(default = "nothing")]
+    pub thaw: Estimate,
+    /// F per kept body of a world, seconds.
+    #[serde(default = "nothing")]
+    pub keep: Estimate,
     /// F per pair passed on, seconds.
     pub handle: Estimate,
     /// Cv of a hit, seconds.
@@ -318,6 +327,9 @@ pub fn prices(priced: &[&Pass], regime: Regime) -> Vec<PriceRow> {
                 frame: over(|c| c.frame),
                 body: over(|c| c.body),
                 row: over(|c| c.row),
+                query: over(|c| c.query),
+                thaw: over(|c| c.thaw),
+                keep: over(|c| c.keep),
                 handle: over(|c| c.handle),
                 hit: over(|c| c.hit),
                 miss: over(|c| c.miss),

@@ -83,8 +83,8 @@ impl<'a, N: Network> Rank<'a, N> {
     /// [`SceneFile::build_share`](crate::scene::SceneFile::build_share) has made it. Collective.
     ///
     /// # Errors
-    /// What depends on the order of all pairs: a budget, and the response to contacts. Settings
-    /// that can't be carried out.
+    /// What depends on the order of all pairs: a budget, and effects that depend on contacts.
+    /// Settings that can't be carried out.
     pub fn new(
         network: &'a N,
         mut scene: Scene,
@@ -306,6 +306,10 @@ fn supported(scene: &Scene, ranks: usize) -> Result<(), DomainError> {
     if ranks > 1 && scene.effects.response.is_some() {
         let hint = "contacts are answered one after the other over all bodies: leave `response` out, or take one process";
         return refuse("effect response".to_owned(), hint);
+    }
+    if ranks > 1 && scene.effects.rest.is_some() {
+        let hint = "how long bodies have been slow isn't sent between ranks: leave `rest` out, or take one process";
+        return refuse("effect rest".to_owned(), hint);
     }
     Ok(())
 }

@@ -91,6 +91,10 @@ impl Effect for Brownian {
         kicked
     }
 
+    fn wakes(&self) -> bool {
+        true
+    }
+
     fn renumber(&mut self, numbers: &[u32]) {
         self.numbers = Some(numbers.to_vec());
     }

@@ -7,9 +7,11 @@
 //! same holds for intermediate f64.
 
 pub mod brownian;
+mod contacts;
 pub mod gravity;
 pub mod motion;
 pub mod response;
+pub mod rest;
 pub mod spin;
 mod velocities;
 pub mod walls;
@@ -59,13 +61,23 @@ pub(crate) fn world_centre(point: [f32; 3], q: &[f32; 4], t: &[f32; 3]) -> [f32;
 /// One way in which bodies change from frame to frame.
 pub trait Effect: Send {
     /// Advances the bodies by one step and returns how many it changed. `dynamic` are the runs of
-    /// bodies that may move; all others stay as they are.
+    /// bodies that may move and aren't asleep; all others stay as they are.
     fn step(
         &mut self,
         bodies: &mut Bodies,
         velocities: &mut Velocities,
         dynamic: &[Range<usize>],
     ) -> u64;
+
+    /// Whether it also reads or changes bodies that are asleep: its runs then include them.
+    fn wakes(&self) -> bool {
+        false
+    }
+
+    /// The runs of bodies that are awake from now on, if the effect puts bodies to sleep.
+    fn awake(&self) -> Option<&[Range<usize>]> {
+        None
+    }
 
     /// Sets which bodies of the scene these are, by their numbers in ascending order. Effects that
     /// draw bodies from the whole scene need them.
@@ -130,12 +142,13 @@ macro_rules! effects {
     };
 }
 
-// Velocities first, then poses from the new velocities (semi-implicit Euler), and the walls last,
-// so that every frame's spheres lie inside of them.
+// Velocities first, then which bodies are asleep, then poses from the new velocities (semi-implicit
+// Euler), and the walls last, so that every frame's spheres lie inside of them.
 effects! {
     gravity,
     brownian,
     response,
+    rest,
     motion,
     spin,
     walls,
@@ -150,7 +163,8 @@ pub struct EffectReport {
     pub listed: bool,
     /// Steps taken.
     pub steps: u64,
-    /// Dynamic bodies, summed over steps: `seconds / visited` is the price per body.
+    /// Bodies that it was given, summed over steps: all dynamic ones, without those asleep unless
+    /// it may wake them. `seconds / visited` is the price per body.
     pub visited: u64,
     /// Bodies changed, summed over steps.
     pub changed: u64,
@@ -164,6 +178,8 @@ pub struct Effects {
     running: Vec<(usize, Box<dyn Effect>)>,
     reports: Vec<EffectReport>,
     dynamic: Vec<Range<usize>>,
+    /// The dynamic bodies that aren't asleep.
+    awake: Vec<Range<usize>>,
 }
 
 impl Effects {
@@ -185,11 +201,13 @@ impl Effects {
         for (place, _) in &running {
             reports[*place].listed = true;
         }
+        let dynamic = runs(&start.bodies.dynamic);
         Ok(Self {
             velocities: start.velocities.clone(),
+            awake: awake(&running).unwrap_or(&dynamic).to_vec(),
             running,
             reports,
-            dynamic: runs(&start.bodies.dynamic),
+            dynamic,
         })
     }
 
@@ -202,17 +220,25 @@ impl Effects {
         if self.running.is_empty() {
             return Ok(());
         }
-        let visited: usize = self.dynamic.iter().map(Range::len).sum();
         for (place, effect) in &mut self.running {
             let start = Instant::now();
-            let changed = effect.step(bodies, &mut self.velocities, &self.dynamic);
+            let runs = match effect.wakes() {
+                true => &self.dynamic,
+                false => &self.awake,
+            };
+            let visited: usize = runs.iter().map(Range::len).sum();
+            let changed = effect.step(bodies, &mut self.velocities, runs);
+            if let Some(awake) = effect.awake() {
+                self.awake.clear();
+                self.awake.extend_from_slice(awake);
+            }
             let report = &mut self.reports[*place];
             report.seconds += start.elapsed().as_secs_f64();
             report.steps += 1;
             report.visited += visited as u64;
             report.changed += changed;
         }
-        self.dynamic
+        self.awake
             .iter()
             .try_for_each(|run| check_poses(bodies, run.clone()))
     }
@@ -224,6 +250,7 @@ impl Effects {
         for (_, effect) in &mut self.running {
             effect.renumber(numbers);
         }
+        self.awake = awake(&self.running).unwrap_or(&moving).to_vec();
         (self.velocities, self.dynamic) = (velocities, moving);
     }
 
@@ -243,6 +270,11 @@ impl Effects {
     pub fn reports(&self) -> &[EffectReport] {
         &self.reports
     }
+}
+
+/// The runs of bodies that are awake, if an effect puts bodies to sleep.
+fn awake(running: &[(usize, Box<dyn Effect>)]) -> Option<&[Range<usize>]> {
+    running.iter().find_map(|(_, effect)| effect.awake())
 }
 
 /// The runs of consecutive `true`.

@@ -1,17 +1,19 @@
-//! A culler of this library as a contestant, timed per stage, and optionally followed by a test of
-//! convex hulls.
+//! A culler or a world of this library as a contestant, timed per stage, and optionally followed by
+//! a test of convex hulls.
 
 use std::time::Instant;
 
 use super::counts::Counts;
+use super::scene_world::SceneWorld;
 use super::waiting_time::WaitingTime;
 use crate::hull_test::HullTest;
 use sdop::bodies::Bodies;
-use sdop::counters::{Counters, VolumeCounters};
+use sdop::counters::{Counters, Seconds, VolumeCounters};
 use sdop::culler::{CullError, Culler};
 use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
+use sdop::world::WorldError;
 use sdop_judge::contestant::Contestant;
 
 /// Seconds of one frame, stage by stage.
@@ -52,14 +54,39 @@ impl StageSeconds {
     }
 }
 
+/// What culls.
+#[derive(Debug)]
+enum Engine {
+    /// It is given all poses.
+    Culler(Box<Culler>),
+    /// It is given the poses that have changed.
+    World(Box<SceneWorld>),
+}
+
+impl Engine {
+    fn cull(&mut self, frame: &Bodies) -> Result<(), WorldError> {
+        match self {
+            Self::Culler(culler) => Ok(culler.cull(frame).map(drop)?),
+            Self::World(world) => world.cull(frame),
+        }
+    }
+
+    fn seconds(&self) -> &Seconds {
+        match self {
+            Self::Culler(culler) => culler.seconds(),
+            Self::World(world) => world.world().seconds(),
+        }
+    }
+}
+
 /// A culler of this library, timed per stage, and optionally followed by a test of convex hulls.
 #[derive(Debug)]
 pub struct Culling {
-    culler: Culler,
+    engine: Engine,
     hulls: Option<HullTest>,
     last: StageSeconds,
     construct: f64,
-    refused: Option<CullError>,
+    refused: Option<WorldError>,
 }
 
 impl Culling {
@@ -78,16 +105,36 @@ impl Culling {
         let culler = Culler::builder().settings(settings).tier(tier);
         let culler = culler.build(shapes, bodies)?;
         let seconds = start.elapsed().as_secs_f64();
-        Ok(Self {
-            culler,
-            hulls: None,
-            last: StageSeconds::default(),
-            construct: (seconds - (waiting.seconds() - waited)).max(0.0),
-            refused: None,
-        })
+        let construct = (seconds - (waiting.seconds() - waited)).max(0.0);
+        Ok(Self::of(Engine::Culler(Box::new(culler)), construct))
     }
 
-    /// Adds a test of each reported pair by its convex hulls.
+    /// Culls bodies in a world, which keeps the pairs of those that haven't moved.
+    ///
+    /// # Errors
+    /// Invalid settings or bodies.
+    pub fn in_world(
+        shapes: &[Shape],
+        bodies: &Bodies,
+        settings: &CullSettings,
+        tier: Tier,
+    ) -> Result<Self, WorldError> {
+        let world = SceneWorld::new(shapes, bodies, settings, tier)?;
+        let construct = world.construct;
+        Ok(Self::of(Engine::World(Box::new(world)), construct))
+    }
+
+    fn of(engine: Engine, construct: f64) -> Self {
+        Self {
+            engine,
+            hulls: None,
+            last: StageSeconds::default(),
+            construct,
+            refused: None,
+        }
+    }
+
+    /// Adds a test of each pair that the culler reports by its convex hulls; none in a world.
     #[must_use]
     pub fn with_hulls(mut self, shapes: &[Shape]) -> Self {
         let start = Instant::now();
@@ -100,7 +147,7 @@ impl Culling {
     ///
     /// # Errors
     /// The error of the first rejected frame; frames of a scene are never rejected.
-    pub fn accepted(&self) -> Result<(), CullError> {
+    pub fn accepted(&self) -> Result<(), WorldError> {
         self.refused.clone().map_or(Ok(()), Err)
     }
 
@@ -118,8 +165,11 @@ impl Culling {
 
     /// The culler's counters, summed over frames.
     #[must_use]
-    pub fn counters(&self) -> &Counters {
-        self.culler.counters()
+    pub fn counters(&self) -> Counters {
+        match &self.engine {
+            Engine::Culler(culler) => *culler.counters(),
+            Engine::World(world) => world.counters(),
+        }
     }
 
     /// The hulls' counters, summed over frames.
@@ -133,7 +183,7 @@ impl Culling {
     #[must_use]
     pub fn counts(&self) -> Counts {
         Counts {
-            culler: *self.counters(),
+            culler: self.counters(),
             hulls: self.hull_counters(),
         }
     }
@@ -141,15 +191,18 @@ impl Culling {
 
 impl Contestant for Culling {
     fn frame(&mut self, frame: &Bodies) {
-        let before = *self.culler.seconds();
+        if let Engine::World(world) = &mut self.engine {
+            world.find_moved(frame);
+        }
+        let before = *self.engine.seconds();
         let start = Instant::now();
-        let answer = self.culler.cull(frame).map(drop);
+        let answer = self.engine.cull(frame);
         self.refused = self.refused.take().or(answer.err());
         let culled = start.elapsed().as_secs_f64();
-        if let Some(hulls) = &mut self.hulls {
-            hulls.cull(frame, self.culler.pairs());
+        if let (Some(hulls), Engine::Culler(culler)) = (&mut self.hulls, &self.engine) {
+            hulls.cull(frame, culler.pairs());
         }
-        let stages = self.culler.seconds().since(&before);
+        let stages = self.engine.seconds().since(&before);
         self.last = StageSeconds {
             update: stages.update,
             finding: culled - stages.update - stages.ordop,
@@ -159,9 +212,10 @@ impl Contestant for Culling {
     }
 
     fn pairs(&self) -> Vec<[u32; 2]> {
-        match &self.hulls {
-            Some(hulls) => hulls.kept.iter().collect(),
-            None => self.culler.pairs().iter().collect(),
+        match (&self.hulls, &self.engine) {
+            (Some(hulls), _) => hulls.kept.iter().collect(),
+            (None, Engine::Culler(culler)) => culler.pairs().iter().collect(),
+            (None, Engine::World(world)) => world.pairs(),
         }
     }
 }

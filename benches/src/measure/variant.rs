@@ -3,10 +3,10 @@
 use super::counts::Volume;
 use super::culling::Culling;
 use crate::scene::Scene;
-use sdop::culler::CullError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::Shape;
+use sdop::world::WorldError;
 
 /// A named way to cull.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -17,6 +17,9 @@ pub struct Variant {
     pub settings: CullSettings,
     /// Whether reported pairs are then tested by their convex hulls.
     pub hulls: bool,
+    /// Whether a world culls, which keeps the pairs of bodies that haven't moved.
+    #[serde(default)]
+    pub in_world: bool,
 }
 
 impl Variant {
@@ -27,6 +30,17 @@ impl Variant {
             name,
             settings,
             hulls: false,
+            in_world: false,
+        }
+    }
+
+    /// The same in a world.
+    #[must_use]
+    pub fn in_world(self) -> Self {
+        Self {
+            name: format!("{}, world", self.name),
+            in_world: true,
+            ..self
         }
     }
 
@@ -38,6 +52,15 @@ impl Variant {
             ..own.clone()
         };
         Self::of(strategy.name().to_owned(), settings)
+    }
+
+    /// Whether a world can cull in this way and keep pairs, by a strategy that lists what its first
+    /// test doesn't reject.
+    #[must_use]
+    pub fn may_be_in_world(&self) -> bool {
+        use Strategy::{Aabb, KDop, SDopSequential, Sphere};
+        let strategy = self.settings.strategy;
+        !self.hulls && matches!(strategy, Sphere | SDopSequential | Aabb | KDop)
     }
 
     /// Spheres alone, with a scene's other settings.
@@ -100,7 +123,7 @@ impl Variant {
     ///
     /// # Errors
     /// Invalid settings.
-    pub fn culling(&self, scene: &Scene, tier: Tier) -> Result<Culling, CullError> {
+    pub fn culling(&self, scene: &Scene, tier: Tier) -> Result<Culling, WorldError> {
         self.culling_of(&self.shapes(scene), scene, tier)
     }
 
@@ -113,7 +136,10 @@ impl Variant {
         shapes: &[Shape],
         scene: &Scene,
         tier: Tier,
-    ) -> Result<Culling, CullError> {
+    ) -> Result<Culling, WorldError> {
+        if self.in_world {
+            return Culling::in_world(shapes, &scene.bodies, &self.settings, tier);
+        }
         let culling = Culling::new(shapes, &scene.bodies, &self.settings, tier)?;
         Ok(if self.hulls {
             culling.with_hulls(shapes)

@@ -203,7 +203,7 @@ fn run(scene: &Scene, lengths: &[u32], tier: Tier) -> Result<Vec<Vec<Counters>>,
     while let Some(bodies) = trajectory.advance()? {
         cullers.iter_mut().for_each(|culler| culler.frame(bodies));
         if lengths.contains(&trajectory.next_number()) {
-            looks.push(cullers.iter().map(|culler| *culler.counters()).collect());
+            looks.push(cullers.iter().map(Culling::counters).collect());
         }
     }
     cullers.iter().try_for_each(Culling::accepted)?;

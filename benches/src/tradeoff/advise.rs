@@ -62,12 +62,26 @@ pub struct Advice {
     pub tied_finders: Vec<String>,
     /// The cheapest variant for each price of a check.
     pub cheapest: Vec<CheapestRange>,
+    /// For a scene with `rest`, the cheapest variant in a world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub world: Option<WorldTimes>,
     /// Every finder, with the scene's S-DOP.
     pub finders: Vec<Candidate>,
     /// Every variant, with the chosen finder.
     pub candidates: Vec<Candidate>,
     /// Other load of the machine.
     pub conditions: Conditions,
+}
+
+/// What a world saves that keeps the pairs of sleeping bodies.
+#[derive(Clone, Debug, Serialize)]
+pub struct WorldTimes {
+    /// The cheapest variant that worlds are timed with.
+    pub variant: String,
+    /// T of a culler, which is given all poses: seconds per warm frame of a run.
+    pub culler: Estimate,
+    /// T of a world, which is given the poses that have changed.
+    pub world: Estimate,
 }
 
 /// One candidate.
@@ -116,6 +130,14 @@ pub fn advise(
         None => Vec::new(),
     };
     let candidates = candidates(&lines, &lines[best], check);
+    let cheapest = |candidate: &Candidate| {
+        let mut variants = variants.iter().filter(|one| one.may_be_in_world());
+        variants.find(|variant| variant.name == candidate.name)
+    };
+    let world = match candidates.iter().find_map(cheapest) {
+        Some(variant) if scene.effects.rest.is_some() => Some(in_world(&scene, variant, tier)?),
+        _ => None,
+    };
     Ok(Some(Advice {
         scene: scene.name,
         bodies: scene.bodies.len(),
@@ -129,9 +151,22 @@ pub fn advise(
         tied_finders,
         cheapest: envelope(&lines),
         conditions: before.after(candidates.iter().map(|candidate| candidate.time)),
+        world,
         finders,
         candidates,
     }))
+}
+
+/// Times a variant in a culler and in a world, on the same frames.
+fn in_world(scene: &Scene, variant: &Variant, tier: Tier) -> Result<WorldTimes, TradeoffError> {
+    let both = [variant.clone(), variant.clone().in_world()];
+    let times = lines_of_a_run(scene, &both, tier)?;
+    let [culler, world] = [0, 1].map(|at| Estimate::in_order(&times[at].times));
+    Ok(WorldTimes {
+        variant: variant.name.clone(),
+        culler,
+        world,
+    })
 }
 
 /// S-DOP with the scene's settings and each finder.

@@ -7,8 +7,8 @@ use super::truth::{Sample, TruePairs};
 use super::variant::Variant;
 use crate::hash::PairsHash;
 use crate::scene::Scene;
+use crate::simulate::SimulationError;
 use sdop::counters::{Counters, VolumeCounters};
-use sdop::culler::CullError;
 use sdop::simd::Tier;
 use sdop_judge::contestant::Contestant;
 
@@ -55,7 +55,7 @@ impl Tally {
         tier: Tier,
         samples: &[Sample],
         truth: &TruePairs,
-    ) -> Result<Self, CullError> {
+    ) -> Result<Self, SimulationError> {
         let mut culling = variant.culling(scene, tier)?;
         let (mut reported, mut found, mut hash) = (0, 0, PairsHash::default());
         for (sample, truth) in samples.iter().zip(truth) {
@@ -72,7 +72,7 @@ impl Tally {
             truth: truth.iter().map(|pairs| pairs.len() as u64).sum(),
             reported,
             found,
-            counters: *culling.counters(),
+            counters: culling.counters(),
             hulls: culling.hull_counters(),
             pairs_sha256: hash.finish(),
         })
@@ -87,7 +87,7 @@ impl Tally {
         variant: &Variant,
         tier: Tier,
         samples: &[Sample],
-    ) -> Result<Self, CullError> {
+    ) -> Result<Self, SimulationError> {
         let nothing = vec![Vec::new(); samples.len()];
         Self::of(scene, variant, tier, samples, &nothing)
     }

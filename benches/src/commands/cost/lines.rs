@@ -49,6 +49,16 @@ pub fn of_cost(cost: &Cost) -> Vec<Line<'_>> {
     // Earlier records have no intervals of terms.
     let widths = cost.widths.iter().map(Some).chain(std::iter::repeat(None));
     for (terms, widths) in cost.terms.iter().zip(widths) {
+        for (term, value) in [
+            ("queried", terms.queried),
+            ("thawed", terms.thawed),
+            ("kept", terms.kept),
+        ] {
+            // Cullers without a world count no such bodies.
+            if value > 0.0 {
+                line(terms.volume.name(), term, "per frame", value, f64::INFINITY);
+            }
+        }
         for (term, unit, value, width) in TERMS {
             let half_width = widths.map_or(f64::INFINITY, width);
             line(terms.volume.name(), term, unit, value(terms), half_width);
@@ -116,6 +126,9 @@ pub fn of_price<'a>(scene: &'a str, price: &'a PriceRow) -> Vec<Line<'a>> {
         ("price F per frame", "s per frame", &price.frame),
         ("price F per body", "s per body and frame", &price.body),
         ("price F per body with hits", "s per body", &price.row),
+        ("price F per queried body", "s per body", &price.query),
+        ("price F per thawed body", "s per body", &price.thaw),
+        ("price F per kept body", "s per body", &price.keep),
         ("price F per listed pair", "s per pair", &price.handle),
         ("price Cv hit", "s per test", &price.hit),
         ("price Cv miss", "s per test", &price.miss),

@@ -13,6 +13,7 @@ mod contacts;
 mod crowds;
 mod exact_touches;
 mod grid;
+mod sleep;
 mod stale_data;
 
 use rand::SeedableRng as _;
@@ -77,6 +78,8 @@ enum CaseDraw {
     Boxes(BoxKind),
     /// Changes of all kinds.
     Stale(StaleKind),
+    /// Bodies that sleep and wake while they touch.
+    Sleep,
     /// Slow approaches.
     Approach(ApproachKind),
     /// Boxes with the additional input of one claim.
@@ -176,6 +179,7 @@ sdop_data::with_hard_cases! { groups! {
     stale_reorder "stale/reorder", 6, CaseDraw::Stale(StaleKind::Reorder), "stale bounds of bodies that get another number", after "fcl #368";
     stale_rebase "stale/rebase", 6, CaseDraw::Stale(StaleKind::Rebase), "stale bounds after another origin", after "newton #4008";
     stale_all_at_once "stale/all-at-once", 6, CaseDraw::Stale(StaleKind::AllAtOnce), "changes that are handled one a frame", after "Jolt #1682 and rapier's #162";
+    stale_sleep "stale/sleep", 6, CaseDraw::Sleep, "verdicts kept while one of two bodies wakes, pairs lost when a body wakes";
     list_both "list/both", 3, CaseDraw::Approach(ApproachKind::Both), "a list kept until one body has moved as far as two together may", after "lammps #1701";
     list_one "list/one", 3, CaseDraw::Approach(ApproachKind::One), "a list kept for a number of frames", after "lammps #4239";
     list_return "list/return", 3, CaseDraw::Approach(ApproachKind::Return), "a list whose age is measured from frame to frame", after "lammps #1701";
@@ -323,6 +327,7 @@ impl CaseGroup {
             CaseDraw::Changes(kind, crowds) => changes::along_an_axis(kind, number - crowds, rng),
             CaseDraw::Boxes(kind) => boxes::boxes(kind, boxes, rng),
             CaseDraw::Stale(kind) => stale_data::changing(kind, number, rng),
+            CaseDraw::Sleep => sleep::touching(number, rng),
             CaseDraw::Approach(kind) => Ok(approaches::approach(kind, number, rng)?),
             CaseDraw::ClaimInput(kind, _) => claim_inputs::with_input(kind, number, rng),
             CaseDraw::Hard(text) => hard_case(text, number, seed),
