@@ -58,7 +58,10 @@ fuzz_target!(|data: &[u8]| {
             let is_judged = |other: &CullSettings| {
                 other.strategy == rows[row].strategy && other.overlap == Overlap::TwoSided
             };
-            let row = rows.iter().position(is_judged).expect("a row of each strategy");
+            let row = rows
+                .iter()
+                .position(is_judged)
+                .expect("a row of each strategy");
             let judged = judge_compounds(&robots, &history, variant, modes(row));
             assert_eq!(judged.expect("histories are valid").failure, None);
             return;

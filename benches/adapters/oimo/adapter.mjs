@@ -1,5 +1,5 @@
 // Oimo.js: the pairs of its broad phases, with a box per body in one world for all frames. A box of
-// another size is a new body. The tree finds pairs of boxes that have moved; like a step's contacts,
+// another size is a new body. The tree finds pairs of boxes that have moved; like those of a step,
 // its pairs are kept until their boxes are apart.
 
 import OIMO from "oimo";

@@ -76,7 +76,7 @@ impl Cube {
 /// slides, and the first goes an ulp away later.
 fn cubes(pair: usize, n: usize, mut at: [f32; 3], axis: usize) -> [Cube; 2] {
     at[(axis + 1) % 3] += SPACING * pair as f32; // few pairs
-    let side = if pair / 2 % 2 == 0 { 1.0 } else { -1.0 };
+    let side = if (pair / 2).is_multiple_of(2) { 1.0 } else { -1.0 };
     let mut other = at;
     other[axis] += side * REACH;
     let moves = pair < MOVING;
@@ -84,7 +84,7 @@ fn cubes(pair: usize, n: usize, mut at: [f32; 3], axis: usize) -> [Cube; 2] {
     let (has_second_moved, has_first_moved) = (moves && n >= begin, moves && n >= begin + SLEEP);
     let across = (axis + 2) % 3;
     let (mut first, mut second) = (None, None);
-    if pair % 2 == 0 {
+    if pair.is_multiple_of(2) {
         second = (moves && !has_second_moved).then_some((axis, side > 0.0));
         at[across] += if has_first_moved { SLIDE } else { 0.0 };
     } else {
