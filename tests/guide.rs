@@ -4,6 +4,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use sdop::mesh::ProceduralShape;
+use sdop::mesh::shapes::ShapeError;
 use sdop_bench::scene::SceneFile;
 
 /// The keys in the first column of the table under a heading.
@@ -44,6 +46,31 @@ fn guide_lists_every_scene_key() {
         ("`[cull]`", format!("{head}{bodies}[cull]\n{WRONG}")),
     ] {
         assert_eq!(described(heading), accepted(&scene), "{heading}");
+    }
+}
+
+/// The guide has every size of every procedural shape.
+#[test]
+fn guide_lists_shape_sizes() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("paper/guide.md");
+    let guide = std::fs::read_to_string(path).unwrap();
+    let (_, section) = guide.split_once("**Sizes of shapes.** ").unwrap();
+    let (section, _) = section.split_once("\n\n").unwrap();
+    let sentences = section.replace('\n', " ");
+    for shape in ProceduralShape::NAMES {
+        let error = ProceduralShape::from_name(shape, &[("zzzzzzzzzzzz", 1.0)]).unwrap_err();
+        let ShapeError::UnknownSize { known, .. } = error else {
+            panic!("{shape}: {error}");
+        };
+        let listed = sentences
+            .split(". ")
+            .find_map(|sentence| {
+                let (shapes, sizes) = sentence.split_once(": ")?;
+                shapes.contains(&format!("`{shape}`")).then_some(sizes)
+            })
+            .unwrap();
+        let listed: Vec<&str> = listed.split('`').skip(1).step_by(2).collect();
+        assert_eq!(listed, known, "{shape}");
     }
 }
 

@@ -1,5 +1,7 @@
 //! Scenes with parts that don't fit together: box and bodies, meshes, effects, culling.
 
+use std::path::Path;
+
 use miette::Diagnostic;
 use sdop_bench::scene::SceneFile;
 
@@ -10,13 +12,13 @@ use super::{SOUND, changed, posed, refusal};
 fn too_small_boxes_are_rejected() {
     assert_eq!(
         changed("side = 20", "side = 1.5"),
-        "a.toml:3:1: a box of side 1.5 is too small for bodies of radius 1.0000001 | the side must be at least 2.0000002, for room \
-         to move well above"
+        "a.toml:3:1: a box of side 1.5 is too small for bodies of radius 1.0000001 | the side must be at least 2.0000002, \
+         and larger for room to move"
     );
     assert_eq!(
         changed("side = 20", "partners = 1e9"),
-        "a.toml:3:1: a box of side 0.0040619657 is too small for bodies of radius 1.0000001 | the side must be at least 2.0000002, for \
-         room to move well above"
+        "a.toml:3:1: a box of side 0.0040619657 is too small for bodies of radius 1.0000001 | the side must be at least 2.0000002, \
+         and larger for room to move"
     );
     assert_eq!(
         changed("[box]\nside = 20\n", ""),
@@ -77,6 +79,13 @@ fn broken_meshes_are_located() {
         hint,
         "mesh paths are relative to the scene file; did you mean `cube.tri`?"
     );
+    // A scene in the working directory has the empty path as its directory.
+    let text = SOUND.replace("shape = \"box\"", "mesh = \"Cargo.tom\"");
+    let here = SceneFile::parse(&text, "a.toml", Path::new("")).unwrap();
+    assert_eq!(
+        here.build().unwrap_err().help().unwrap().to_string(),
+        "mesh paths are relative to the scene file; did you mean `Cargo.toml`?"
+    );
     let (message, _) = refusal("cube.tri");
     assert!(
         message.starts_with("a.toml:6:8: ") && message.contains("cube.tri:1"),
@@ -105,6 +114,14 @@ fn impossible_settings_are_located() {
         with("[effects]\ngravity = -9.81\n"),
         "a.toml:8:11: invalid type: floating point `-9.81`, expected an acceleration such as [0, 0, -9.81], or { acceleration = \
          [0, 0, -9.81] }"
+    );
+    assert_eq!(
+        with("[effects]\nspin = 2\n"),
+        "a.toml:8:8: invalid type: integer `2`, expected a table such as { rate = [0, 2] }, in radians per second"
+    );
+    assert_eq!(
+        with("[effects]\nbrownian = 2\n"),
+        "a.toml:8:12: invalid type: integer `2`, expected a table such as { share = 0.1, speed = [0, 2] }"
     );
     assert!(with("[effects]\ngravity = [0, -9.81]\n").starts_with("a.toml:8:11: invalid length 2"));
     let unknown = with("[effects]\ngravity = { acceleratoin = [0, 0, -9.81] }\n");

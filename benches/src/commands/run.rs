@@ -290,7 +290,7 @@ fn write_text(
     let [p50, p99, most] = [p50, p99, most].map(|seconds| 1e3 * seconds);
     writeln!(
         out,
-        "culling a frame, ms: p50 {p50:.3}, p99 {p99:.3}, most {most:.3}"
+        "culling per frame, ms: p50 {p50:.3}, p99 {p99:.3}, most {most:.3}"
     )?;
     writeln!(out, "{}", volumes(scene.cull.strategy, &summary.counters))?;
     let Counters {
@@ -299,7 +299,7 @@ fn write_text(
     let frames = f64::from(report.frames);
     writeln!(
         out,
-        "reported {reported} pairs ({:.1} a frame), of which untested {untested}",
+        "reported {reported} pairs ({:.1} per frame), of which untested {untested}",
         reported as f64 / frames
     )?;
     writeln!(out, "{}", effects(&summary.effects))?;

@@ -13,7 +13,10 @@ use sdop::bodies::Bodies;
 
 /// `spin = { rate = [min, max] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table such as { rate = [0, 2] }, in radians per second"
+)]
 pub struct Settings {
     /// Range of angular speeds, radians per second.
     pub rate: Interval,

@@ -105,12 +105,12 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     },
     kernels(
         "kernels/tests",
-        "ns an or-DOP test",
+        "ns per or-DOP test",
         &[ExperimentStep::Estimates("tests.csv", &["ordop"])],
     ),
     kernels(
         "kernels/stages",
-        "ns an update and a construction",
+        "ns per update and per construction",
         &[ExperimentStep::Estimates(
             "stages.csv",
             &["update", "construct"],
@@ -118,7 +118,7 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     ),
     kernels(
         "kernels/finders",
-        "ns a body and a first test, by finder",
+        "ns per body and per first test, by finder",
         &[ExperimentStep::Estimates("finders.csv", &["pair_finding"])],
     ),
     kernels(
@@ -128,7 +128,7 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     ),
     kernels(
         "kernels/radii",
-        "a reported pair among radii of one size, 1 : 16 and 1 : 1000",
+        "the cost per reported pair with one size of bodies, with radii 1 : 16 and 1 : 1000",
         &[ExperimentStep::Bench("radii.md", "radii")],
     ),
     kernels(
@@ -143,7 +143,7 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     ),
     kernels(
         "kernels/roofline",
-        "each kernel beside the CPU's ceilings",
+        "each kernel compared with the CPU's limits",
         &[ExperimentStep::Bench("roofline.md", "roofline")],
     ),
     kernels(

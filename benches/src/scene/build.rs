@@ -235,7 +235,7 @@ impl SceneFile {
             let message =
                 format!("a box of side {side} is too small for bodies of radius {widest}");
             let hint = format!(
-                "the side must be at least {}, for room to move well above",
+                "the side must be at least {}, and larger for room to move",
                 2.0 * widest
             );
             return Err(self.wrong(bounds, &message, &hint));

@@ -179,7 +179,11 @@ fn procedural(
 fn nearest_file(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let relative = "mesh paths are relative to the scene file";
-    let Ok(directory) = std::fs::read_dir(path.parent()?) else {
+    let parent = match path.parent()? {
+        empty if empty.as_os_str().is_empty() => Path::new("."),
+        parent => parent,
+    };
+    let Ok(directory) = std::fs::read_dir(parent) else {
         return Some(format!("{relative}; the directory doesn't exist either"));
     };
     let mut names: Vec<String> = directory
