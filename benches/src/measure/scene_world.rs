@@ -1,6 +1,8 @@
 //! A world that is given a scene's frames as an engine gives them: only bodies that have moved are
 //! set.
 
+use std::time::Instant;
+
 use super::waiting_time::WaitingTime;
 use sdop::bodies::Bodies;
 use sdop::counters::Counters;
@@ -9,7 +11,6 @@ use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 use sdop::world::{Body, BodyId, Motion, World, WorldError};
-use std::time::Instant;
 
 /// How far a body moves, to have the world index all bodies before frames are timed.
 const NUDGE: f64 = 1.0;
