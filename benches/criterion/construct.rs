@@ -3,7 +3,7 @@
 mod common;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use sdop_bench::cost::calibrate::construct;
+use sdop_bench::cost::construct::construct;
 use sdop_bench::measure::counts::Volume;
 
 fn constructions(criterion: &mut Criterion) {

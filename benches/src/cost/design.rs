@@ -38,6 +38,10 @@ const SEED: u64 = 0xca11_b8a7_e000_0000;
 /// The number of calibration scenes.
 pub const SCENES: usize = SIZES * DENSITIES;
 
+/// The step from a calibration scene of a round to the next one. It shares no divisor with the
+/// number of scenes.
+pub(super) const SCENE_STEP: usize = 7;
+
 /// The calibration scenes of a scene.
 pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
     let tests_all = scene.cull.pairs == Finder::AllPairs;

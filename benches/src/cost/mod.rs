@@ -19,6 +19,7 @@
 //! | F per listed pair | pairs that are listed for a second test, in addition to the costs of spheres alone | finding, refining |
 
 pub mod calibrate;
+pub mod construct;
 pub mod design;
 mod expected;
 mod explain;

@@ -2,7 +2,8 @@
 //! alternate, so that a drift of the machine affects the prices and the predicted times alike.
 //! Passes are separated in time, and each is one observation.
 
-use super::calibrate::{CalibrationRound, build};
+use super::calibrate::CalibrationRound;
+use super::construct::build;
 use super::predict::Prices;
 use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;

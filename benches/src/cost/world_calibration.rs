@@ -1,7 +1,7 @@
 //! Calibration of worlds, on [scenes](super::world_design) in which most bodies sleep.
 
-use super::calibrate::{SCENE_STEP, volume_seconds};
-use super::design::SCENES;
+use super::construct::volume_seconds;
+use super::design::{SCENE_STEP, SCENES};
 use super::explain::{Round, TurnObservation, VariantTurns};
 use super::explain_world;
 use super::predict::Prices;

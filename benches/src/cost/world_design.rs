@@ -22,7 +22,7 @@ const QUERIED_SHARES: [f64; DENSITIES] = [0.003, 0.006, 0.012, 0.022, 0.04];
 /// Bodies that a mover keeps awake per partner that it would touch.
 const WOKEN_PER_PARTNER: f64 = 1.0;
 /// Radii that slow and fast movers travel per step.
-const RADII_PER_STEP: [f32; 2] = [0.05, 0.5];
+const RADII_PER_STEP: [f32; 2] = [0.05, 1.0];
 /// The limit of speed for rest, and the speed of bodies that aren't movers, in radii per step.
 const REST_LIMIT: f32 = 0.01;
 const SLOW_SPEED: f32 = 0.002;
