@@ -76,7 +76,11 @@ impl Cube {
 /// slides, and the first goes an ulp away later.
 fn cubes(pair: usize, n: usize, mut at: [f32; 3], axis: usize) -> [Cube; 2] {
     at[(axis + 1) % 3] += SPACING * pair as f32; // few pairs
-    let side = if (pair / 2).is_multiple_of(2) { 1.0 } else { -1.0 };
+    let side = if (pair / 2).is_multiple_of(2) {
+        1.0
+    } else {
+        -1.0
+    };
     let mut other = at;
     other[axis] += side * REACH;
     let moves = pair < MOVING;
