@@ -10,6 +10,7 @@ use rand::{Rng, RngExt};
 use super::exact_touches::solids;
 use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
+use crate::contestant::WorldBox;
 use sdop::bodies::Bodies;
 
 /// Pairs that move, and pairs that don't: in a frame fewer than one in sixteen bodies moves.
@@ -43,10 +44,31 @@ pub fn touching(number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueE
                 bodies.push(0, true, UNTURNED, cube.scaled(size));
             }
         }
-        Frame::fitted(bodies, &shapes)
+        let boxes = bodies.translation.iter().map(|&t| about(t, size));
+        Frame {
+            boxes: boxes.collect(),
+            ..Frame::fitted(bodies, &shapes)
+        }
     };
     let frames = (0..FRAMES).map(frame).collect();
     Ok(DrawnCase { shapes, frames })
+}
+
+/// The box of a cube at a place: its own ends, so that boxes touch to the bit where cubes do.
+/// [`Frame::fitted`] would leave room for a rotation's rounding.
+fn about(t: [f32; 3], size: f32) -> WorldBox {
+    let end = |x: f32, way: f32| {
+        let exact = f64::from(x) + f64::from(way * size);
+        let nearest = exact as f32;
+        match f64::from(nearest) - exact {
+            outside if outside * f64::from(way) >= 0.0 => nearest,
+            _ if way < 0.0 => nearest.next_down(),
+            _ => nearest.next_up(),
+        }
+    };
+    let ends = |way| t.map(|x| end(x, way));
+    let ([x0, y0, z0], [x1, y1, z1]) = (ends(-1.0), ends(1.0));
+    [x0, y0, z0, x1, y1, z1]
 }
 
 /// Where a cube is.
