@@ -171,10 +171,7 @@ fn parts_have_composed_poses() {
     }
     assert_eq!(composed.translation()[0], 45.5 + 10.0 * exp2(-20));
     let thirds = ([1.0, 1.0, 1.0, 0.0], [0.0; 3]);
-    assert_eq!(
-        WidePose::composed(thirds, part).map(|pose| pose.translation()[1]),
-        Some(70.0)
-    );
-    let part = (part.0, [1.0, 0.0, 0.0]);
-    assert_eq!(WidePose::composed(thirds, part), None, "a third is no f64");
+    let at = |x: f64| WidePose::composed(thirds, (part.0, [x, 0.0, 0.0]));
+    assert_eq!(at(105.0).map(|pose| pose.translation()[1]), Some(70.0));
+    assert_eq!(at(1.0), None, "two thirds are no f64");
 }
