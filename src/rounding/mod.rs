@@ -65,6 +65,23 @@ pub const fn down(x: f64) -> f32 {
     (x as f32).next_down()
 }
 
+/// The smallest f32 that is at least `x`, itself if it is an f32.
+#[must_use]
+pub const fn ceil_f32(x: f64) -> f32 {
+    let nearest = x as f32;
+    if (nearest as f64) < x {
+        nearest.next_up()
+    } else {
+        nearest
+    }
+}
+
+/// The largest f32 that is at most `x`, itself if it is an f32.
+#[must_use]
+pub const fn floor_f32(x: f64) -> f32 {
+    -ceil_f32(-x)
+}
+
 /// The radius by which a pair finder sorts, bins or sizes its cells, for a radius that the volume
 /// test uses.
 pub const fn widen(radius: f32) -> f32 {

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::{Basis, DirectionSet};
 use crate::mesh::in_f64;
-use crate::rounding::{down, up};
+use crate::rounding::{ceil_f32, down, floor_f32, up};
 
 /// An oriented k-DOP in the body frame: `lo[i] ≤ d_i·x ≤ hi[i]` for every vertex x in exact
 /// arithmetic, with d_i = Σ_j coefficient_ij·column_j.
@@ -97,21 +97,6 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let of_b = sum - a;
     let of_a = sum - of_b;
     (sum, (a - of_a) + (b - of_b))
-}
-
-/// The smallest f32 that is at least `x`.
-fn ceil_f32(x: f64) -> f32 {
-    let nearest = x as f32;
-    if f64::from(nearest) < x {
-        nearest.next_up()
-    } else {
-        nearest
-    }
-}
-
-/// The largest f32 that is at most `x`.
-fn floor_f32(x: f64) -> f32 {
-    -ceil_f32(-x)
 }
 
 #[cfg(test)]

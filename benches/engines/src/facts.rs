@@ -166,6 +166,23 @@ pub fn csv(rows: &[impl Serialize]) -> miette::Result<String> {
     String::from_utf8(out.into_inner().into_diagnostic()?).into_diagnostic()
 }
 
+/// Prints rows as CSV, and writes them to `name`.csv in a directory if there is one.
+pub fn print_csv(
+    rows: &[impl Serialize],
+    directory: Option<&Path>,
+    name: &str,
+) -> miette::Result<()> {
+    let text = csv(rows)?;
+    print!("{text}");
+    let Some(directory) = directory else {
+        return Ok(());
+    };
+    fs::create_dir_all(directory)
+        .and_then(|()| sdop::files::write(&directory.join(name).with_extension("csv"), text))
+        .into_diagnostic()
+        .wrap_err_with(|| format!("writing to {}", directory.display()))
+}
+
 /// Writes `name`.csv, .json and .md.
 pub fn write(
     directory: &Path,

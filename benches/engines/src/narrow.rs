@@ -26,7 +26,7 @@ use serde::Serialize;
 
 use crate::boxes::Frame;
 use crate::entry::{Engine, Entry, Setup, Work};
-use crate::parry;
+use crate::{facts, parry};
 
 /// Measure narrow phases on the pairs that culling leaves
 #[derive(clap::Args)]
@@ -140,17 +140,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
             rows.extend(study(&scene, strategy, args.frames)?);
         }
     }
-    let mut out = csv::Writer::from_writer(Vec::new());
-    for row in &rows {
-        out.serialize(row).into_diagnostic()?;
-    }
-    let text = String::from_utf8(out.into_inner().into_diagnostic()?).into_diagnostic()?;
-    print!("{text}");
-    if let Some(directory) = &args.out {
-        std::fs::create_dir_all(directory).into_diagnostic()?;
-        sdop::files::write(&directory.join("narrow.csv"), text).into_diagnostic()?;
-    }
-    Ok(())
+    facts::print_csv(&rows, args.out.as_deref(), "narrow")
 }
 
 fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<MethodTiming>> {

@@ -83,7 +83,8 @@ impl Contestant<Frame> for Parry {
     }
 }
 
-fn aabb(slabs: &Slabs) -> Aabb {
+/// The box as parry3d's.
+pub fn aabb(slabs: &Slabs) -> Aabb {
     Aabb::new(
         Vector::from_array(lower(slabs)),
         Vector::from_array(upper(slabs)),

@@ -130,8 +130,7 @@ impl Rapier {
     }
 }
 
-/// A pair that begins or ends.
-pub fn change(event: &BroadPhasePairEvent) -> Change {
+fn change(event: &BroadPhasePairEvent) -> Change {
     let (pair, begins) = match event {
         BroadPhasePairEvent::AddPair(pair) => (pair, true),
         BroadPhasePairEvent::DeletePair(pair) => (pair, false),

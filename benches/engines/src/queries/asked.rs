@@ -11,6 +11,7 @@ use sdop_bench::remedy::OrReport as _;
 
 use super::questions::{Question, Questions, RADIUS, Segment};
 use crate::boxes::{Slabs, lower, upper};
+use crate::parry::aabb;
 use crate::threads::Threads;
 
 /// An engine that holds the boxes of some questions.
@@ -58,10 +59,10 @@ enum OurAnswers {
 
 impl Ours {
     pub fn new(questions: &Questions, threads: usize) -> miette::Result<Self> {
-        let index = |boxes: &mut dyn Iterator<Item = Slabs>| -> miette::Result<QueryIndex> {
+        let index = |boxes: &[Slabs]| -> miette::Result<QueryIndex> {
             let mut world = BoxWorld::new();
             for slabs in boxes {
-                let aabb = sdop::Aabb::new(lower(&slabs), upper(&slabs));
+                let aabb = sdop::Aabb::new(lower(slabs), upper(slabs));
                 world.insert(aabb).or_report()?;
             }
             let mut index = QueryIndex::with_threads(threads).or_report()?;
@@ -82,11 +83,8 @@ impl Ours {
             max: upper(slabs).map(f64::from),
         };
         Ok(Self {
-            index: index(&mut questions.boxes.iter().copied())?,
-            halves: [
-                index(&mut even.iter().map(|&(_, slabs)| slabs))?,
-                index(&mut odd.iter().map(|&(_, slabs)| slabs))?,
-            ],
+            index: index(&questions.boxes)?,
+            halves: [index(&even)?, index(&odd)?],
             is_batch: threads > 1,
             probes: questions.probes.iter().map(probe).collect(),
             balls: questions.centres.iter().map(ball).collect(),
@@ -173,20 +171,13 @@ pub struct Parry {
 
 impl Parry {
     pub fn new(questions: &Questions, threads: usize) -> miette::Result<Self> {
-        let build = |boxes: &[Aabb]| Bvh::from_leaves(BvhBuildStrategy::Binned, boxes);
         let boxes: Vec<Aabb> = questions.boxes.iter().map(aabb).collect();
-        let half = |half: &Vec<(u32, Slabs)>| {
-            build(
-                &half
-                    .iter()
-                    .map(|(_, slabs)| aabb(slabs))
-                    .collect::<Vec<_>>(),
-            )
-        };
+        let build = |boxes: &[Aabb]| Bvh::from_leaves(BvhBuildStrategy::Binned, boxes);
+        let half = |half: Vec<Slabs>| build(&half.iter().map(aabb).collect::<Vec<_>>());
         Ok(Self {
             tree: build(&boxes),
             boxes,
-            halves: questions.halves().each_ref().map(half),
+            halves: questions.halves().map(half),
             probes: questions.probes.iter().map(aabb).collect(),
             centres: questions
                 .centres
@@ -263,12 +254,4 @@ impl Asked for Parry {
 pub fn ray([from, to]: &Segment) -> Ray {
     let [from, to] = [from, to].map(|end| Vector::from_array(*end));
     Ray::new(from, to - from)
-}
-
-/// The box as theirs.
-pub fn aabb(slabs: &Slabs) -> Aabb {
-    Aabb::new(
-        Vector::from_array(lower(slabs)),
-        Vector::from_array(upper(slabs)),
-    )
 }

@@ -13,9 +13,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use asked::{Asked, Ours, Parry};
-use miette::IntoDiagnostic as _;
 use questions::{Question, Questions, judge};
-use sdop_bench::measure::turns::{Quartiles, median};
+use sdop_bench::measure::turns::Quartiles;
 use serde::Serialize;
 
 use crate::boxes::Frame;
@@ -94,46 +93,71 @@ pub fn run(args: &Args) -> miette::Result<()> {
         let mut frame = Frame::default();
         Course::new(Spread::Uniform, boxes, Order::Random, 0)?.next_frame(&mut frame)?;
         let questions = Questions::new(frame.boxes, args.questions);
-        for &question in &args.kinds {
-            eprintln!("{boxes} boxes, {question:?}");
-            let truth = questions.truth(question);
-            for threads in [1, args.threads] {
-                let measure = || measure(&questions, question, &truth, threads, args.turns);
-                let measured = match threads {
-                    1 => measure(),
-                    _ => threads::outside_of_pools(measure),
-                };
-                rows.extend(measured?);
-            }
+        let truth = |&question: &Question| (question, questions.truth(question));
+        let truths: Vec<_> = args.kinds.iter().map(truth).collect();
+        for threads in [1, args.threads] {
+            eprintln!("{boxes} boxes, {threads} threads");
+            let measure = || measure(&questions, &truths, threads, args.turns);
+            rows.extend(match threads {
+                1 => measure()?,
+                _ => threads::outside_of_pools(measure)?,
+            });
         }
     }
-    let text = facts::csv(&rows)?;
-    print!("{text}");
-    if let Some(directory) = &args.out {
-        std::fs::create_dir_all(directory).into_diagnostic()?;
-        sdop::files::write(&directory.join("queries.csv"), text).into_diagnostic()?;
-    }
-    Ok(())
+    facts::print_csv(&rows, args.out.as_deref(), "queries")
 }
 
+/// The questions of all kinds, each with its true answers.
 fn measure(
     questions: &Questions,
-    question: Question,
-    truth: &[Vec<u32>],
+    truths: &[(Question, Vec<Vec<u32>>)],
     threads: usize,
     turns: usize,
 ) -> miette::Result<Vec<QueryTiming>> {
-    // rapier3d has no query for two sets.
-    let entries = match question {
-        Question::Sets => &ENTRIES[..2],
-        _ => &ENTRIES[..],
-    };
     let build = |(_, _, new): &AskedEntry| new(questions, threads);
-    let mut engines = entries
-        .iter()
-        .map(build)
-        .collect::<miette::Result<Vec<_>>>()?;
-    let count = questions.count(question);
+    let engines = ENTRIES.iter().map(build);
+    let mut engines = engines.collect::<miette::Result<Vec<_>>>()?;
+    let mut rows = Vec::new();
+    for (question, truth) in truths {
+        // rapier3d has no query for two sets.
+        let count = match question {
+            Question::Sets => 2,
+            _ => ENTRIES.len(),
+        };
+        let asked = &mut engines[..count];
+        let times = take_turns(questions, *question, asked, turns);
+        let timed = ENTRIES.iter().zip(&*asked).zip(&times);
+        rows.extend(timed.map(|((&(engine, version, _), asked), us)| {
+            let answers = asked.answers();
+            let [missed, extra] = judge(*question, truth, &answers);
+            let spread = Quartiles::of(us.clone());
+            QueryTiming {
+                question: *question,
+                boxes: questions.boxes.len(),
+                threads,
+                engine,
+                version,
+                questions: questions.count(*question),
+                answers: answers.iter().map(Vec::len).sum(),
+                missed,
+                extra,
+                us_low: spread.low,
+                us: spread.median,
+                us_high: spread.high,
+                ratio: median_ratio(us, &times[0]),
+            }
+        }));
+    }
+    Ok(rows)
+}
+
+/// Microseconds per question of each engine in each turn but the first, which warms up.
+fn take_turns(
+    questions: &Questions,
+    question: Question,
+    engines: &mut [Box<dyn Asked>],
+    turns: usize,
+) -> Vec<Vec<f64>> {
     let mut times = vec![Vec::new(); engines.len()];
     for turn in 0..=turns {
         for number in 0..engines.len() {
@@ -142,30 +166,9 @@ fn measure(
             engines[number].ask(question);
             let seconds = start.elapsed().as_secs_f64();
             if turn > 0 {
-                times[number].push(1e6 * seconds / count as f64);
+                times[number].push(1e6 * seconds / questions.count(question) as f64);
             }
         }
     }
-    let rows = entries.iter().zip(&engines).zip(&times);
-    let rows = rows.map(|(((engine, version, _), asked), us)| {
-        let answers = asked.answers();
-        let [missed, extra] = judge(question, truth, &answers);
-        let spread = Quartiles::of(us.clone());
-        QueryTiming {
-            question,
-            boxes: questions.boxes.len(),
-            threads,
-            engine,
-            version,
-            questions: count,
-            answers: answers.iter().map(Vec::len).sum(),
-            missed,
-            extra,
-            us_low: spread.low,
-            us: median(us.clone()),
-            us_high: spread.high,
-            ratio: median_ratio(us, &times[0]),
-        }
-    });
-    Ok(rows.collect())
+    times
 }

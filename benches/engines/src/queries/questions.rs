@@ -6,6 +6,7 @@ use sdop_reference::exact::query::{ExactLine, ball_meets_box, fraction, line_mee
 use serde::Serialize;
 
 use crate::boxes::{Slabs, lower, meet, upper};
+use crate::oracle;
 
 /// What is asked of a set of boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -74,10 +75,9 @@ impl Questions {
         }
     }
 
-    /// The bodies with even and with odd numbers.
-    pub fn halves(&self) -> [Vec<(u32, Slabs)>; 2] {
-        let numbered = || (0..).zip(self.boxes.iter().copied());
-        [0, 1].map(|parity| numbered().filter(|(body, _)| body % 2 == parity).collect())
+    /// The boxes with even and with odd numbers.
+    pub fn halves(&self) -> [Vec<Slabs>; 2] {
+        [0, 1].map(|first| self.boxes.iter().skip(first).step_by(2).copied().collect())
     }
 
     /// The true answers, sorted. Those of [`Question::First`] are all boxes that are met at most
@@ -94,38 +94,42 @@ impl Questions {
             }),
             Question::First => self.segments.iter().map(|one| self.first(one)).collect(),
             Question::Sets => {
-                let [even, odd] = self.halves();
-                let partners = |(_, one): &(u32, Slabs)| {
-                    let met = odd.iter().filter(|(_, other)| meet(one, other));
-                    met.map(|&(body, _)| body).collect()
-                };
-                even.iter().map(partners).collect()
+                let mut partners = vec![Vec::new(); self.boxes.len().div_ceil(2)];
+                for [i, j] in oracle::pairs(&self.boxes) {
+                    let [even, odd] = if i % 2 == 0 { [i, j] } else { [j, i] };
+                    if even % 2 != odd % 2 {
+                        partners[even as usize / 2].push(odd);
+                    }
+                }
+                partners.iter_mut().for_each(|odd| odd.sort_unstable());
+                partners
             }
         }
     }
 
-    fn each<Q>(&self, questions: &[Q], holds: impl Fn(&Q, &Slabs) -> bool) -> Vec<Vec<u32>>
-    where
-        Q: Around,
-    {
+    fn each<Q: Around>(
+        &self,
+        questions: &[Q],
+        holds: impl Fn(&Q, &Slabs) -> bool,
+    ) -> Vec<Vec<u32>> {
         let met = |question: &Q| {
-            let around = question.around();
-            let near = (0..)
-                .zip(&self.boxes)
-                .filter(|(_, slabs)| meet(&around, slabs));
+            let near = self.near(question.around());
             let met = near.filter(|(_, slabs)| holds(question, slabs));
             met.map(|(body, _)| body).collect()
         };
         questions.iter().map(met).collect()
     }
 
+    /// The boxes that meet one, with their numbers.
+    fn near(&self, around: Slabs) -> impl Iterator<Item = (u32, &Slabs)> {
+        let all = (0..).zip(&self.boxes);
+        all.filter(move |(_, slabs)| meet(&around, slabs))
+    }
+
     fn first(&self, segment: &Segment) -> Vec<u32> {
         let line = exact(segment);
-        let around = segment.around();
-        let near = (0..)
-            .zip(&self.boxes)
-            .filter(|(_, slabs)| meet(&around, slabs));
-        let met: Vec<_> = near
+        let met: Vec<_> = self
+            .near(segment.around())
             .filter_map(|(body, slabs)| Some((line_meets_box(&line, corners(slabs))?, body)))
             .collect();
         let Some((least, _)) = met.iter().min() else {

@@ -8,9 +8,10 @@ use rapier3d::parry::query::{DefaultQueryDispatcher, Ray};
 use rapier3d::parry::shape::Ball;
 use rapier3d::pipeline::{QueryFilter, QueryPipeline};
 
-use super::asked::{Asked, aabb, each, ray};
+use super::asked::{Asked, each, ray};
 use super::questions::{Question, Questions, RADIUS};
 use crate::boxes::Slabs;
+use crate::parry::aabb;
 use crate::rapier::NO_SKIN;
 use crate::threads::Threads;
 

@@ -7,16 +7,20 @@ mod contenders;
 mod scene;
 
 use std::path::PathBuf;
-use std::time::Instant;
 
-use contenders::{Compounds, Contender, Parry, Parts, Rapier};
-use miette::IntoDiagnostic as _;
+use contenders::{Compounds, PartBoxes, Parts};
 use scene::{PARTS, Robots};
-use sdop_bench::measure::turns::{Quartiles, median};
+use sdop::Body;
+use sdop_bench::measure::turns::{Quartiles, Turns};
+use sdop_judge::contestant::Contestant;
 use serde::Serialize;
 
 use crate::compare::median_ratio;
 use crate::facts;
+use crate::{parry, rapier};
+
+/// Frames of a turn.
+const TURN: usize = 10;
 
 /// Time the pairs of robots' parts
 #[derive(clap::Args)]
@@ -24,7 +28,7 @@ pub struct Args {
     /// Numbers of robots
     #[arg(long, value_delimiter = ',', default_value = "23,100,1000")]
     sizes: Vec<usize>,
-    /// Frames, of which the first fifth is not timed
+    /// Frames, of which the first ten are not timed
     #[arg(long, default_value_t = 100)]
     frames: usize,
     /// Write robots.csv here
@@ -49,79 +53,71 @@ struct RobotTiming {
     ratio: f64,
 }
 
+/// An engine with its name, its version and the milliseconds of its frames.
+type TimedContender = (
+    &'static str,
+    &'static str,
+    Box<dyn Contestant<Vec<Body>>>,
+    Vec<f64>,
+);
+
 /// Checks, measures, prints the table, and writes it if asked to.
 pub fn run(args: &Args) -> miette::Result<()> {
     let mut rows = Vec::new();
     for &count in &args.sizes {
         eprintln!("{count} robots");
-        rows.extend(measure(&Robots::new(count, args.frames.max(5))?)?);
+        let robots = Robots::new(count, args.frames.max(2 * TURN))?;
+        rows.extend(measure(&robots)?);
     }
-    let text = facts::csv(&rows)?;
-    print!("{text}");
-    if let Some(directory) = &args.out {
-        std::fs::create_dir_all(directory).into_diagnostic()?;
-        sdop::files::write(&directory.join("robots.csv"), text).into_diagnostic()?;
-    }
-    Ok(())
+    facts::print_csv(&rows, args.out.as_deref(), "robots")
 }
 
 fn measure(robots: &Robots) -> miette::Result<Vec<RobotTiming>> {
     let ours = env!("CARGO_PKG_VERSION");
-    let mut engines: Vec<(&str, &str, Box<dyn Contender>)> = vec![
-        (
-            "sdop, bodies of parts",
-            ours,
-            Box::new(Compounds::new(robots)?),
-        ),
-        ("sdop, a body per part", ours, Box::new(Parts::new(robots)?)),
-        (
-            "parry3d",
-            crate::parry::VERSION,
-            Box::new(Parry::new(robots)),
-        ),
-        (
-            "rapier3d",
-            crate::rapier::VERSION,
-            Box::new(Rapier::new(robots)),
-        ),
+    let (compounds, parts) = (Compounds::new(robots)?, Parts::new(robots)?);
+    let mut all: Vec<TimedContender> = vec![
+        ("sdop, bodies of parts", ours, Box::new(compounds), vec![]),
+        ("sdop, a body per part", ours, Box::new(parts), vec![]),
     ];
-    let mut times = vec![Vec::new(); engines.len()];
-    for (number, poses) in robots.frames.iter().enumerate() {
-        for turn in 0..engines.len() {
-            let turn = (turn + number) % engines.len();
-            let start = Instant::now();
-            engines[turn].2.frame(robots, poses);
-            let ms = 1e3 * start.elapsed().as_secs_f64();
-            engines[turn].2.settle();
-            if number >= robots.frames.len() / 5 {
-                times[turn].push(ms);
+    for entry in [&parry::ENTRIES[0], &rapier::ENTRIES[0]] {
+        let engine = PartBoxes::new(robots, entry)?;
+        all.push((entry.name, entry.version, Box::new(engine), vec![]));
+    }
+    let mut turns = Turns::default();
+    for (turn, frames) in robots.frames.chunks(TURN).enumerate() {
+        let engines = all.iter_mut().map(|(_, _, engine, ms)| (engine, ms));
+        let (mut engines, mut times): (Vec<_>, Vec<_>) = engines.unzip();
+        turns.round(&mut engines, frames, |timed| {
+            if turn > 0 {
+                times[timed.number].push(1e3 * timed.seconds);
             }
-        }
+        });
     }
     let last = robots.frames.last().map_or(&[][..], Vec::as_slice);
     let truth = robots.truth(last)?;
-    let rows = engines
-        .iter()
-        .zip(&times)
-        .map(|((engine, version, found), ms)| {
-            let pairs = found.pairs();
-            let missed = truth
-                .iter()
-                .filter(|pair| pairs.binary_search(pair).is_err());
-            let spread = Quartiles::of(ms.clone());
-            RobotTiming {
-                robots: robots.count(),
-                parts: robots.count() * PARTS,
-                engine,
-                version,
-                meeting: truth.len(),
-                missed: missed.count(),
-                pairs: pairs.len(),
-                ms_low: spread.low,
-                ms: median(ms.clone()),
-                ms_high: spread.high,
-                ratio: median_ratio(ms, &times[0]),
-            }
-        });
+    let base = all[0].3.clone();
+    let rows = all.into_iter().map(|(engine, version, found, ms)| {
+        let mut pairs = found.pairs();
+        pairs.iter_mut().for_each(|pair| pair.sort_unstable());
+        pairs.sort_unstable();
+        let missed = truth
+            .iter()
+            .filter(|pair| pairs.binary_search(pair).is_err());
+        let ratio = median_ratio(&ms, &base);
+        let spread = Quartiles::of(ms);
+        RobotTiming {
+            robots: robots.count(),
+            parts: robots.count() * PARTS,
+            engine,
+            version,
+            meeting: truth.len(),
+            missed: missed.count(),
+            pairs: pairs.len(),
+            ms_low: spread.low,
+            ms: spread.median,
+            ms_high: spread.high,
+            ratio,
+        }
+    });
     Ok(rows.collect())
 }

@@ -2,44 +2,33 @@
 
 use miette::IntoDiagnostic as _;
 use sdop::compound::Part;
+use sdop::rounding::compose::product;
+use sdop::rounding::pose::{rotate_of, rotation};
 use sdop::volume::ShapeSpec;
-use sdop::{ProceduralShape, Shape};
+use sdop::{Body, ProceduralShape, Shape};
 use sdop_bench::random::Stream;
 use sdop_bench::remedy::OrReport as _;
 use sdop_reference::WidePose;
 use sdop_reference::wide::meet;
 
+use crate::boxes::Slabs;
+
 /// The parts of a robot.
 pub const PARTS: usize = 30;
 
-/// Half sides of the shapes.
-pub const HALF_SIDES: [[f32; 3]; 3] = [[0.5, 0.25, 0.25], [0.25, 0.5, 0.125], [0.375; 3]];
+/// Half sides of the parts' shapes.
+const HALF_SIDES: [[f32; 3]; 3] = [[0.5, 0.25, 0.25], [0.25, 0.5, 0.125], [0.375; 3]];
 
-/// The pose of a robot.
-#[derive(Clone, Copy)]
-pub struct RobotPose {
-    pub rotation: [f32; 4],
-    pub translation: [f64; 3],
-}
+/// No part reaches farther from its origin.
+const REACH: f64 = 0.66;
 
-/// The pose of one part in the world frame: a unit quaternion and a translation.
-#[derive(Clone, Copy)]
-pub struct PartPose {
-    pub shape: usize,
-    pub rotation: [f64; 4],
-    pub translation: [f64; 3],
-}
-
-/// Robots and where they are in each frame.
+/// Robots and where they are in each frame. Parts are numbered robot by robot.
 pub struct Robots {
     pub shapes: Vec<Shape>,
     /// The parts of every robot.
     pub parts: Vec<Part>,
-    pub frames: Vec<Vec<RobotPose>>,
+    pub frames: Vec<Vec<Body>>,
 }
-
-/// A part of a robot, and of another one.
-pub type Meeting = [[u32; 2]; 2];
 
 impl Robots {
     /// So many robots, each with three others within reach on average.
@@ -63,43 +52,30 @@ impl Robots {
         self.frames[0].len()
     }
 
-    /// The parts of all robots where they are in the world.
-    pub fn posed<'a>(&'a self, robots: &'a [RobotPose]) -> impl Iterator<Item = PartPose> + 'a {
-        robots
-            .iter()
-            .flat_map(|robot| self.parts.iter().map(|part| composed(robot, part)))
-    }
-
-    /// All pairs of parts of two robots whose meshes meet, sorted. Poses are composed in f64.
-    pub fn truth(&self, robots: &[RobotPose]) -> miette::Result<Vec<Meeting>> {
+    /// All pairs of parts of two robots whose meshes meet, sorted.
+    pub fn truth(&self, robots: &[Body]) -> miette::Result<Vec<[u32; 2]>> {
         let mesh = |shape: &Shape| {
             let (vertices, triangles) = (shape.vertices.clone(), shape.triangles.clone());
             sdop_reference::Shape::of_mesh(vertices, triangles).into_diagnostic()
         };
-        let meshes = self
-            .shapes
-            .iter()
-            .map(mesh)
-            .collect::<miette::Result<Vec<_>>>()?;
-        let parts: Vec<PartPose> = self.posed(robots).collect();
-        let wide =
-            |part: &PartPose| WidePose::new(part.rotation, part.translation).into_diagnostic();
-        let poses = parts.iter().map(wide).collect::<miette::Result<Vec<_>>>()?;
+        let meshes = self.shapes.iter().map(mesh);
+        let meshes = meshes.collect::<miette::Result<Vec<_>>>()?;
+        let wide = |part: Body| {
+            let pose = WidePose::new(part.rotation.map(f64::from), part.translation);
+            Ok((part, pose.into_diagnostic()?))
+        };
+        let parts = posed(&self.parts, robots).map(wide);
+        let parts = parts.collect::<miette::Result<Vec<_>>>()?;
         let mut meeting = Vec::new();
-        for (i, one) in parts.iter().enumerate() {
-            for (j, other) in parts.iter().enumerate().skip((i / PARTS + 1) * PARTS) {
+        for (i, (one, pose)) in parts.iter().enumerate() {
+            for (j, (other, there)) in parts.iter().enumerate().skip((i / PARTS + 1) * PARTS) {
                 let apart = [0, 1, 2].map(|axis| one.translation[axis] - other.translation[axis]);
-                // No part reaches farther than 0.65 from its origin.
-                if apart.iter().map(|x| x * x).sum::<f64>() > 1.7 {
+                if apart.iter().any(|x| x.abs() > 2.0 * REACH) {
                     continue;
                 }
-                if meet(
-                    (&meshes[one.shape], &poses[i]),
-                    (&meshes[other.shape], &poses[j]),
-                )
-                .meets
-                {
-                    meeting.push([named(i), named(j)]);
+                let [mesh, partner] = [one, other].map(|part| &meshes[part.shape as usize]);
+                if meet((mesh, pose), (partner, there)).meets {
+                    meeting.push([i as u32, j as u32]);
                 }
             }
         }
@@ -107,9 +83,31 @@ impl Robots {
     }
 }
 
-/// The robot and the part of a part's number among all.
-pub fn named(number: usize) -> [u32; 2] {
-    [number / PARTS, number % PARTS].map(|n| n as u32)
+/// The parts of all robots where they are in the world, with rotations rounded to f32.
+pub fn posed<'a>(parts: &'a [Part], robots: &'a [Body]) -> impl Iterator<Item = Body> + 'a {
+    let composed = |robot: &Body, part: &Part| {
+        let turned = rotate_of(&rotation(robot.rotation), part.translation);
+        Body::at(
+            part.shape,
+            product(robot.rotation, part.rotation),
+            [0, 1, 2].map(|axis| robot.translation[axis] + turned[axis]),
+        )
+    };
+    let of = move |robot| parts.iter().map(move |part| composed(robot, part));
+    robots.iter().flat_map(of)
+}
+
+/// The box about a part on the world's axes, in f32.
+pub fn slabs(part: &Body) -> Slabs {
+    let half_sides = HALF_SIDES[part.shape as usize];
+    let rows = rotation(part.rotation);
+    [0, 1, 2].map(|axis| {
+        let half: f32 = (0..3)
+            .map(|i| rows[axis][i].abs() as f32 * half_sides[i])
+            .sum();
+        let middle = part.translation[axis] as f32;
+        [middle - half, middle + half]
+    })
 }
 
 /// Parts as the links of a tree: each at an end of an earlier one, turned by any angle.
@@ -131,59 +129,27 @@ fn tree(random: &mut Stream) -> Vec<Part> {
 }
 
 /// Straight flights in a box with elastic walls, each robot turning about an axis of its own.
-fn fly(count: usize, frames: usize, random: &mut Stream) -> Vec<Vec<RobotPose>> {
+fn fly(count: usize, frames: usize, random: &mut Stream) -> Vec<Vec<Body>> {
     let half = 3.35 * (count as f64).cbrt();
-    let place =
-        |random: &mut Stream| [(); 3].map(|()| half * (2.0 * f64::from(random.unit()) - 1.0));
-    let mut robots: Vec<RobotPose> = (0..count)
-        .map(|_| RobotPose {
-            rotation: random.rotation(),
-            translation: place(random),
-        })
-        .collect();
-    let mut steps: Vec<[f64; 3]> = (0..count)
-        .map(|_| random.direction().map(|x| 0.1 * f64::from(x)))
-        .collect();
-    let turns: Vec<[f32; 3]> = (0..count).map(|_| random.direction()).collect();
-    let mut all = vec![robots.clone()];
-    while all.len() < frames {
-        for ((robot, step), axis) in robots.iter_mut().zip(&mut steps).zip(&turns) {
-            for (x, step) in robot.translation.iter_mut().zip(step) {
+    let mut start = || {
+        let place = [(); 3].map(|()| half * (2.0 * f64::from(random.unit()) - 1.0));
+        let step = random.direction().map(|x| 0.1 * f64::from(x));
+        let [x, y, z] = random.direction().map(|x| 0.02 * x);
+        (Body::at(0, random.rotation(), place), step, [x, y, z, 1.0])
+    };
+    let mut robots: Vec<_> = (0..count).map(|_| start()).collect();
+    let mut all = Vec::new();
+    for _ in 0..frames {
+        all.push(robots.iter().map(|(robot, ..)| *robot).collect());
+        for (robot, steps, turn) in &mut robots {
+            for (x, step) in robot.translation.iter_mut().zip(steps) {
                 *x += *step;
                 if x.abs() > half {
                     *step = step.abs() * -x.signum();
                 }
             }
-            let [x, y, z] = axis.map(|x| 0.02 * f64::from(x));
-            let turned = product([x, y, z, 1.0], robot.rotation.map(f64::from));
-            robot.rotation = unit(turned).map(|x| x as f32);
+            robot.rotation = product(*turn, robot.rotation);
         }
-        all.push(robots.clone());
     }
     all
-}
-
-fn composed(robot: &RobotPose, part: &Part) -> PartPose {
-    let q = unit(robot.rotation.map(f64::from));
-    let [x, y, z] = part.translation;
-    let turned = product(product(q, [x, y, z, 0.0]), [-q[0], -q[1], -q[2], q[3]]);
-    PartPose {
-        shape: part.shape as usize,
-        rotation: unit(product(q, part.rotation.map(f64::from))),
-        translation: [0, 1, 2].map(|axis| robot.translation[axis] + turned[axis]),
-    }
-}
-
-fn product([x, y, z, w]: [f64; 4], [a, b, c, d]: [f64; 4]) -> [f64; 4] {
-    [
-        w * a + x * d + y * c - z * b,
-        w * b - x * c + y * d + z * a,
-        w * c + x * b - y * a + z * d,
-        w * d - x * a - y * b - z * c,
-    ]
-}
-
-fn unit(q: [f64; 4]) -> [f64; 4] {
-    let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-    q.map(|x| x / norm)
 }

@@ -12,6 +12,7 @@ use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use crate::contestant::WorldBox;
 use sdop::bodies::Bodies;
+use sdop::rounding::{ceil_f32, floor_f32};
 
 /// Pairs that move, and pairs that don't: in a frame fewer than one in sixteen bodies moves.
 const MOVING: usize = 16;
@@ -57,17 +58,10 @@ pub fn touching(number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueE
 /// The box of a cube at a place: its own ends, so that boxes touch to the bit where cubes do.
 /// [`Frame::fitted`] would leave room for a rotation's rounding.
 fn about(t: [f32; 3], size: f32) -> WorldBox {
-    let end = |x: f32, way: f32| {
-        let exact = f64::from(x) + f64::from(way * size);
-        let nearest = exact as f32;
-        match f64::from(nearest) - exact {
-            outside if outside * f64::from(way) >= 0.0 => nearest,
-            _ if way < 0.0 => nearest.next_down(),
-            _ => nearest.next_up(),
-        }
-    };
-    let ends = |way| t.map(|x| end(x, way));
-    let ([x0, y0, z0], [x1, y1, z1]) = (ends(-1.0), ends(1.0));
+    let [x, y, z] = t.map(f64::from);
+    let size = f64::from(size);
+    let [x0, y0, z0] = [x, y, z].map(|x| floor_f32(x - size));
+    let [x1, y1, z1] = [x, y, z].map(|x| ceil_f32(x + size));
     [x0, y0, z0, x1, y1, z1]
 }
 
