@@ -44,6 +44,9 @@ static void ask(const SdopBoxWorld *world, uint64_t near, uint64_t far) {
     sdop_query_index_free(index);
 }
 
+/* Writes an event to where `user` points. */
+static void take_last(void *user, SdopPeriodicEvent event) { *(SdopPeriodicEvent *)user = event; }
+
 /* A cell that repeats along x and y: which boxes meet, and in which image? */
 static void periodic_cell(void) {
     const double cell[3] = {10, 10, 0}; /* z has no period */
@@ -62,12 +65,17 @@ static void periodic_cell(void) {
     assert(count == 1 && pair.bodies.first == ids[0] && pair.bodies.second == ids[1]);
     assert(pair.image[0] == -1 && pair.image[1] == 0 && pair.image[2] == 0);
     printf("the second box meets the first, moved by %" PRId32 " periods along x\n", pair.image[0]);
+    SdopPeriodicEvent event;
+    check(sdop_periodic_boxes_events(world, take_last, &event));
+    assert(event.kind == SDOP_EVENT_KIND_BEGUN && event.pair.image[0] == -1);
 
     boxes[1].min[0] = 8.5;
     boxes[1].max[0] = 9.5;
     check(sdop_periodic_boxes_set(world, ids, boxes, 2)); /* in each step */
     check(sdop_periodic_boxes_cull(world, &count));
     assert(count == 0);
+    check(sdop_periodic_boxes_events(world, take_last, &event));
+    assert(event.kind == SDOP_EVENT_KIND_ENDED && event.pair.image[0] == -1);
     boxes[1].max[0] = 13.5;
     assert(sdop_periodic_boxes_set(world, &ids[1], &boxes[1], 1) == SDOP_STATUS_REFUSED);
     printf("%s\n", sdop_last_error());

@@ -147,7 +147,7 @@ pub fn call(run: impl FnOnce() -> Result<(), Refusal>) -> SdopStatus {
     status
 }
 
-fn null(what: &str) -> Refusal {
+pub fn null(what: &str) -> Refusal {
     Refusal::new(
         SdopStatus::Null,
         format!("{what} is null\nhelp: pass a pointer"),

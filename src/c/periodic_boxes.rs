@@ -1,13 +1,14 @@
 //! Long-lived worlds of boxes in which space repeats along some axes.
 
-use std::ffi::c_char;
+use std::ffi::{c_char, c_void};
 
 use super::border::{
-    Refusal, SdopIdPair, SdopStatus, call, column, fill, free, give, handle, put, shared,
+    Refusal, SdopEventKind, SdopIdPair, SdopStatus, call, column, fill, free, give, handle, null,
+    put, shared,
 };
 use super::boxes::builder;
 use crate::bodies::{Groups, Motion};
-use crate::periodic::{PeriodicBox, PeriodicBoxes, PeriodicPair};
+use crate::periodic::{PeriodicBox, PeriodicBoxes, PeriodicEvents, PeriodicPair};
 use crate::world::BodyId;
 
 /// A long-lived set of boxes in space that repeats along some axes.
@@ -61,6 +62,20 @@ impl From<&PeriodicPair> for SdopPeriodicPair {
         }
     }
 }
+
+/// A pair of a periodic world and how it has changed. A pair that has ended has its former image.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct SdopPeriodicEvent {
+    /// How it has changed.
+    pub kind: SdopEventKind,
+    /// The pair.
+    pub pair: SdopPeriodicPair,
+}
+
+/// Receives an event of a periodic world, after the pointer that was passed along. Must return
+/// normally.
+pub type SdopTakePeriodicEvent = Option<unsafe extern "C" fn(*mut c_void, SdopPeriodicEvent)>;
 
 /// The periods that C gives: 0 for an axis without one.
 ///
@@ -273,4 +288,47 @@ pub unsafe extern "C" fn sdop_periodic_boxes_pairs(
         // SAFETY: the caller's promise.
         unsafe { fill(pairs, buffer, capacity, count) }
     })
+}
+
+/// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+/// function. Two boxes are one pair, in whatever image they meet.
+///
+/// # Safety
+/// `world` is a handle; `take` may be called with `user`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_events(
+    world: *mut SdopPeriodicBoxes,
+    take: SdopTakePeriodicEvent,
+    user: *mut c_void,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        unsafe { pass_periodic_events(&it.0.events(), take, user) }
+    })
+}
+
+/// Passes events to a callback.
+///
+/// # Safety
+/// The callback may be called with this pointer.
+pub(super) unsafe fn pass_periodic_events(
+    events: &PeriodicEvents,
+    take: SdopTakePeriodicEvent,
+    user: *mut c_void,
+) -> Result<(), Refusal> {
+    let take = take.ok_or_else(|| null("take"))?;
+    let kinds = [
+        (SdopEventKind::Begun, events.begun()),
+        (SdopEventKind::Persisting, events.persisting()),
+        (SdopEventKind::Ended, events.ended()),
+    ];
+    for (kind, pairs) in kinds {
+        for pair in pairs.iter().map(SdopPeriodicPair::from) {
+            // SAFETY: the caller's promise.
+            unsafe { take(user, SdopPeriodicEvent { kind, pair }) };
+        }
+    }
+    Ok(())
 }

@@ -1,8 +1,12 @@
 //! Long-lived worlds of meshes in which space repeats along some axes.
 
+use std::ffi::c_void;
+
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
 use super::border::{SdopStatus, call, column, fill, free, give, handle, put, shared};
-use super::periodic_boxes::{SdopPeriodicPair, periods};
+use super::periodic_boxes::{
+    SdopPeriodicPair, SdopTakePeriodicEvent, pass_periodic_events, periods,
+};
 use super::world::SdopBody;
 use crate::periodic::PeriodicWorld;
 use crate::world::{Body, BodyId};
@@ -201,5 +205,24 @@ pub unsafe extern "C" fn sdop_periodic_world_pairs(
         let pairs = it.0.pairs().iter().map(SdopPeriodicPair::from);
         // SAFETY: the caller's promise.
         unsafe { fill(pairs, buffer, capacity, count) }
+    })
+}
+
+/// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+/// function. Two bodies are one pair, in whatever image they touch.
+///
+/// # Safety
+/// `world` is a handle; `take` may be called with `user`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_events(
+    world: *mut SdopPeriodicWorld,
+    take: SdopTakePeriodicEvent,
+    user: *mut c_void,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(world, "world") }?;
+        // SAFETY: the caller's promise.
+        unsafe { pass_periodic_events(&it.0.events(), take, user) }
     })
 }

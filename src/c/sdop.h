@@ -216,6 +216,18 @@ typedef struct {
   int32_t image[3];
 } SdopPeriodicPair;
 
+// A pair of a periodic world and how it has changed. A pair that has ended has its former image.
+typedef struct {
+  // How it has changed.
+  SdopEventKind kind;
+  // The pair.
+  SdopPeriodicPair pair;
+} SdopPeriodicEvent;
+
+// Receives an event of a periodic world, after the pointer that was passed along. Must return
+// normally.
+typedef void (*SdopTakePeriodicEvent)(void*, SdopPeriodicEvent);
+
 // A body to be inserted.
 typedef struct {
   // Number of its shape.
@@ -639,6 +651,13 @@ SdopStatus sdop_periodic_boxes_pairs(const SdopPeriodicBoxes *world,
                                      size_t capacity,
                                      size_t *count);
 
+// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+// function. Two boxes are one pair, in whatever image they meet.
+//
+// # Safety
+// `world` is a handle; `take` may be called with `user`.
+SdopStatus sdop_periodic_boxes_events(SdopPeriodicBoxes *world, SdopTakePeriodicEvent take, void *user);
+
 // Makes a world without bodies. `periods` are three lengths along x, y and z, 0 for an axis
 // without a period. `options` may be null for the defaults.
 //
@@ -715,6 +734,13 @@ SdopStatus sdop_periodic_world_pairs(const SdopPeriodicWorld *world,
                                      SdopPeriodicPair *buffer,
                                      size_t capacity,
                                      size_t *count);
+
+// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
+// function. Two bodies are one pair, in whatever image they touch.
+//
+// # Safety
+// `world` is a handle; `take` may be called with `user`.
+SdopStatus sdop_periodic_world_events(SdopPeriodicWorld *world, SdopTakePeriodicEvent take, void *user);
 
 // Makes an index without bodies.
 //
