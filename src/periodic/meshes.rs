@@ -61,7 +61,11 @@ impl ImageWorld for World {
             if !(4.0 * half < period) {
                 return Err(periods.size_error(slot, axis, 2.0 * half));
             }
-            let n = (middle[axis] / period).round();
+            let n = if middle[axis].abs() < 0.5 * period {
+                0.0
+            } else {
+                (middle[axis] / period).round()
+            };
             periods.check_position(slot, axis, n * period)?;
             place.shift[axis] -= n as i32;
             let middle = middle[axis] - n * period;

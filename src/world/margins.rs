@@ -5,8 +5,6 @@
 //! margin, rounding errors of local translations share one class as long as they are below 2⁻¹² of
 //! the shape.
 
-use std::collections::HashMap;
-
 use crate::bodies::contract::{ContractError, refuse};
 use crate::rounding::{LIMIT, exp2};
 
@@ -19,7 +17,10 @@ const MOST_UNSWEPT_CLASSES: usize = 64;
 /// The models of each shape in each used class.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Margins {
-    models: HashMap<(u32, u32), u32>,
+    /// By the number of a shape among the models: its classes, sorted, and the model of each.
+    classes: Vec<Vec<(u32, u32)>>,
+    /// The number of all classes.
+    len: usize,
     /// Number of models in use at the last [`Self::sweep`].
     in_use: usize,
 }
@@ -44,41 +45,56 @@ impl Margins {
             0.0
         };
         let class = class_of(f64::from(margin) + moved);
-        *self
-            .models
-            .entry((shape, class))
-            .or_insert_with(|| grow(shape, f32::from_bits(class)))
+        let number = shape as usize;
+        if self.classes.len() <= number {
+            self.classes.resize(number + 1, Vec::new());
+        }
+        let classes = &mut self.classes[number];
+        match classes.binary_search_by_key(&class, |&(class, _)| class) {
+            Ok(at) => classes[at].1,
+            Err(at) => {
+                let grown = grow(shape, f32::from_bits(class));
+                classes.insert(at, (class, grown));
+                self.len += 1;
+                grown
+            }
+        }
     }
 
     /// Removes the models grown from a shape's, by `remove`.
-    pub fn remove(&mut self, shape: u32, remove: impl FnMut(u32)) {
-        self.keep(|of, _| of != shape, remove);
+    pub fn remove(&mut self, shape: u32, mut remove: impl FnMut(u32)) {
+        if let Some(classes) = self.classes.get_mut(shape as usize) {
+            let classes = std::mem::take(classes);
+            self.len -= classes.len();
+            classes.iter().for_each(|&(_, grown)| remove(grown));
+        }
     }
 
     /// Whether more models may be unused than were in use at the last sweep.
     pub fn are_many(&self) -> bool {
-        self.models.len() > MOST_UNSWEPT_CLASSES + 2 * self.in_use
+        self.len > MOST_UNSWEPT_CLASSES + 2 * self.in_use
     }
 
     /// Removes the models that are not in use.
-    pub fn sweep(&mut self, used: &[bool], remove: impl FnMut(u32)) {
-        self.keep(|_, grown| used[grown as usize], remove);
-        self.in_use = self.models.len();
+    pub fn sweep(&mut self, used: &[bool], mut remove: impl FnMut(u32)) {
+        for classes in &mut self.classes {
+            classes.retain(|&(_, grown)| {
+                let is_used = used[grown as usize];
+                if !is_used {
+                    remove(grown);
+                }
+                is_used
+            });
+            classes.shrink_to_fit();
+        }
+        self.len = self.classes.iter().map(Vec::len).sum();
+        self.in_use = self.len;
     }
 
     /// Frees the memory of removed models.
     pub fn shrink_to_fit(&mut self) {
-        self.models.shrink_to_fit();
-    }
-
-    fn keep(&mut self, is_kept: impl Fn(u32, u32) -> bool, mut remove: impl FnMut(u32)) {
-        self.models.retain(|&(shape, _), &mut grown| {
-            let is_kept = is_kept(shape, grown);
-            if !is_kept {
-                remove(grown);
-            }
-            is_kept
-        });
+        while self.classes.pop_if(|classes| classes.is_empty()).is_some() {}
+        self.classes.shrink_to_fit();
     }
 }
 

@@ -5,6 +5,7 @@
 //! (theorem T).
 
 use crate::rounding::exp2;
+use crate::rounding::query::largest;
 
 /// √3·2⁻²⁴ < 2⁻²³: the largest distance by which rounding the local translation to f64 and then to
 /// f32 moves a body, as a multiple of its largest coordinate.
@@ -29,21 +30,31 @@ pub(super) type PlacedBody = (usize, [f64; 3], f64);
 
 impl Region {
     /// The local translation, and the bound of its error: 0 if no step is rounded.
+    #[inline]
     pub fn place(&self, t: [f64; 3]) -> ([f32; 3], f64) {
-        let (mut far, mut near, mut exact) = (0.0_f64, 0.0_f64, true);
-        let local = std::array::from_fn(|i| {
-            let (first, lost) = difference(t[i], self.origin[i]);
-            let (second, lost_again) = difference(first, self.corner[i]);
-            let local = second as f32;
-            exact &= lost == 0.0 && lost_again == 0.0 && f64::from(local) == second;
-            far = far.max(first.abs());
-            near = near.max(second.abs());
-            local
-        });
-        if exact {
+        let (far, near, is_exact) = if *self == Self::default() {
+            (t, t, true)
+        } else {
+            self.differences(t)
+        };
+        let local = near.map(|x| x as f32);
+        if is_exact && local.map(f64::from) == near {
             return (local, 0.0);
         }
-        (local, near * MOVED + far * MOVED_BEFORE + MOVED_LEAST)
+        let error = largest(near) * MOVED + largest(far) * MOVED_BEFORE + MOVED_LEAST;
+        (local, error)
+    }
+
+    /// The differences from the origin, and those from the corner then, and whether all are exact.
+    fn differences(&self, t: [f64; 3]) -> ([f64; 3], [f64; 3], bool) {
+        let from_origin = [0, 1, 2].map(|i| difference(t[i], self.origin[i]));
+        let far = from_origin.map(|(sum, _)| sum);
+        let from_corner = [0, 1, 2].map(|i| difference(far[i], self.corner[i]));
+        let is_exact = from_origin
+            .iter()
+            .chain(&from_corner)
+            .all(|(_, lost)| *lost == 0.0);
+        (far, from_corner.map(|(sum, _)| sum), is_exact)
     }
 }
 
