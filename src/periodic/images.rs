@@ -14,6 +14,8 @@ pub struct Placement {
     /// The ends of the moved body along the periodic axes, and a little more.
     pub lo: [f64; 3],
     pub hi: [f64; 3],
+    /// Whether its volumes can touch those of another small body in one image at most.
+    pub is_small: bool,
 }
 
 /// A body as the user has given it, and its place.
@@ -64,7 +66,7 @@ pub trait ImageWorld: sealed::Sealed {
     fn cull_images(&mut self) -> Result<WorldPairs<'_>, WorldError>;
 
     /// Whether a reported pair may touch, the second body moved by whole periods. It is true for at
-    /// most one such number.
+    /// most one such number. Two small bodies need not be asked about.
     #[doc(hidden)]
     fn may_touch(
         periods: &Periods,

@@ -18,6 +18,14 @@ const PLACE_ERROR: f64 = exp2(-48);
 /// [`PLACE_ERROR`].
 const SIZE_FACTOR: f64 = 1.0 + exp2(-40);
 
+/// Bodies of less than this share of each period are small. Two of them can't touch in two images,
+/// since volumes reach no farther than twice half of a body's size, without what rounding adds.
+const SMALL_SHARE: f64 = 0.2;
+
+/// 2⁻⁹: the share of a shape's reach by which its size is taken for larger in that comparison: more
+/// than a margin's class adds for rounding.
+const REACH_SHARE: f64 = exp2(-9);
+
 /// The image of a body that is moved by whole periods.
 fn image(body: &Body, shift: [i32; 3], periods: &Periods) -> Body {
     let mut image = *body;
@@ -56,11 +64,14 @@ impl ImageWorld for World {
         let (middle, error) = compose(body.rotation, wrapped, centre);
         // Twice the bound for the sum that is the centre, and again for roundings of the sum here.
         let radius = radius + f64::from(body.margin) + 4.0 * error;
+        let rounding = REACH_SHARE * (largest(centre) + radius);
+        place.is_small = true;
         for (axis, period) in periods.iter() {
             let half = (radius + PLACE_ERROR * period) * SIZE_FACTOR;
             if !(4.0 * half < period) {
                 return Err(periods.size_error(slot, axis, 2.0 * half));
             }
+            place.is_small &= 2.0 * (half + rounding) < SMALL_SHARE * period;
             let n = if middle[axis].abs() < 0.5 * period {
                 0.0
             } else {

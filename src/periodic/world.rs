@@ -59,12 +59,18 @@ struct Image {
     axes: u8,
     /// By how many periods the body is moved.
     shift: [i32; 3],
+    is_small: bool,
 }
 
 impl Image {
     fn new(of: BodyId, axes: u8, place: &Placement) -> Self {
         let shift = [0, 1, 2].map(|axis| place.shift[axis] + i32::from(axes >> axis & 1));
-        Self { of, axes, shift }
+        Self {
+            of,
+            axes,
+            shift,
+            is_small: place.is_small,
+        }
     }
 }
 
@@ -357,9 +363,11 @@ impl<W: ImageWorld> Periodic<W> {
             };
             let bodies = [first.of, second.of];
             let image = [0, 1, 2].map(|axis| second.shift[axis] - first.shift[axis]);
-            let [placed, other] = bodies.map(|id| &self.bodies[id.slot()]);
-            if !W::may_touch(&self.periods, placed, other, image) {
-                continue;
+            if !(one.is_small && two.is_small) {
+                let [placed, other] = bodies.map(|id| &self.bodies[id.slot()]);
+                if !W::may_touch(&self.periods, placed, other, image) {
+                    continue;
+                }
             }
             let pair = PeriodicPair { bodies, image };
             if one.axes | two.axes == 0 {
