@@ -20,9 +20,10 @@ use super::errors::{CaseSkipped, SdopError, refused};
 /// it has `frame(boxes)` instead. If its set of bodies can change, it has `change(body_shapes,
 /// dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
 /// skipped otherwise. So are those of the claims "filter", "margin", "restore" and "parts" without
-/// `filter(groups, excluded)`, `margins(margins)`, `save()` and `restore()`, or `parts(parts)`, which
-/// gets a list for each body: of the shape number and the pose of each part, empty for a body that is
-/// its shape alone. `CaseSkipped` skips a case, any other exception is an error of the case.
+/// `filter(groups, excluded)`, `margins(margins)`, `save()` and `restore()`, or
+/// `body_parts(parts)`, which gets a list for each body: the shape number and the pose of each
+/// part, nothing for a body that is its shape alone. `CaseSkipped` skips a case, any other
+/// exception is an error of the case.
 ///
 /// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss;
 /// `sdop.judge` makes a `Verdict` of it.
@@ -218,7 +219,7 @@ fn prepared(culler: &Bound<'_, PyAny>, frame: &Frame) -> PyResult<Option<&'stati
             parts.iter().map(|part| (part.shape, part.pose)).collect()
         };
         let parts: Vec<_> = parts.iter().map(of_body).collect();
-        if !told(culler, "parts", (parts,))? {
+        if !told(culler, "body_parts", (parts,))? {
             return Ok(Some("its bodies are single shapes"));
         }
     }

@@ -1,5 +1,5 @@
 //! Bodies of several parts: the groups of the claim `parts` catch cullers with one flaw each and
-//! pass ours, and whoever takes single shapes alone is told so.
+//! pass ours, and cullers of single shapes never get parts without an error.
 
 use sdop::bodies::Bodies;
 use sdop::rounding::pose::rotation;
@@ -70,7 +70,7 @@ fn meet(a: &PartBox, b: &PartBox) -> bool {
 }
 
 impl Twin {
-    fn boxes(&self, bodies: &Bodies, i: usize) -> Vec<PartBox> {
+    fn part_boxes(&self, bodies: &Bodies, i: usize) -> Vec<PartBox> {
         let first = self.first.as_ref().unwrap();
         let has_moved = (bodies.rotation[i], bodies.translation[i])
             != (first.rotation[i], first.translation[i]);
@@ -118,7 +118,7 @@ impl Contestant for Twin {
     fn frame(&mut self, bodies: &Bodies) {
         self.first.get_or_insert_with(|| bodies.clone());
         let count = bodies.len();
-        let boxes: Vec<Vec<PartBox>> = (0..count).map(|i| self.boxes(bodies, i)).collect();
+        let boxes: Vec<Vec<PartBox>> = (0..count).map(|i| self.part_boxes(bodies, i)).collect();
         self.pairs.clear();
         for j in 0..count {
             for i in (0..j).filter(|&i| bodies.dynamic[i] || bodies.dynamic[j]) {
@@ -137,7 +137,7 @@ impl Contestant for Twin {
         true
     }
 
-    fn parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
+    fn body_parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
         if self.parts.is_empty() || self.flaw != Flaw::FirstParts {
             self.parts = parts.to_vec();
         }
@@ -216,7 +216,7 @@ fn one_case(pattern: &str) -> Case {
         .unwrap()
 }
 
-/// Other claims and cullers of single shapes don't drop parts in silence.
+/// Other claims refuse parts, and cullers of single shapes skip the cases.
 #[test]
 fn parts_are_never_dropped() {
     let case = one_case("parts/touch/0000");
@@ -327,8 +327,8 @@ fn words_have_all_parts() {
     }
 }
 
-/// Two bars whose parts share one point of f64 meet, one step of f32 apart they don't. A part counts
-/// wherever it is, and parts of one body are no pair.
+/// Parts that share one face meet, an ulp apart they don't. A part counts wherever it is, and parts
+/// of one body are no pair.
 #[test]
 fn truth_is_exact_for_composed_poses() {
     let case = one_case("parts/touch/0000");

@@ -2,6 +2,8 @@
 getContactPoints."""
 
 import sys
+import tempfile
+from pathlib import Path
 
 import numpy as np
 import pybullet
@@ -9,6 +11,7 @@ from wire import ObjectCuller, serve
 
 if "--version" not in sys.argv:
     pybullet.connect(pybullet.DIRECT)
+    FOLDER = Path(tempfile.mkdtemp())
 
 
 class Adapter(ObjectCuller):
@@ -19,6 +22,7 @@ class Adapter(ObjectCuller):
     def __init__(self, scene):
         super().__init__(scene)
         pybullet.resetSimulation()
+        self.files = [mesh_file(shape) for shape in self.shapes]
 
     def frame(self, rotations, translations):
         for number, (turn, place) in enumerate(zip(rotations, translations, strict=True)):
@@ -38,7 +42,7 @@ class Adapter(ObjectCuller):
         parts, dynamic = made
         shape = pybullet.createCollisionShapeArray(
             shapeTypes=[pybullet.GEOM_MESH] * len(parts),
-            vertices=[self.shapes[part["shape"]]["vertices"] for part in parts],
+            fileNames=[self.files[part["shape"]] for part in parts],
             collisionFramePositions=[part["pose"][4:] for part in parts],
             collisionFrameOrientations=[unit(part["pose"][:4]) for part in parts],
         )
@@ -46,6 +50,14 @@ class Adapter(ObjectCuller):
 
     def remove(self, it):
         pybullet.removeBody(it[0])
+
+
+def mesh_file(shape):
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in shape["vertices"])
+    text += "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in shape["triangles"])
+    path = FOLDER / f"{abs(hash(text))}.obj"
+    path.write_text(text)
+    return str(path)
 
 
 def unit(turn):

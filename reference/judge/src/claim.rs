@@ -25,7 +25,7 @@ choices! {
         Restore = "restore",
         /// The boxes given with the frame are no further apart on any axis than both margins reach.
         Margin = "margin",
-        /// As `mesh`, for bodies of several posed shapes: any part of one and any part of the other.
+        /// As `mesh`, for bodies of several posed shapes: of any part of one and any of the other.
         Parts = "parts",
     }
 }

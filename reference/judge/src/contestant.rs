@@ -85,7 +85,7 @@ pub trait Contestant<Frame: ?Sized = Bodies> {
 
     /// Takes over the parts of each body for the coming frames; a body with an empty list is its
     /// shape alone. Returns false if its bodies are single shapes.
-    fn parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
+    fn body_parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
         let _ = parts;
         false
     }
@@ -134,8 +134,8 @@ macro_rules! pass_on {
                 (**self).margins(margins)
             }
 
-            fn parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
-                (**self).parts(parts)
+            fn body_parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
+                (**self).body_parts(parts)
             }
 
             fn save(&mut self) -> bool {

@@ -242,15 +242,10 @@ impl Search<'_> {
                     self.shorten(frame, &|frame| &mut frame.bodies.translation[body][n]);
                 }
                 // Other frames have the same parts, unless the set changes.
-                let numbers = match &self.case.frames[..] {
-                    [
-                        Frame {
-                            parts: Some(parts), ..
-                        },
-                    ] => 7 * parts[body].len(),
-                    _ => 0,
-                };
-                for (part, n) in (0..numbers).map(|at| (at / 7, at % 7)) {
+                let parts = self.case.frames[0].parts.as_ref();
+                let parts = parts.filter(|_| self.case.frames.len() == 1);
+                let count = parts.map_or(0, |parts| parts[body].len());
+                for (part, n) in (0..7 * count).map(|at| (at / 7, at % 7)) {
                     self.shorten(frame, &|frame| match &mut frame.parts {
                         Some(parts) => &mut parts[body][part].pose[n],
                         None => &mut frame.bodies.translation[body][0], // never

@@ -120,7 +120,7 @@ fn prepared(culler: &mut impl Contestant, frame: &Frame) -> Result<(), &'static 
         can(culler.margins(margins), "it has no margins")?;
     }
     match &frame.parts {
-        Some(parts) => can(culler.parts(parts), "its bodies are single shapes"),
+        Some(parts) => can(culler.body_parts(parts), "its bodies are single shapes"),
         None => Ok(()),
     }
 }

@@ -37,9 +37,9 @@ impl Truth {
         self.claim
     }
 
-    /// Whether the claim holds of two bodies of a frame. Of bodies with parts, it has to hold of any
-    /// part of one and any part of the other: of their balls for the claim `sphere`, of their meshes
-    /// for others about posed shapes.
+    /// Whether the claim holds of two bodies of a frame. For bodies with parts, it has to hold of
+    /// any part of one and any part of the other: of their balls for the claim `sphere`, of their
+    /// meshes for others about posed shapes.
     ///
     /// # Errors
     /// A pose outside the contract.

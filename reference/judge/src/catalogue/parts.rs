@@ -1,7 +1,7 @@
 //! Bodies of several parts that touch others by one of them, to the bit.
 //!
 //! Bodies are in rows of two. Parts are bars and cubes. All rotations are by multiples of a quarter
-//! turn, and all coordinates are short binary numbers. Therefore composed poses are exact, and every
+//! turn, and all coordinates are short binary numbers. Therefore composed poses are exact, and each
 //! part is a box on the axes of the world. Parts of one body may overlap.
 
 use rand::{Rng, RngExt};
@@ -20,8 +20,9 @@ pub enum PartsKind {
     Still,
     /// The poses of bodies. In every other frame the two bodies of a row are apart.
     Moving,
-    /// The frames of bodies: their origins move, and with them the local poses of their parts, which
-    /// stay where they are. In half of the rows, the touching part is missing in every other frame.
+    /// The frames of bodies: their origins move, and the local poses of their parts so that the
+    /// parts stay where they are. In half of the rows, the touching part is missing in every other
+    /// frame.
     Reframed,
 }
 
