@@ -93,7 +93,14 @@ impl Frame {
         posed_parts(&self.bodies, i, parts)
     }
 
-    /// The bodies of these numbers alone, in this order.
+    /// Whether every body has the number that it had in the frame before.
+    #[must_use]
+    pub fn keeps_numbers(&self) -> bool {
+        let mut was = self.was.iter().flatten().zip(0..);
+        was.all(|(former, number)| *former == Some(number))
+    }
+
+    /// The bodies of these numbers alone, in this order. Numbers that change are forgotten.
     #[must_use]
     pub fn picked(&self, which: &[usize]) -> Self {
         let number = |body: u32| which.iter().position(|&kept| kept == body as usize);
@@ -110,10 +117,11 @@ impl Frame {
             }
         });
         let (margins, parts) = (self.margins.as_ref(), self.parts.as_ref());
+        let was = self.was.as_ref().filter(|_| self.keeps_numbers());
         Self {
             bodies: picked(&self.bodies, which),
             boxes: which.iter().map(|&i| self.boxes[i]).collect(),
-            was: None,
+            was: was.map(|_| (0..which.len() as u32).map(Some).collect()),
             filter,
             margins: margins.map(|margins| which.iter().map(|&i| margins[i]).collect()),
             parts: parts.map(|parts| which.iter().map(|&i| parts[i].clone()).collect()),
@@ -235,8 +243,7 @@ impl Case {
         group_of(&self.name)
     }
 
-    /// The case with these bodies of each frame alone, in this order; its set of bodies doesn't
-    /// change.
+    /// The case with these bodies of each frame alone, in this order; bodies neither come nor go.
     #[must_use]
     pub fn picked(&self, which: &[usize]) -> Self {
         Self {

@@ -139,7 +139,9 @@ impl Search<'_> {
 
     /// Keeps only the pair, or removes as many other bodies as possible, half of them at a time.
     fn fewer_bodies(&mut self) {
-        if self.case.frames.iter().any(|frame| frame.was.is_some()) {
+        let count = self.case.frames[0].bodies.len();
+        let is_same = |frame: &Frame| frame.keeps_numbers() && frame.bodies.len() == count;
+        if !self.case.frames.iter().all(is_same) {
             return;
         }
         let pair = self.miss.pair.map(|body| body as usize);
