@@ -31,8 +31,12 @@ class Culler:
         self.shapes = scene.shapes
         self.body_shapes, self.dynamic = np.asarray(scene.body_shapes), np.asarray(scene.dynamic, dtype=bool)
 
+    takes_parts = False
+    """Whether its bodies may have parts; without that, cases of the claim parts are skipped."""
+
     given: dict[str, Any]
-    """The frame as the judge gives it, for what a claim adds: groups, excluded pairs, margins."""
+    """The frame as the judge gives it, for what a claim adds: groups, excluded pairs, margins, and
+    the parts of each body."""
 
     def change(self, body_shapes: Array, dynamic: Array, was: Array) -> None:
         self.body_shapes, self.dynamic = np.asarray(body_shapes), np.asarray(dynamic, dtype=bool)
@@ -127,16 +131,22 @@ def serve(make: type[Culler], package: str) -> None:
             continue  # the rest of a case that it has skipped
         was = [body.get("was", -1) for body in frame.get("bodies", [])]
         bodies = frame.get("bodies", bodies)
-        numbers, dynamic = [body["shape"] for body in bodies], [not body["static"] for body in bodies]
+        # A body with parts has the shape of the first; a culler that claims parts takes all of them
+        # from `given`.
+        parts = [body.get("parts", []) for body in bodies]
+        numbers = [body["shape"] if "shape" in body else body["parts"][0]["shape"] for body in bodies]
+        dynamic = [not body["static"] for body in bodies]
         poses = np.array(frame["poses"], dtype=np.float32).reshape(-1, 7)
         given = (np.array(frame["boxes"], np.float32).reshape(-1, 6),) if "boxes" in frame else (poses[:, :4], poses[:, 4:])
         start = time.perf_counter_ns()
         try:
+            if any(parts) and not make.takes_parts:
+                raise CaseSkipped("its bodies are single shapes")
             if culler is None:
                 culler = make(SimpleNamespace(shapes=shapes, body_shapes=numbers, dynamic=dynamic))
             elif "bodies" in frame:
                 culler.change(numbers, dynamic, np.array(was))
-            culler.given = frame
+            culler.given = {**frame, "parts": parts}
             found = culler.frame(*given)
             answer = {"pairs": found.tolist(), "ns": time.perf_counter_ns() - start}
         except CaseSkipped as reason:

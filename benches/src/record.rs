@@ -2,7 +2,7 @@
 
 use sdop::counters::Counters;
 use sdop::settings::Strategy;
-use sdop_judge::record::{EffectLine, FrameLine, Header, VolumeLine};
+use sdop_judge::record::{BodyLine, EffectLine, FrameLine, Header, VolumeLine};
 
 use crate::measure::counts::{Counts, Volume};
 use crate::scene::Scene;
@@ -22,7 +22,12 @@ pub fn header(scene: &Scene) -> Header {
         side: scene.side,
         effects: Some(effects.collect()),
         cull: Some(scene.cull.clone()),
-        ..Header::new(&scene.name, scene.seed, &scene.shapes, &scene.bodies)
+        ..Header::new(
+            &scene.name,
+            scene.seed,
+            &scene.shapes,
+            BodyLine::all(&scene.bodies),
+        )
     }
 }
 

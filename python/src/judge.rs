@@ -8,7 +8,7 @@ use sdop::bodies::Bodies;
 use sdop_judge::answer::{Answer, AnswerError, StopReason};
 use sdop_judge::report::counter_example;
 use sdop_judge::shrink::SmallestCase;
-use sdop_judge::{Case, Claim, Frame, Options, Subject, examine};
+use sdop_judge::{BodyPart, Case, Claim, Frame, Options, Subject, examine};
 
 use super::arrays::{matrix, whole_rows};
 use super::errors::{CaseSkipped, SdopError, refused};
@@ -19,9 +19,11 @@ use super::errors::{CaseSkipped, SdopError, refused};
 /// translations)`, which returns the pairs i < j as an array of shape (m, 2). For the claim "aabb"
 /// it has `frame(boxes)` instead. If its set of bodies can change, it has `change(body_shapes,
 /// dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
-/// skipped otherwise. So are those of the claims "filter", "margin" and "restore" without
-/// `filter(groups, excluded)`, `margins(margins)`, or `save()` and `restore()`. `CaseSkipped` skips
-/// a case, any other exception is an error of the case.
+/// skipped otherwise. So are those of the claims "filter", "margin", "restore" and "parts" without
+/// `filter(groups, excluded)`, `margins(margins)`, `save()` and `restore()`, or
+/// `body_parts(parts)`, which gets a list for each body: the shape number and the pose of each
+/// part, nothing for a body that is its shape alone. `CaseSkipped` skips a case, any other
+/// exception is an error of the case.
 ///
 /// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss;
 /// `sdop.judge` makes a `Verdict` of it.
@@ -210,6 +212,15 @@ fn prepared(culler: &Bound<'_, PyAny>, frame: &Frame) -> PyResult<Option<&'stati
         let margins = PyArray1::from_slice(py, margins);
         if !told(culler, "margins", (margins,))? {
             return Ok(Some("it has no margins"));
+        }
+    }
+    if let Some(parts) = &frame.parts {
+        let of_body = |parts: &Vec<BodyPart>| -> Vec<(u32, [f32; 7])> {
+            parts.iter().map(|part| (part.shape, part.pose)).collect()
+        };
+        let parts: Vec<_> = parts.iter().map(of_body).collect();
+        if !told(culler, "body_parts", (parts,))? {
+            return Ok(Some("its bodies are single shapes"));
         }
     }
     Ok(None)

@@ -66,6 +66,11 @@ pub enum InvalidInput {
     /// A component of an f64 quaternion is lost in the largest one.
     #[error("components of the quaternion differ by more than 2^900: set the smallest to zero")]
     QuaternionSpread,
+    /// A part's local pose and its body's pose have an exact product that f64 doesn't hold.
+    #[error(
+        "f64 doesn't hold the exact pose of a part: give translations that stay short when turned"
+    )]
+    ComposedPose,
     /// A radius below zero, or one that is NaN or infinite.
     #[error("the radius is negative, NaN or infinite")]
     Radius,

@@ -25,12 +25,12 @@
 use dashu_int::IBig;
 use dashu_ratio::RBig;
 
-use crate::exact::common::lifted;
+use crate::exact::common::{self, Point, lifted};
 use crate::exact::meeting::{self, Meeting};
 use crate::exact::{Decision, Interval, axes, cascade, sphere};
 use crate::linear::{Vector, add, apply, conjugate_product, largest, norm_squared, rotation};
 use crate::number::{Number, power_of_two};
-use crate::{InvalidInput, Pose, Shape};
+use crate::{Body, InvalidInput, Pose, Shape};
 
 /// Components that are smaller than the largest by more than this power of two are refused.
 const SPREAD: i32 = 900;
@@ -127,6 +127,16 @@ fn largest_of([x, y, z, w]: [f64; 4]) -> f64 {
 /// Whether two posed meshes intersect, and which stages decided it.
 pub fn meet(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Meeting {
     meeting::meet((a.0.mesh(), &a.1.0), (b.0.mesh(), &b.1.0))
+}
+
+/// A point that two posed meshes share; `None` when they don't meet.
+pub fn common_point(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Option<Point> {
+    let [a, b] = [a, b].map(|(shape, pose)| Body {
+        shape,
+        pose: pose.0,
+        dynamic: true,
+    });
+    common::of_meshes(&a, &b)
 }
 
 /// Whether the balls of two posed shapes overlap.

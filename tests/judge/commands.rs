@@ -225,7 +225,7 @@ fn as_test(language: &str, claim: &str, case: &str) {
                 .next()
                 .unwrap();
             let count = given.split(", ").count();
-            let types = ["A", "B", "C", "D", "E", "F"];
+            let types = ["A", "B", "C", "D", "E", "F", "G"];
             let list: Vec<String> = types[..count].iter().map(|t| format!("_: &{t}")).collect();
             format!(
                 "fn your_culler<{}>({}) -> Vec<[u32; 2]> {{ [[0, 1]][..{pairs}].to_vec() }}\n",
@@ -257,6 +257,7 @@ fn counter_examples_are_unit_tests() {
     for language in ["python", "rust", "cpp"] {
         as_test(language, "aabb", "box/range/0000");
         as_test(language, "mesh", "exact/tip-on-face/0000");
+        as_test(language, "parts", "parts/touch/0000");
     }
     as_test("python", "sphere", "touch/ball-ball/0000");
     as_test("rust", "or-dop", "touch/face-corner/0000");

@@ -7,6 +7,7 @@ mod catalogue;
 mod cheats;
 mod commands;
 mod cullers;
+mod parts;
 mod programs;
 mod rust;
 mod twins;

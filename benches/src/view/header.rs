@@ -133,6 +133,7 @@ fn meet(claim: Claim) -> &'static str {
         Claim::OrDop => "or-DOPs",
         Claim::Hull => "convex hulls",
         Claim::Mesh => "meshes",
+        Claim::Parts => "meshes of parts",
     }
 }
 

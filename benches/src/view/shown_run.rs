@@ -10,11 +10,13 @@ use crate::scene::Scene;
 use crate::simulate::{Simulation, SimulationError};
 use sdop::bodies::Bodies;
 use sdop::culler::{CullError, Culler};
+use sdop::mesh::TriangleMesh;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
-use sdop::volume::Shape;
-use sdop_judge::record::{FrameLine, Header, Reader, RecordError, VolumeLine};
-use sdop_judge::{Case, Claim, WorldBox, truth::Truth};
+use sdop::volume::{Origin, Shape, ShapeSpec};
+use sdop_judge::case::posed_parts;
+use sdop_judge::record::{BodyLine, FrameLine, Header, Reader, RecordError, VolumeLine};
+use sdop_judge::{Case, Claim, Frame, WorldBox, truth::Truth};
 use serde::Serialize;
 
 /// A run in memory.
@@ -165,7 +167,7 @@ impl ShownRun {
         };
         let mut show = Self {
             source: file_name(source),
-            header: Header::new(name, 0, &shapes, &bodies),
+            header: Header::new(name, 0, &shapes, BodyLine::all(&bodies)),
             frames: frames.iter().enumerate().map(line).collect(),
             claim: Claim::Mesh,
             boxes: None,
@@ -225,8 +227,8 @@ impl ShownRun {
             });
         }
         let shown = with_one_set(case, focus.as_ref().map_or(0, |focus| focus.frame));
-        let bodies = case.frames[shown.start].bodies.clone();
-        let mut header = Header::new(&case.name, 0, &case.shapes, &bodies);
+        let (shapes, bodies) = drawn(case, &case.frames[shown.start])?;
+        let mut header = Header::new(&case.name, 0, &shapes, BodyLine::all(&bodies));
         header.program = Some("the program".to_owned());
         if !asked {
             // No program was run, so nothing is missed.
@@ -254,7 +256,7 @@ impl ShownRun {
         Ok(Self {
             source: file_name(source),
             header,
-            shapes: case.shapes.clone(),
+            shapes,
             bodies,
             frames: frames.drain(shown.clone()).collect(),
             claim: case.claim,
@@ -373,6 +375,34 @@ fn with_one_set(case: &Case, frame: usize) -> Range<usize> {
     let all = case.frames.len();
     let start = (0..=frame).rev().find(changes).unwrap_or(0);
     start..(frame + 1..all).find(changes).unwrap_or(all)
+}
+
+/// The shapes and bodies of a frame to be drawn: a body with parts becomes one shape, with vertices
+/// rounded to f32.
+fn drawn(case: &Case, frame: &Frame) -> Result<(Vec<Shape>, Bodies), String> {
+    let (mut shapes, mut bodies) = (case.shapes.clone(), frame.bodies.clone());
+    let mut at_origin = Bodies::default();
+    at_origin.push(0, true, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
+    let spec = ShapeSpec {
+        origin: Origin::File,
+        ..ShapeSpec::default()
+    };
+    for (i, parts) in frame.parts.iter().flatten().enumerate() {
+        if parts.is_empty() {
+            continue;
+        }
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for (shape, pose) in posed_parts(&at_origin, 0, parts).map_err(|e| e.to_string())? {
+            let (shape, first) = (&case.shapes[shape as usize], vertices.len() as u32);
+            triangles.extend(shape.triangles.iter().map(|t| t.map(|v| v + first)));
+            let own = shape.vertices.iter().map(|v| pose.point(&v.map(f64::from)));
+            vertices.extend(own.map(|point| point.map(|x| x as f32)));
+        }
+        let mesh = TriangleMesh::new("parts", vertices, triangles).map_err(|e| e.to_string())?;
+        bodies.shape[i] = shapes.len() as u32;
+        shapes.push(Shape::build(&mesh, &spec).map_err(|e| e.to_string())?);
+    }
+    Ok((shapes, bodies))
 }
 
 /// An error and its remedy.

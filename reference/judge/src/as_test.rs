@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::case::Frame;
 use super::claim::Claim;
-use super::contestant::Filter;
+use super::contestant::{BodyPart, Filter};
 use super::shrink::SmallestCase;
 use sdop::choice::choices;
 use sdop::volume::Shape;
@@ -151,6 +151,32 @@ fn arguments(smallest: &SmallestCase) -> Vec<Argument> {
                 ArgumentData::Row([&q[..], &t].concat())
             }),
         });
+        if frames.iter().any(|frame| frame.parts.is_some()) {
+            let of_parts = |of: &dyn Fn(&BodyPart) -> ArgumentData| {
+                by_body(&|frame, i| {
+                    let parts = frame.parts.as_ref().map_or(&[][..], |parts| &parts[i]);
+                    ArgumentData::List(parts.iter().map(of).collect())
+                })
+            };
+            arguments.push(Argument {
+                name: "part_shapes",
+                meaning: "of each frame and body: the shapes of its parts; none if it is its shape alone",
+                types: [
+                    "Vec<Vec<Vec<usize>>>",
+                    "std::vector<std::vector<std::vector<std::size_t>>>",
+                ],
+                data: of_parts(&|part| integer(part.shape)),
+            });
+            arguments.push(Argument {
+                name: "part_poses",
+                meaning: "of each frame and body: the poses of its parts in the frame of the body",
+                types: [
+                    "Vec<Vec<Vec<[f32; 7]>>>",
+                    "std::vector<std::vector<std::vector<std::array<float, 7>>>>",
+                ],
+                data: of_parts(&|part| ArgumentData::Row(part.pose.to_vec())),
+            });
+        }
     }
     arguments.push(Argument {
         name: "is_static",

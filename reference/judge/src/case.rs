@@ -1,11 +1,13 @@
 //! A case: shapes, and a few frames of bodies with their boxes.
 
 use super::claim::Claim;
-use crate::contestant::{Filter, WorldBox};
+use crate::contestant::{BodyPart, Filter, WorldBox};
+use crate::ours::reference_shapes::InvalidInput;
 use sdop::bodies::Bodies;
 use sdop::rounding::pose::{COORDINATE_ERROR, rotation, transform};
 use sdop::rounding::{down, up};
 use sdop::volume::Shape;
+use sdop_reference::WidePose;
 
 /// One frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,6 +23,8 @@ pub struct Frame {
     pub filter: Option<Filter>,
     /// How far each body reaches beyond its box, for the claim `margin`.
     pub margins: Option<Vec<f32>>,
+    /// The parts of each body, for the claim `parts`: a body with an empty list is its shape alone.
+    pub parts: Option<Vec<Vec<BodyPart>>>,
     /// Whether the culler goes back to the state that it has saved, before this frame.
     pub restore: bool,
     /// Whether it saves its state after this frame.
@@ -39,7 +43,64 @@ impl Frame {
         }
     }
 
-    /// The bodies of these numbers alone, in this order.
+    /// The same for bodies of which each has a list of parts, empty for a body that is its shape
+    /// alone. The shape of any other is that of its first part.
+    ///
+    /// # Errors
+    /// A pose outside the contract, or a composed one that f64 doesn't hold.
+    pub fn of_parts(
+        mut bodies: Bodies,
+        parts: Vec<Vec<BodyPart>>,
+        shapes: &[Shape],
+    ) -> Result<Self, InvalidInput> {
+        if parts.iter().all(Vec::is_empty) {
+            return Ok(Self::fitted(bodies, shapes));
+        }
+        for (shape, parts) in bodies.shape.iter_mut().zip(&parts) {
+            *shape = parts.first().map_or(*shape, |part| part.shape);
+        }
+        let mut frame = Self {
+            bodies,
+            parts: Some(parts),
+            ..Self::default()
+        };
+        frame.refit(shapes)?;
+        Ok(frame)
+    }
+
+    /// Fits the boxes to the bodies again.
+    ///
+    /// # Errors
+    /// As [`Frame::of_parts`].
+    pub fn refit(&mut self, shapes: &[Shape]) -> Result<(), InvalidInput> {
+        let (bodies, count) = (&self.bodies, self.bodies.len());
+        self.boxes = match &self.parts {
+            None => (0..count).map(|i| fit(bodies, shapes, i)).collect(),
+            Some(_) => {
+                let posed = (0..count).map(|i| Ok(fit_parts(&self.posed_parts(i)?, shapes)));
+                posed.collect::<Result<_, _>>()?
+            }
+        };
+        Ok(())
+    }
+
+    /// The shape numbers of a body's parts, with their exact poses in the world.
+    ///
+    /// # Errors
+    /// As [`Frame::of_parts`].
+    pub fn posed_parts(&self, i: usize) -> Result<Vec<(u32, WidePose)>, InvalidInput> {
+        let parts = self.parts.as_ref().map_or(&[][..], |parts| &parts[i]);
+        posed_parts(&self.bodies, i, parts)
+    }
+
+    /// Whether every body has the number that it had in the frame before.
+    #[must_use]
+    pub fn keeps_numbers(&self) -> bool {
+        let mut was = self.was.iter().flatten().zip(0..);
+        was.all(|(former, number)| *former == Some(number))
+    }
+
+    /// The bodies of these numbers alone, in this order. Numbers that change are forgotten.
     #[must_use]
     pub fn picked(&self, which: &[usize]) -> Self {
         let number = |body: u32| which.iter().position(|&kept| kept == body as usize);
@@ -55,13 +116,15 @@ impl Frame {
                 excluded,
             }
         });
-        let margins = self.margins.as_ref();
+        let (margins, parts) = (self.margins.as_ref(), self.parts.as_ref());
+        let was = self.was.as_ref().filter(|_| self.keeps_numbers());
         Self {
             bodies: picked(&self.bodies, which),
             boxes: which.iter().map(|&i| self.boxes[i]).collect(),
-            was: None,
+            was: was.map(|_| (0..which.len() as u32).map(Some).collect()),
             filter,
             margins: margins.map(|margins| which.iter().map(|&i| margins[i]).collect()),
+            parts: parts.map(|parts| which.iter().map(|&i| parts[i].clone()).collect()),
             ..*self
         }
     }
@@ -90,21 +153,68 @@ pub fn picked(bodies: &Bodies, which: &[usize]) -> Bodies {
 /// A box around a posed mesh: it contains every vertex exactly.
 fn fit(bodies: &Bodies, shapes: &[Shape], i: usize) -> WorldBox {
     let (r, t) = (rotation(bodies.rotation[i]), bodies.translation[i]);
-    let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for vertex in &shapes[bodies.shape[i] as usize].vertices {
+    let vertices = shapes[bodies.shape[i] as usize].vertices.iter();
+    around(vertices.map(|vertex| {
         let size = vertex
             .iter()
             .chain(&t)
             .fold(0.0, |m: f32, x| m.max(x.abs()));
         // Above the bound by its half, for the addition's own rounding.
         let error = 1.5 * COORDINATE_ERROR * f64::from(size);
-        for (axis, x) in transform(&r, *vertex, t).into_iter().enumerate() {
+        (transform(&r, *vertex, t), error)
+    }))
+}
+
+/// A box around posed parts: it contains every vertex exactly.
+fn fit_parts(parts: &[(u32, WidePose)], shapes: &[Shape]) -> WorldBox {
+    around(parts.iter().flat_map(|(shape, pose)| {
+        let t = pose.translation();
+        shapes[*shape as usize].vertices.iter().map(move |vertex| {
+            let vertex = vertex.map(f64::from);
+            let size = vertex
+                .iter()
+                .chain(&t)
+                .fold(0.0, |m: f64, x| m.max(x.abs()));
+            // Entries of the matrix are off by 9 roundings at most, since the quaternion is of f64,
+            // and a coordinate by 41.
+            (pose.point(&vertex), 4.0 * COORDINATE_ERROR * size)
+        })
+    }))
+}
+
+/// The box of points, each of which may be off by a bound; rounded outward.
+fn around(points: impl Iterator<Item = ([f64; 3], f64)>) -> WorldBox {
+    let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (point, error) in points {
+        for (axis, x) in point.into_iter().enumerate() {
             lo[axis] = lo[axis].min(x - error);
             hi[axis] = hi[axis].max(x + error);
         }
     }
     let ([x0, y0, z0], [x1, y1, z1]) = (lo.map(down), hi.map(up));
     [x0, y0, z0, x1, y1, z1]
+}
+
+/// The shape numbers of the parts of body `i`, with their exact poses in the world.
+///
+/// # Errors
+/// As [`Frame::of_parts`].
+pub fn posed_parts(
+    bodies: &Bodies,
+    i: usize,
+    parts: &[BodyPart],
+) -> Result<Vec<(u32, WidePose)>, InvalidInput> {
+    let (rotation, translation) = (bodies.rotation[i], bodies.translation[i].map(f64::from));
+    if parts.is_empty() {
+        let pose = WidePose::new(rotation.map(f64::from), translation)?;
+        return Ok(vec![(bodies.shape[i], pose)]);
+    }
+    let posed = |part: &BodyPart| {
+        let local = part.rotation_and_translation();
+        let pose = WidePose::composed((rotation, translation), local);
+        Ok((part.shape, pose.ok_or(InvalidInput::ComposedPose)?))
+    };
+    parts.iter().map(posed).collect()
 }
 
 /// A case to be judged by.
@@ -133,8 +243,7 @@ impl Case {
         group_of(&self.name)
     }
 
-    /// The case with these bodies of each frame alone, in this order; its set of bodies doesn't
-    /// change.
+    /// The case with these bodies of each frame alone, in this order; bodies neither come nor go.
     #[must_use]
     pub fn picked(&self, which: &[usize]) -> Self {
         Self {

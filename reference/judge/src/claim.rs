@@ -25,6 +25,8 @@ choices! {
         Restore = "restore",
         /// The boxes given with the frame are no further apart on any axis than both margins reach.
         Margin = "margin",
+        /// As `mesh`, for bodies of several posed shapes: of any part of one and any of the other.
+        Parts = "parts",
     }
 }
 
@@ -38,7 +40,13 @@ impl Claim {
         Self::Mesh,
     ];
     /// The claims about posed shapes: all but those about given boxes.
-    pub const POSED: &'static [Self] = &[Self::Sphere, Self::OrDop, Self::Hull, Self::Mesh];
+    pub const POSED: &'static [Self] = &[
+        Self::Sphere,
+        Self::OrDop,
+        Self::Hull,
+        Self::Mesh,
+        Self::Parts,
+    ];
 
     /// Whether it is about given boxes.
     #[must_use]

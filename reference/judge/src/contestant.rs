@@ -1,5 +1,7 @@
 //! A culler that is measured or judged, ours or anyone's: bodies in, pairs out.
 
+use serde::{Deserialize, Serialize};
+
 use sdop::bodies::Bodies;
 
 /// A box on the world axes: the lower corner x, y, z, then the upper one.
@@ -21,6 +23,24 @@ impl Filter {
     pub fn parts(&self, pair: [u32; 2]) -> bool {
         let [[in_a, of_a], [in_b, of_b]] = pair.map(|body| self.groups[body as usize]);
         in_a & of_b == 0 || in_b & of_a == 0 || self.excluded.binary_search(&pair).is_ok()
+    }
+}
+
+/// A part of a body: a shape with a pose in the frame of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyPart {
+    /// Index into the shapes.
+    pub shape: u32,
+    /// Quaternion x, y, z, w of any non-zero norm, then the translation.
+    pub pose: [f32; 7],
+}
+
+impl BodyPart {
+    /// The quaternion and the translation.
+    #[must_use]
+    pub fn rotation_and_translation(&self) -> ([f32; 4], [f64; 3]) {
+        let [x, y, z, w, tx, ty, tz] = self.pose;
+        ([x, y, z, w], [tx, ty, tz].map(f64::from))
     }
 }
 
@@ -60,6 +80,13 @@ pub trait Contestant<Frame: ?Sized = Bodies> {
     /// Takes over each body's margin for the coming frames. False when it has none.
     fn margins(&mut self, margins: &[f32]) -> bool {
         let _ = margins;
+        false
+    }
+
+    /// Takes over the parts of each body for the coming frames; a body with an empty list is its
+    /// shape alone. Returns false if its bodies are single shapes.
+    fn body_parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
+        let _ = parts;
         false
     }
 
@@ -105,6 +132,10 @@ macro_rules! pass_on {
 
             fn margins(&mut self, margins: &[f32]) -> bool {
                 (**self).margins(margins)
+            }
+
+            fn body_parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
+                (**self).body_parts(parts)
             }
 
             fn save(&mut self) -> bool {

@@ -59,7 +59,7 @@ pub mod verdict;
 pub mod wire;
 pub mod witness;
 
-pub use crate::contestant::{Contestant, Filter, WorldBox};
+pub use crate::contestant::{BodyPart, Contestant, Filter, WorldBox};
 pub use case::{Case, Frame};
 pub use claim::Claim;
 pub use run::{Judge, JudgeError, Options, examine, judge, judge_function, judge_pair_test};

@@ -42,10 +42,11 @@ pub fn case_file(smallest: &SmallestCase) -> std::io::Result<NamedFile> {
 }
 
 /// The axes with which a scene has the case's volumes; `None` where no scene can state the miss:
-/// one about given boxes, one that takes a history, or one about volumes that aren't those of the
-/// meshes.
+/// one about given boxes or parts, one that takes a history, or one about volumes that aren't those
+/// of the meshes.
 fn axes_of_scene(case: &Case) -> Option<Axes> {
-    if case.claim.is_of_boxes() || case.frames.len() != 1 {
+    let has_parts = case.frames.iter().any(|frame| frame.parts.is_some());
+    if case.claim.is_of_boxes() || has_parts || case.frames.len() != 1 {
         return None;
     }
     let directions = case.shapes.first()?.ordop.directions;
@@ -62,7 +63,7 @@ fn axes_of_scene(case: &Case) -> Option<Axes> {
         let same = |built: Shape| match case.claim {
             Claim::Sphere => built.ball == shape.ball,
             Claim::OrDop => built.ordop == shape.ordop,
-            Claim::Hull | Claim::Mesh => built.vertices == shape.vertices,
+            Claim::Hull | Claim::Mesh | Claim::Parts => built.vertices == shape.vertices,
             _ => false, // above
         };
         read.is_ok_and(|read| Shape::build(&read, &spec).is_ok_and(same))

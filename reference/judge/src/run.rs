@@ -27,6 +27,14 @@ pub enum JudgeError {
     /// A case that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),
+    /// Bodies with parts, which other claims are not about.
+    #[error("the bodies of {case} have parts: the claim {claim} is not about them, `parts` is")]
+    Parts {
+        /// The case's name.
+        case: String,
+        /// The claim.
+        claim: Claim,
+    },
     /// No case's name matches.
     #[error("no case of the claim {claim} matches `{pattern}`")]
     NoCase {
@@ -251,13 +259,17 @@ pub fn examine(
 /// matter.
 ///
 /// # Errors
-/// A case that the reference refuses.
+/// A case that the reference refuses, and bodies with parts unless the claim is `parts`.
 pub fn examine_given(
     subject: &dyn Subject,
     options: &Options,
     case: Case,
 ) -> Result<Verdict, JudgeError> {
     let claim = options.claim;
+    if claim != Claim::Parts && case.frames.iter().any(|frame| frame.parts.is_some()) {
+        let case = case.name;
+        return Err(JudgeError::Parts { case, claim });
+    }
     let case = Case { claim, ..case };
     let judged = judge_case(subject, &case, true)?;
     let verdict = line(&case, &judged, &options.known);

@@ -313,7 +313,7 @@ fn explain(
     let is_fixed = |body: &u32| !frame.bodies.dynamic[*body as usize];
     if pair.iter().all(is_fixed) {
         count.both_static += 1;
-    } else if truth.pair(&nearer(frame, pair), pair)? {
+    } else if truth.pair(&nearer(frame, pair), pair) == Ok(true) {
         count.by_rounding += 1;
     } else if meet_loosely([truth, balls], frame, pair)? {
         count.by_looseness += 1;

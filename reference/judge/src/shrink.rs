@@ -1,6 +1,7 @@
 //! The smallest case that a culler still fails: frames, bodies, triangles and digits are removed
 //! for as long as it misses a pair.
 
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 use super::case::{Case, Frame};
@@ -57,6 +58,7 @@ pub fn shrink_while(case: &Case, time: Duration, wrong: FailureCheck<'_>) -> Opt
     };
     search.fewer_frames();
     search.fewer_bodies();
+    search.fewer_parts();
     search.fewer_shapes();
     search.fewer_triangles();
     search.fewer_digits();
@@ -137,7 +139,9 @@ impl Search<'_> {
 
     /// Keeps only the pair, or removes as many other bodies as possible, half of them at a time.
     fn fewer_bodies(&mut self) {
-        if self.case.frames.iter().any(|frame| frame.was.is_some()) {
+        let count = self.case.frames[0].bodies.len();
+        let is_same = |frame: &Frame| frame.keeps_numbers() && frame.bodies.len() == count;
+        if !self.case.frames.iter().all(is_same) {
             return;
         }
         let pair = self.miss.pair.map(|body| body as usize);
@@ -162,27 +166,39 @@ impl Search<'_> {
         }
     }
 
+    /// Without parts of bodies, one at a time, in all frames.
+    fn fewer_parts(&mut self) {
+        let bodies = self.case.frames[0].bodies.len();
+        for body in 0..bodies {
+            let most = |case: &Case| {
+                let parts = case.frames.iter().flat_map(|frame| &frame.parts);
+                parts
+                    .filter_map(|all| all.get(body))
+                    .map(Vec::len)
+                    .max()
+                    .unwrap_or(0)
+            };
+            let mut part = 0;
+            while part < most(&self.case) {
+                if !without_part(&self.case, body, part).is_some_and(|case| self.try_case(case)) {
+                    part += 1;
+                }
+            }
+        }
+    }
+
     /// Removes shapes that no body uses.
     fn fewer_shapes(&mut self) {
         let mut case = self.case.clone();
-        let used = |shape: u32| {
-            self.case
-                .frames
-                .iter()
-                .any(|frame| frame.bodies.shape.contains(&shape))
-        };
+        let used: BTreeSet<u32> = shapes_of(&mut case.frames).map(|shape| *shape).collect();
         let kept: Vec<u32> = (0..case.shapes.len() as u32)
-            .filter(|shape| used(*shape))
+            .filter(|shape| used.contains(shape))
             .collect();
         case.shapes = kept
             .iter()
             .map(|&shape| self.case.shapes[shape as usize].clone())
             .collect();
-        for shape in case
-            .frames
-            .iter_mut()
-            .flat_map(|frame| &mut frame.bodies.shape)
-        {
+        for shape in shapes_of(&mut case.frames) {
             *shape = kept.iter().position(|kept| kept == shape).unwrap_or(0) as u32;
         }
         if kept.len() < self.case.shapes.len() {
@@ -193,7 +209,7 @@ impl Search<'_> {
     /// Without triangles, one at a time, for claims about meshes. Volumes are built anew around
     /// what is left.
     fn fewer_triangles(&mut self) {
-        if !matches!(self.case.claim, Claim::Hull | Claim::Mesh) {
+        if !matches!(self.case.claim, Claim::Hull | Claim::Mesh | Claim::Parts) {
             return;
         }
         for shape in 0..self.case.shapes.len() {
@@ -219,14 +235,23 @@ impl Search<'_> {
                 }
                 let mut unturned = self.case.clone();
                 unturned.frames[frame].bodies.rotation[body] = [0.0, 0.0, 0.0, 1.0];
-                refit(&mut unturned, frame);
-                if !self.try_case(unturned) {
+                if refit(&mut unturned, frame).is_none() || !self.try_case(unturned) {
                     for n in 0..4 {
                         self.shorten(frame, &|frame| &mut frame.bodies.rotation[body][n]);
                     }
                 }
                 for n in 0..3 {
                     self.shorten(frame, &|frame| &mut frame.bodies.translation[body][n]);
+                }
+                // Other frames have the same parts, unless the set changes.
+                let parts = self.case.frames[0].parts.as_ref();
+                let parts = parts.filter(|_| self.case.frames.len() == 1);
+                let count = parts.map_or(0, |parts| parts[body].len());
+                for (part, n) in (0..7 * count).map(|at| (at / 7, at % 7)) {
+                    self.shorten(frame, &|frame| match &mut frame.parts {
+                        Some(parts) => &mut parts[body][part].pose[n],
+                        None => &mut frame.bodies.translation[body][0], // never
+                    });
                 }
             }
         }
@@ -244,10 +269,10 @@ impl Search<'_> {
             *number(&mut case.frames[frame]) = short;
             let ordered = |ends: &[f32; 6]| (0..3).all(|axis| ends[axis] <= ends[axis + 3]);
             let rotations = &case.frames[frame].bodies.rotation;
-            let sound = rotations.iter().all(|q| *q != [0.0; 4])
+            let mut sound = rotations.iter().all(|q| *q != [0.0; 4])
                 && case.frames[frame].boxes.iter().all(ordered);
             if !self.case.claim.is_of_boxes() && sound {
-                refit(&mut case, frame);
+                sound = refit(&mut case, frame).is_some();
             }
             if sound && self.try_case(case.clone()) {
                 return;
@@ -271,10 +296,32 @@ fn rounded(x: f32, digits: u32) -> f32 {
     }
 }
 
-fn refit(case: &mut Case, frame: usize) {
-    let bodies = case.frames[frame].bodies.clone();
-    let fitted = Frame::fitted(bodies, &case.shapes);
-    case.frames[frame].boxes = fitted.boxes;
+/// Fits the boxes of a frame again; `None` if a part's pose is no longer exact.
+fn refit(case: &mut Case, frame: usize) -> Option<()> {
+    case.frames[frame].refit(&case.shapes).ok()
+}
+
+/// The shape numbers of all bodies and parts.
+fn shapes_of(frames: &mut [Frame]) -> impl Iterator<Item = &mut u32> {
+    frames.iter_mut().flat_map(|frame| {
+        let parts = frame.parts.iter_mut().flatten().flatten();
+        let parts = parts.map(|part| &mut part.shape);
+        frame.bodies.shape.iter_mut().chain(parts)
+    })
+}
+
+/// The case in which a body has one part less; `None` if it would have none in some frame.
+fn without_part(case: &Case, body: usize, part: usize) -> Option<Case> {
+    let mut smaller = case.clone();
+    for frame in &mut smaller.frames {
+        let own = frame.parts.as_mut()?.get_mut(body)?;
+        if part < own.len() {
+            own.remove(part);
+        }
+        frame.bodies.shape[body] = own.first()?.shape;
+        frame.refit(&case.shapes).ok()?;
+    }
+    Some(smaller)
 }
 
 /// The case with one triangle of a shape less, and without the vertices that then belong to none.
@@ -298,7 +345,7 @@ fn without_triangle(case: &Case, shape: usize, triangle: usize) -> Option<Case> 
     let mut smaller = case.clone();
     smaller.shapes[shape] = rebuilt(&mesh, old)?;
     for frame in 0..smaller.frames.len() {
-        refit(&mut smaller, frame);
+        refit(&mut smaller, frame)?;
     }
     Some(smaller)
 }

@@ -116,8 +116,11 @@ fn prepared(culler: &mut impl Contestant, frame: &Frame) -> Result<(), &'static 
     if let Some(filter) = &frame.filter {
         can(culler.filter(filter), "it has no filters")?;
     }
-    match &frame.margins {
-        Some(margins) => can(culler.margins(margins), "it has no margins"),
+    if let Some(margins) = &frame.margins {
+        can(culler.margins(margins), "it has no margins")?;
+    }
+    match &frame.parts {
+        Some(parts) => can(culler.body_parts(parts), "its bodies are single shapes"),
         None => Ok(()),
     }
 }

@@ -3,6 +3,7 @@
 use sdop_reference as reference;
 use sdop_reference::exact::common::{self, Point};
 use sdop_reference::exact::{meeting, ordop, sphere};
+use sdop_reference::{WidePose, wide};
 
 use super::case::Frame;
 use super::claim::Claim;
@@ -36,7 +37,9 @@ impl Truth {
         self.claim
     }
 
-    /// Whether the claim holds of two bodies of a frame.
+    /// Whether the claim holds of two bodies of a frame. For bodies with parts, it has to hold of
+    /// any part of one and any part of the other: of their balls for the claim `sphere`, of their
+    /// meshes for others about posed shapes.
     ///
     /// # Errors
     /// A pose outside the contract.
@@ -44,12 +47,49 @@ impl Truth {
         if let Some(meet) = self.by_boxes(frame, [i, j]) {
             return Ok(meet);
         }
+        if frame.parts.is_some() {
+            return Ok(self.meeting_parts(frame, [i, j])?.is_some());
+        }
         let (a, b) = (self.body(frame, i)?, self.body(frame, j)?);
         Ok(match self.claim {
             Claim::Sphere => sphere::overlap(&a, &b).value,
             Claim::OrDop => ordop::overlap(&a, &b, reference::Overlap::Full).value,
-            _ => near(&a, &b) && meeting::overlap(&a, &b).meets,
+            _ => {
+                let [one, other] = [&a, &b].map(|body| (body.shape, body.pose.translation()));
+                near(one, other) && meeting::overlap(&a, &b).meets
+            }
         })
+    }
+
+    /// The first parts of two bodies of which the claim holds.
+    fn meeting_parts(
+        &self,
+        frame: &Frame,
+        pair: [u32; 2],
+    ) -> Result<Option<[PosedPart<'_>; 2]>, InvalidInput> {
+        let posed = |i: u32| -> Result<Vec<PosedPart<'_>>, InvalidInput> {
+            let parts = frame.posed_parts(i as usize)?.into_iter();
+            Ok(parts
+                .map(|(shape, pose)| (&self.shapes[shape as usize], pose))
+                .collect())
+        };
+        let (first, second) = (posed(pair[0])?, posed(pair[1])?);
+        for a in &first {
+            for b in &second {
+                let (one, other) = ((a.0, &a.1), (b.0, &b.1));
+                let meet = match self.claim {
+                    Claim::Sphere => wide::balls_overlap(one, other).value,
+                    _ => {
+                        near((a.0, a.1.translation()), (b.0, b.1.translation()))
+                            && wide::meet(one, other).meets
+                    }
+                };
+                if meet {
+                    return Ok(Some([*a, *b]));
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// What the given boxes decide; `None` for a claim about posed shapes.
@@ -60,7 +100,7 @@ impl Truth {
             Claim::Aabb | Claim::Order | Claim::Restore => Some(boxes_meet(a, b)),
             Claim::Filter => Some(boxes_meet(a, b) && !self.parts(frame, pair)),
             Claim::Margin => Some(boxes_near(a, b, margins())),
-            Claim::Sphere | Claim::OrDop | Claim::Hull | Claim::Mesh => None,
+            Claim::Sphere | Claim::OrDop | Claim::Hull | Claim::Mesh | Claim::Parts => None,
         }
     }
 
@@ -96,6 +136,10 @@ impl Truth {
             let (a, b) = (&frame.boxes[i as usize], &frame.boxes[j as usize]);
             return boxes_meet(a, b).then(|| Point::of([0, 1, 2].map(|axis| a[axis].max(b[axis]))));
         }
+        if frame.parts.is_some() {
+            let [a, b] = self.meeting_parts(frame, [i, j]).ok()??;
+            return wide::common_point((a.0, &a.1), (b.0, &b.1));
+        }
         let (a, b) = (self.body(frame, i).ok()?, self.body(frame, j).ok()?);
         match self.claim {
             Claim::Sphere => common::of_balls(&a, &b),
@@ -108,6 +152,9 @@ impl Truth {
         body(&self.shapes, &frame.bodies, i as usize)
     }
 }
+
+/// A part's shape and its exact pose in the world.
+type PosedPart<'a> = (&'a reference::Shape, WidePose);
 
 /// Closed boxes share a point: no rounding in it.
 #[must_use]
@@ -142,9 +189,8 @@ fn is_positive(terms: [f32; 4]) -> bool {
 
 /// Can two meshes meet at all? Not when their origins are further apart than both reaches on some
 /// axis; √3 and the ulps are in the factor 2.
-fn near(a: &reference::Body<'_>, b: &reference::Body<'_>) -> bool {
-    let (ta, tb) = (a.pose.translation(), b.pose.translation());
-    let reach = 2.0 * (a.shape.mesh().reach + b.shape.mesh().reach);
+fn near((a, ta): (&reference::Shape, [f64; 3]), (b, tb): (&reference::Shape, [f64; 3])) -> bool {
+    let reach = 2.0 * (a.mesh().reach + b.mesh().reach);
     (0..3).all(|axis| (ta[axis] - tb[axis]).abs() <= reach)
 }
 

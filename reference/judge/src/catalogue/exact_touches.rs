@@ -27,21 +27,6 @@ pub enum Touch {
 
 /// A cube with corners (±s, ±s, ±s) and an octahedron with tips at ±s on the axes.
 pub fn solids(size: f32) -> Result<[Shape; 2], CatalogueError> {
-    let corner = |n: u32| Vec3::from([0, 1, 2].map(|i| if n >> i & 1 == 1 { size } else { -size }));
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-    let cube = TriangleMesh::new(
-        "cube",
-        (0..8).map(corner),
-        quads.into_iter().flat_map(halves).collect(),
-    )?;
     let tips = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z].map(|tip| tip * size);
     let sides = [
         [0, 2, 4],
@@ -54,20 +39,39 @@ pub fn solids(size: f32) -> Result<[Shape; 2], CatalogueError> {
         [0, 3, 5],
     ];
     let octahedron = TriangleMesh::new("octahedron", tips, sides.to_vec())?;
+    Ok([cuboid("cube", [size; 3])?, built(&octahedron)?])
+}
+
+/// A box with corners at ± its half sides.
+pub fn cuboid(name: &str, half: [f32; 3]) -> Result<Shape, CatalogueError> {
+    let end = |n: u32, i: usize| if n >> i & 1 == 1 { half[i] } else { -half[i] };
+    let corner = |n: u32| Vec3::from([0, 1, 2].map(|i| end(n, i)));
+    let quads = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let triangles = quads.into_iter().flat_map(halves).collect();
+    built(&TriangleMesh::new(name, (0..8).map(corner), triangles)?)
+}
+
+fn built(mesh: &TriangleMesh) -> Result<Shape, CatalogueError> {
     let spec = ShapeSpec {
         origin: Origin::File,
         radius: None,
         directions: DirectionSet::K18,
         axes: Axes::Model,
     };
-    Ok([
-        Shape::build(&cube, &spec)?,
-        Shape::build(&octahedron, &spec)?,
-    ])
+    Ok(Shape::build(mesh, &spec)?)
 }
 
-/// Rotations that map the two solids onto themselves, exactly.
-const TURNS: [[f32; 4]; 5] = [
+/// Rotations by multiples of a quarter turn, exact as matrices: they map the two solids onto
+/// themselves.
+pub(super) const TURNS: [[f32; 4]; 5] = [
     [0.0, 0.0, 0.0, 1.0],
     [1.0, 0.0, 0.0, 1.0],
     [0.0, 2.0, 0.0, -2.0],

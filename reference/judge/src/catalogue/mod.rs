@@ -13,6 +13,7 @@ mod contacts;
 mod crowds;
 mod exact_touches;
 mod grid;
+mod parts;
 mod sleep;
 mod stale_data;
 
@@ -24,6 +25,7 @@ use super::claim::Claim;
 use crate::ours::contact::ContactKind;
 use crate::ours::forms::FormError;
 use crate::ours::hard::{self, HardCaseError, Recipe};
+use crate::ours::reference_shapes::InvalidInput;
 use crate::ours::seeded_draws::TurnKind;
 use sdop::mesh::MeshError;
 use sdop::volume::{Axes, DirectionSet, Shape, VolumeError};
@@ -33,6 +35,7 @@ use boxes::BoxKind;
 pub use boxes::of_boxes;
 use claim_inputs::ClaimInputKind;
 use crowds::CrowdKind;
+use parts::PartsKind;
 use stale_data::StaleKind;
 
 /// A case that can't be drawn.
@@ -50,6 +53,9 @@ pub enum CatalogueError {
     /// A shape.
     #[error(transparent)]
     Shape(#[from] VolumeError),
+    /// A composed pose that f64 doesn't hold.
+    #[error(transparent)]
+    Pose(#[from] InvalidInput),
 }
 
 /// Shapes and frames as drawn.
@@ -84,6 +90,8 @@ enum CaseDraw {
     Approach(ApproachKind),
     /// Boxes with the additional input of one claim.
     ClaimInput(ClaimInputKind, &'static [Claim; 1]),
+    /// Bodies of several parts.
+    Parts(PartsKind),
     /// A file of the hard cases.
     Hard(&'static str),
 }
@@ -190,6 +198,9 @@ sdop_data::with_hard_cases! { groups! {
     restore_replay "restore/replay", 6, CaseDraw::ClaimInput(ClaimInputKind::Restored, &[Claim::Restore]), "a state that is not in the snapshot", after "parry #402 and rapier #966";
     margin_global "margin/global", 6, CaseDraw::ClaimInput(ClaimInputKind::Margin, &[Claim::Margin]), "a margin that only the later test knows of", after "coal #625 and #685";
     margin_by_body "margin/by-body", 6, CaseDraw::ClaimInput(ClaimInputKind::Margins, &[Claim::Margin]), "one body's margin taken for both, a rounded sum", after "avian #952 and coal #802";
+    parts_touch "parts/touch", 6, CaseDraw::Parts(PartsKind::Still), "parts whose own rotation or offset is left out or not turned with the body, all parts but the first left out", after "Physijs #28 and bepuphysics2 #244";
+    parts_move "parts/move", 3, CaseDraw::Parts(PartsKind::Moving), "parts that stay behind when their body moves or turns";
+    parts_reframe "parts/reframe", 3, CaseDraw::Parts(PartsKind::Reframed), "stale parts after the frame of a body has changed", after "newton #4008 and playcanvas #3695";
 } }
 
 /// Every group: the catalogue's own, then the files of hard cases as `hard/…`.
@@ -234,6 +245,7 @@ impl CaseGroup {
         match self.draw {
             CaseDraw::Boxes(_) => &[Claim::Aabb],
             CaseDraw::ClaimInput(_, claims) => claims,
+            CaseDraw::Parts(_) => &[Claim::Parts],
             // So many bodies that meshes would take minutes.
             CaseDraw::Crowd(CrowdKind::NewPairs | CrowdKind::Partners) => {
                 &[Claim::Sphere, Claim::Aabb]
@@ -330,6 +342,7 @@ impl CaseGroup {
             CaseDraw::Sleep => sleep::touching(number, rng),
             CaseDraw::Approach(kind) => Ok(approaches::approach(kind, number, rng)?),
             CaseDraw::ClaimInput(kind, _) => claim_inputs::with_input(kind, number, rng),
+            CaseDraw::Parts(kind) => parts::touching(kind, number, rng),
             CaseDraw::Hard(text) => hard_case(text, number, seed),
         }
     }

@@ -2,6 +2,7 @@
 //! ([`rounds`]), and as a subject like any other program ([`subject`]).
 
 pub mod ledger;
+mod parts;
 pub mod rounds;
 pub mod run;
 pub mod subject;

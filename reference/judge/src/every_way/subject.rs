@@ -1,5 +1,7 @@
 //! Our cullers as a subject: in every way that they have, each in the mode whose turn it is.
 
+use super::parts;
+use super::run::RoundError;
 use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
@@ -7,9 +9,9 @@ use crate::contestant::WorldBox;
 use crate::ours::boxes::BoxCell;
 use crate::ours::compare::{culler, settings};
 use crate::ours::configurations::{Mode, Rotation, ways};
+use crate::shrink::Lists;
 use crate::subject::Subject;
 use sdop::bodies::Aabb;
-use sdop::culler::CullError;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::volume::{Axes, DirectionSet};
 
@@ -19,7 +21,7 @@ pub fn makes(strategy: Strategy, claim: Claim) -> bool {
     match claim {
         Claim::Sphere => strategy == Strategy::Sphere,
         Claim::OrDop => strategy == Strategy::OrDop,
-        Claim::Hull | Claim::Mesh => strategy.scheme().culls(),
+        Claim::Hull | Claim::Mesh | Claim::Parts => strategy.scheme().culls(),
         Claim::Aabb | Claim::Order | Claim::Filter | Claim::Restore | Claim::Margin => false,
     }
 }
@@ -38,16 +40,17 @@ impl EveryWay {
     }
 
     /// The claims that our cullers make.
-    pub const CLAIMS: [Claim; 6] = [
+    pub const CLAIMS: [Claim; 7] = [
         Claim::Sphere,
         Claim::Aabb,
         Claim::OrDop,
         Claim::Hull,
         Claim::Mesh,
         Claim::Order,
+        Claim::Parts,
     ];
 
-    fn lists(&self, case: &Case) -> Result<Vec<Vec<[u32; 2]>>, CullError> {
+    fn lists(&self, case: &Case) -> Result<Lists, RoundError> {
         if case.claim.is_of_boxes() {
             let cells = BoxCell::all(&self.rotation);
             return all_report(cells.map(|(cell, mode)| boxes(case, cell, mode)));
@@ -57,10 +60,11 @@ impl EveryWay {
         // Another turn for each case.
         let turn = case.name.bytes().map(u64::from).sum();
         let modes = self.rotation.turn(turn);
-        all_report(
-            ways.zip(modes.iter().cycle())
-                .map(|(way, &mode)| posed(case, &way, mode)),
-        )
+        let lists = |(way, &mode): (CullSettings, &Mode)| match case.claim {
+            Claim::Parts => Ok(parts::lists(case, &way, mode)?),
+            _ => posed(case, &way, mode),
+        };
+        all_report(ways.zip(modes.iter().cycle()).map(lists))
     }
 }
 
@@ -76,12 +80,10 @@ impl Subject for EveryWay {
     }
 }
 
-type Lists = Vec<Vec<[u32; 2]>>;
-
 /// The pairs that all of these lists contain, frame by frame; the lists are sorted.
 fn all_report(
-    mut lists: impl Iterator<Item = Result<Lists, CullError>>,
-) -> Result<Lists, CullError> {
+    mut lists: impl Iterator<Item = Result<Lists, RoundError>>,
+) -> Result<Lists, RoundError> {
     let mut common = lists.next().transpose()?.unwrap_or_default();
     for other in lists {
         for (common, other) in common.iter_mut().zip(other?) {
@@ -92,7 +94,7 @@ fn all_report(
 }
 
 /// The frames by one way; the culler is made anew for another set of bodies.
-fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists, CullError> {
+fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists, RoundError> {
     let made = |frame: &Frame| {
         let way = settings(way.strategy, way, frame.bodies.len());
         culler(&case.shapes, &frame.bodies, &way, mode)
@@ -108,7 +110,7 @@ fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists, CullError
 }
 
 /// The given boxes by one finder.
-fn boxes(case: &Case, cell: BoxCell, mode: Mode) -> Result<Lists, CullError> {
+fn boxes(case: &Case, cell: BoxCell, mode: Mode) -> Result<Lists, RoundError> {
     let mut culler = cell.culler(mode)?;
     let aabb = |&[x0, y0, z0, x1, y1, z1]: &WorldBox| Aabb::new([x0, y0, z0], [x1, y1, z1]);
     let list = |frame: &Frame| {

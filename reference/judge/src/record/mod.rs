@@ -51,9 +51,9 @@ pub const VERSION: u32 = 1;
 /// The additions to it that are written here.
 pub const MINOR: u32 = 2;
 
-/// The first line.
+/// The first line. A case of the judge has other bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Header {
+pub struct Header<Body = BodyLine> {
     /// [`FORMAT`].
     pub format: String,
     /// [`VERSION`].
@@ -86,7 +86,7 @@ pub struct Header {
     /// The shapes as built.
     pub shapes: Vec<ShapeLine>,
     /// The bodies, each with its shape.
-    pub bodies: Vec<BodyLine>,
+    pub bodies: Vec<Body>,
 }
 
 /// An effect that the program knows.

@@ -11,10 +11,10 @@ use sdop::bodies::Bodies;
 use sdop::files::WholeFile;
 use sdop::volume::Shape;
 
-impl Header {
+impl<Body> Header<Body> {
     /// The first line for these bodies, with what every record has.
     #[must_use]
-    pub fn new(scene: &str, seed: u64, shapes: &[Shape], bodies: &Bodies) -> Self {
+    pub fn new(scene: &str, seed: u64, shapes: &[Shape], bodies: Vec<Body>) -> Self {
         Self {
             format: FORMAT.to_owned(),
             version: VERSION,
@@ -28,7 +28,7 @@ impl Header {
             effects: None,
             cull: None,
             shapes: shapes.iter().map(ShapeLine::of).collect(),
-            bodies: BodyLine::all(bodies),
+            bodies,
         }
     }
 }

@@ -4,7 +4,8 @@
 //! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claims about given
 //! boxes, and `bodies` when the set changes, each with its former number as `was` (null for a new
 //! body). For some claims it also has `groups` and `excluded`, or `margins`, or `save` and
-//! `restore`.
+//! `restore`. A body of several shapes has `parts` in place of `shape`, so that a reader that knows
+//! single shapes alone reports an error.
 
 use std::io::BufRead;
 
@@ -15,11 +16,11 @@ use super::{ProgramAnswer, malformed};
 use crate::answer::{Answer, AnswerError};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
-use crate::contestant::{Filter, WorldBox};
+use crate::contestant::{BodyPart, Filter, WorldBox};
 use crate::json;
-use crate::record::{BodyLine, FORMAT, FrameLine, Header, ShapeLine, VERSION};
+use crate::record::{FORMAT, FrameLine, Header, ShapeLine, VERSION};
 use sdop::bodies::Bodies;
-use sdop::bodies::contract::check_bodies;
+use sdop::bodies::contract::{check_bodies, check_pose};
 use sdop::files::read_line;
 use sdop::volume::Shape;
 
@@ -27,7 +28,7 @@ use sdop::volume::Shape;
 #[derive(Serialize)]
 struct CaseHeader {
     #[serde(flatten)]
-    record: Header,
+    record: Header<CaseBody>,
     #[serde(flatten)]
     about: CaseFields,
 }
@@ -45,20 +46,62 @@ struct CaseFields {
     claims: Vec<Claim>,
 }
 
-/// A body of a changed set.
+/// A body: a [`BodyLine`](crate::record::BodyLine), or one of several parts, with its former number
+/// in a changed set.
 #[derive(Serialize, Deserialize)]
-struct ChangedBody {
-    #[serde(flatten)]
-    body: BodyLine,
+struct CaseBody {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    shape: Option<u32>,
+    #[serde(rename = "static")]
+    fixed: bool,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<BodyPart>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     was: Option<u32>,
+}
+
+impl CaseBody {
+    /// The bodies of a frame, each with its former number if the set changes.
+    fn all(frame: &Frame) -> Vec<Self> {
+        let body = |i: usize| {
+            let parts = frame
+                .parts
+                .as_ref()
+                .map_or(Vec::new(), |parts| parts[i].clone());
+            Self {
+                shape: parts.is_empty().then_some(frame.bodies.shape[i]),
+                fixed: !frame.bodies.dynamic[i],
+                parts,
+                was: frame.was.as_ref().and_then(|was| was[i]),
+            }
+        };
+        (0..frame.bodies.len()).map(body).collect()
+    }
+
+    /// Checks that it has a shape or valid parts, and not both. The shape number is otherwise
+    /// checked with the bodies' poses.
+    fn check(&self, number: usize, shapes: usize) -> Result<(), String> {
+        if self.shape.is_some() != self.parts.is_empty() {
+            return Err(format!("body {number} needs either `shape` or `parts`"));
+        }
+        let at = |part: usize, problem: String| format!("body {number}, part {part}: {problem}");
+        for (n, part) in self.parts.iter().enumerate() {
+            if part.shape as usize >= shapes {
+                return Err(at(n, format!("shape {} of {shapes}", part.shape)));
+            }
+            let (rotation, translation) = part.rotation_and_translation();
+            check_pose(n, &rotation, &translation)
+                .map_err(|e| at(n, format!("{} {}; {}", e.quantity, e.value, e.hint)))?;
+        }
+        Ok(())
+    }
 }
 
 #[derive(Serialize, Deserialize)]
 struct CaseFrame {
     frame: u32,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    bodies: Option<Vec<ChangedBody>>,
+    bodies: Option<Vec<CaseBody>>,
     poses: Vec<[f32; 7]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     boxes: Option<Vec<WorldBox>>,
@@ -84,8 +127,8 @@ fn is_false(value: &bool) -> bool {
 /// any.
 pub(crate) fn encode(case: &Case, reported: &[Vec<[u32; 2]>]) -> serde_json::Result<Vec<u8>> {
     let claim = case.claim;
-    let empty = Bodies::default();
-    let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
+    let mut first = case.frames.first().map_or(Vec::new(), CaseBody::all);
+    first.iter_mut().for_each(|body| body.was = None);
     let others = case.claims.iter().copied().filter(|other| *other != claim);
     let header = CaseHeader {
         record: Header {
@@ -104,7 +147,7 @@ pub(crate) fn encode(case: &Case, reported: &[Vec<[u32; 2]>]) -> serde_json::Res
     for (number, frame) in case.frames.iter().enumerate() {
         let line = CaseFrame {
             frame: number as u32,
-            bodies: frame.was.as_deref().map(|was| changed(&frame.bodies, was)),
+            bodies: frame.was.as_ref().map(|_| CaseBody::all(frame)),
             poses: FrameLine::poses(&frame.bodies),
             boxes: claim.is_of_boxes().then(|| frame.boxes.clone()),
             groups: frame.filter.as_ref().map(|filter| filter.groups.clone()),
@@ -118,13 +161,6 @@ pub(crate) fn encode(case: &Case, reported: &[Vec<[u32; 2]>]) -> serde_json::Res
         bytes.push(b'\n');
     }
     Ok(bytes)
-}
-
-fn changed(bodies: &Bodies, was: &[Option<u32>]) -> Vec<ChangedBody> {
-    let lines = BodyLine::all(bodies).into_iter().zip(was);
-    lines
-        .map(|(body, &was)| ChangedBody { body, was })
-        .collect()
 }
 
 /// A case as read from a file, with the pairs that its frames have.
@@ -156,7 +192,7 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
         return Err("no line in it: the first has the shapes and bodies".to_owned());
     };
     let first = first.map_err(|e| format!("line 1: {e}"))?;
-    let header: Header = parse(1, &first)?;
+    let header: Header<CaseBody> = parse(1, &first)?;
     let CaseFields {
         flag,
         source,
@@ -188,12 +224,8 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
         }
         next = line.frame.saturating_add(1);
         let was = line.bodies.map(|changed| {
-            let (set, was) = changed
-                .into_iter()
-                .map(|line| (line.body, line.was))
-                .unzip();
-            bodies = set;
-            was
+            bodies = changed;
+            bodies.iter().map(|body| body.was).collect()
         });
         if line.poses.len() != bodies.len() {
             return Err(at(format!(
@@ -203,11 +235,15 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
             )));
         }
         let mut posed = Bodies::default();
-        for (body, &[x, y, z, w, tx, ty, tz]) in bodies.iter().zip(&line.poses) {
-            posed.push(body.shape, !body.fixed, [x, y, z, w], [tx, ty, tz]);
+        for (n, (body, &[x, y, z, w, tx, ty, tz])) in bodies.iter().zip(&line.poses).enumerate() {
+            body.check(n, shapes.len()).map_err(at)?;
+            let shape = body.shape.or(body.parts.first().map(|part| part.shape));
+            posed.push(shape.unwrap_or(0), !body.fixed, [x, y, z, w], [tx, ty, tz]);
         }
         check_bodies(&posed, &shapes).map_err(|e| at(format!("{e}; {}", e.hint)))?;
-        let mut frame = Frame::fitted(posed, &shapes);
+        let parts = bodies.iter().map(|body| body.parts.clone()).collect();
+        let frame = Frame::of_parts(posed, parts, &shapes);
+        let mut frame = frame.map_err(|e| at(e.to_string()))?;
         if let Some(boxes) = line.boxes {
             frame.boxes = checked(boxes, bodies.len()).map_err(at)?;
         }
@@ -231,13 +267,18 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
         frames.push(frame);
         pairs.push(line.pairs);
     }
+    let has_parts = frames.iter().any(|frame: &Frame| frame.parts.is_some());
+    let (claim, all) = match has_parts {
+        true => (Claim::Parts, &[Claim::Parts][..]),
+        false => (Claim::Mesh, Claim::PLAIN),
+    };
     let case = Case {
         name: header.scene,
         flag,
         source,
-        claim: claims.first().copied().unwrap_or(Claim::Mesh),
+        claim: claims.first().copied().unwrap_or(claim),
         claims: if claims.is_empty() {
-            Claim::PLAIN.to_vec()
+            all.to_vec()
         } else {
             claims
         },
@@ -258,7 +299,7 @@ fn parse<T: for<'a> Deserialize<'a>>(number: usize, line: &[u8]) -> Result<T, St
 }
 
 /// What a frame has for each body.
-fn sized<T>(all: Vec<T>, bodies: &[BodyLine], what: &str) -> Result<Vec<T>, String> {
+fn sized<T>(all: Vec<T>, bodies: &[CaseBody], what: &str) -> Result<Vec<T>, String> {
     if all.len() == bodies.len() {
         return Ok(all);
     }

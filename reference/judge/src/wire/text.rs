@@ -7,8 +7,7 @@ use super::{ProgramAnswer, malformed};
 use crate::answer::{Answer, AnswerError};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
-use crate::contestant::Filter;
-use sdop::bodies::Bodies;
+use crate::contestant::{BodyPart, Filter};
 use sdop::volume::Shape;
 
 /// A whole case for one claim. Formatting into a String cannot fail.
@@ -19,11 +18,11 @@ pub(super) fn encode(case: &Case) -> String {
     for shape in &case.shapes {
         write_shape(&mut text, shape);
     }
-    let empty = Bodies::default();
-    let first = case.frames.first().map_or(&empty, |frame| &frame.bodies);
-    let _ = writeln!(text, "bodies {}", first.len());
-    for i in 0..first.len() {
-        let _ = writeln!(text, "{} {}", first.shape[i], u32::from(!first.dynamic[i]));
+    let empty = Frame::default();
+    let first = case.frames.first().unwrap_or(&empty);
+    let _ = writeln!(text, "bodies {}", first.bodies.len());
+    for i in 0..first.bodies.len() {
+        write_body(&mut text, claim, first, i, None);
     }
     for (number, frame) in case.frames.iter().enumerate() {
         write_frame(&mut text, claim, number, frame);
@@ -70,6 +69,28 @@ fn words(text: &mut String, bits: impl Iterator<Item = u32>) {
     text.push('\n');
 }
 
+/// A body, with its former number in a changed set, and its parts for the claim that is about them.
+fn write_body(text: &mut String, claim: Claim, frame: &Frame, i: usize, was: Option<i64>) {
+    let parts = frame.parts.as_ref().map_or(&[][..], |parts| &parts[i]);
+    let shape = if parts.is_empty() {
+        i64::from(frame.bodies.shape[i])
+    } else {
+        -1
+    };
+    let _ = write!(text, "{shape} {}", u32::from(!frame.bodies.dynamic[i]));
+    if let Some(was) = was {
+        let _ = write!(text, " {was}");
+    }
+    if claim == Claim::Parts {
+        let _ = write!(text, " {}", parts.len());
+    }
+    text.push('\n');
+    for BodyPart { shape, pose } in parts {
+        let _ = write!(text, "part {shape}");
+        hex(text, pose);
+    }
+}
+
 fn write_frame(text: &mut String, claim: Claim, number: usize, frame: &Frame) {
     let bodies = &frame.bodies;
     if frame.restore {
@@ -78,13 +99,7 @@ fn write_frame(text: &mut String, claim: Claim, number: usize, frame: &Frame) {
     if let Some(was) = &frame.was {
         let _ = writeln!(text, "change {}", bodies.len());
         for (i, was) in was.iter().enumerate() {
-            let was = was.map_or(-1, i64::from);
-            let _ = writeln!(
-                text,
-                "{} {} {was}",
-                bodies.shape[i],
-                u32::from(!bodies.dynamic[i])
-            );
+            write_body(text, claim, frame, i, Some(was.map_or(-1, i64::from)));
         }
     }
     let _ = writeln!(text, "frame {number} {}", bodies.len());

@@ -308,7 +308,7 @@ fn needs(way: &CullSettings, predicate: Predicate) -> bool {
 }
 
 /// Culls in this way and mode.
-pub(super) fn culler(way: &CullSettings, mode: Mode) -> CullerBuilder {
+pub fn culler(way: &CullSettings, mode: Mode) -> CullerBuilder {
     let culler = Culler::builder().settings(way).updates(mode.updates);
     culler.tier(mode.tier).threads(mode.threads).worth_waking(0)
 }

@@ -18,9 +18,11 @@ use std::collections::BTreeMap;
 
 pub use compounds::judge_compounds;
 pub use draw::{draw_boxes, draw_meshes, history_shapes};
+pub(crate) use judge::culler;
 pub use judge::{judge_boxes, judge_meshes};
 pub use periodic::{Repeated, judge_periodic_boxes, judge_periodic_meshes};
 pub use robots::Robots;
+pub(crate) use worlds::{CompoundWorld, JudgedWorld};
 
 use super::configurations::{Rotation, rows, variants};
 use super::reference_shapes::InvalidInput;
