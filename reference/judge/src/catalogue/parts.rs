@@ -186,8 +186,8 @@ fn reframe(body: &mut RowBody, rng: &mut impl Rng) -> Result<(), CatalogueError>
     })?
     .centre;
     for part in &mut body.parts {
-        for axis in 0..3 {
-            part.pose[4 + axis] -= by[axis];
+        for (at, by) in part.pose[4..].iter_mut().zip(by) {
+            *at -= by;
         }
     }
     Ok(())
