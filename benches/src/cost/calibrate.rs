@@ -14,7 +14,7 @@ use super::predict::Prices;
 use super::world_calibration::WorldCalibration;
 use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;
-use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn};
+use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn, turn_frames};
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
@@ -186,7 +186,8 @@ impl Calibration {
     /// One turn of one calibration scene.
     fn turn(&mut self, subject: usize) -> Result<(), SimulationError> {
         let (scene, trajectory) = &mut self.subjects[subject];
-        let poses = next_turn(trajectory, scene.bodies.len(), &mut Vec::new())?;
+        let frames = turn_frames(scene.bodies.len());
+        let poses = next_turn(trajectory, frames, &mut Vec::new())?;
         let mut cullers = Vec::new();
         for prepared in &mut self.prepared {
             // Shapes are the same in all scenes.

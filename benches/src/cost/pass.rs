@@ -8,7 +8,9 @@ use super::predict::Prices;
 use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;
 use crate::measure::estimate::Estimate;
-use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn, turn_frames};
+use crate::measure::turns::{
+    FrameTimes, MOST_TURN_FRAMES, Regime, Turns, median, next_turn, turn_frames,
+};
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
@@ -59,9 +61,12 @@ pub trait Frames {
 }
 
 /// The frames of a scene's run, from the first on.
+///
+/// Where bodies rest, a turn has as many frames as one of the calibration of worlds. A world reads
+/// only a part of its data per frame, so it takes several frames to bring that into the caches.
 pub struct SceneFrames {
     trajectory: Trajectory,
-    bodies: usize,
+    turn_frames: usize,
     frames: u32,
     steps: Vec<f64>,
 }
@@ -74,7 +79,10 @@ impl SceneFrames {
     pub fn new(scene: &Scene, frames: u32) -> Result<Self, SimulationError> {
         Ok(Self {
             trajectory: Trajectory::new(scene)?.with_frames(frames),
-            bodies: scene.bodies.len(),
+            turn_frames: match scene.effects.rest {
+                Some(_) => MOST_TURN_FRAMES,
+                None => turn_frames(scene.bodies.len()),
+            },
             frames,
             steps: Vec::new(),
         })
@@ -83,12 +91,12 @@ impl SceneFrames {
 
 impl Frames for SceneFrames {
     fn turns(&self) -> usize {
-        (self.frames as usize).div_ceil(turn_frames(self.bodies))
+        (self.frames as usize).div_ceil(self.turn_frames)
     }
 
     fn next_turn(&mut self) -> Result<Option<(u32, Vec<Bodies>)>, SimulationError> {
         let first = self.trajectory.next_number();
-        let poses = next_turn(&mut self.trajectory, self.bodies, &mut self.steps)?;
+        let poses = next_turn(&mut self.trajectory, self.turn_frames, &mut self.steps)?;
         Ok((!poses.is_empty()).then_some((first, poses)))
     }
 
@@ -176,4 +184,31 @@ pub fn pass(
 pub fn medians(passes: &[Pass], at: usize, regime: Regime) -> Estimate {
     let seconds = |pass: &Pass| pass.culled[at].times.quartiles(regime).median;
     Estimate::in_order(&passes.iter().map(seconds).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use std::path::Path;
+
+    use super::*;
+    use crate::scene::SceneFile;
+
+    #[test]
+    fn turns_are_long_with_rest() {
+        let turns = |rest: &str| {
+            let text = format!(
+                "name = \"a\"\nframes = 16\n[box]\npartners = 1\n\
+                 [[bodies]]\nshape = \"box\"\ncount = 5000\n\
+                 [effects]\nmotion = true\n{rest}\n"
+            );
+            let file = SceneFile::parse(&text, "a.toml", Path::new(".")).unwrap();
+            let mut frames = SceneFrames::new(&file.build().unwrap(), 16).unwrap();
+            let (_, poses) = frames.next_turn().unwrap().unwrap();
+            (frames.turns(), poses.len())
+        };
+        assert_eq!(turns(""), (8, 2));
+        assert_eq!(turns("rest = { speed = 1.0, after = 0.1 }"), (2, 8));
+    }
 }

@@ -6,17 +6,20 @@ use super::explain::{Round, TurnObservation, VariantTurns};
 use super::explain_world;
 use super::predict::Prices;
 use super::world_design;
+use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;
-use crate::measure::turns::{FrameTimes, Regime, Turns};
+use crate::measure::turns::{MOST_TURN_FRAMES, Turns};
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
 use sdop::bodies::Bodies;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
+use sdop_judge::contestant::Contestant;
 
-/// Frames of a calibration scene that are timed in a round, after the one that a world begins with.
-const TIMED_FRAMES: usize = 8;
+/// Frames of a calibration scene that are timed in a round. Each is one observation, because few
+/// bodies are queried, and frames differ in how many of them are thawed.
+const TIMED_FRAMES: usize = MOST_TURN_FRAMES;
 
 /// The calibration of some worlds.
 pub(super) struct WorldCalibration {
@@ -75,8 +78,8 @@ impl WorldCalibration {
         }))
     }
 
-    /// One turn of each variant on a calibration scene. Appends what it observes of warm and of
-    /// cold frames.
+    /// One turn of each variant on a calibration scene. Appends what it observes of each warm and
+    /// each cold frame.
     fn turn(
         &mut self,
         subject: usize,
@@ -84,10 +87,10 @@ impl WorldCalibration {
     ) -> Result<(), SimulationError> {
         let (scene, trajectory) = &mut self.subjects[subject];
         let mut poses: Vec<Bodies> = Vec::new();
-        for _ in 0..=TIMED_FRAMES {
+        for _ in 0..TIMED_FRAMES + 2 {
             poses.extend(trajectory.advance()?.cloned());
         }
-        let Some((first, poses)) = poses.split_first() else {
+        let [first, second, poses @ ..] = &*poses else {
             return Ok(());
         };
         let begun = Scene {
@@ -98,20 +101,22 @@ impl WorldCalibration {
         let mut worlds = worlds
             .map(|(variant, shapes)| variant.culling_of(shapes, &begun, self.tier))
             .collect::<Result<Vec<Culling>, _>>()?;
-        let mut times = vec![FrameTimes::default(); worlds.len()];
-        self.turns
-            .round(&mut worlds, poses, |timed| times[timed.number].push(&timed));
-        for ((world, times), observed) in worlds.iter().zip(&times).zip(observed) {
+        // In the first frame, a world thaws every body that moves.
+        worlds.iter_mut().for_each(|world| world.frame(second));
+        let mut before: Vec<Counts> = worlds.iter().map(Culling::counts).collect();
+        self.turns.round(&mut worlds, poses, |timed| {
+            let (world, counts) = (&timed.contestant, timed.contestant.counts());
+            observed[timed.number][timed.regime as usize].push(TurnObservation {
+                bodies: first.len(),
+                frames: 1,
+                counts: counts.since(&before[timed.number]),
+                stages: world.last().without(timed.waited),
+                construct: world.construct_seconds(),
+            });
+            before[timed.number] = counts;
+        });
+        for world in &worlds {
             world.accepted()?;
-            for (&regime, all) in Regime::ALL.iter().zip(observed) {
-                all.push(TurnObservation {
-                    bodies: first.len(),
-                    frames: poses.len(),
-                    counts: world.counts(),
-                    stages: times.medians(regime),
-                    construct: world.construct_seconds(),
-                });
-            }
         }
         Ok(())
     }
@@ -126,8 +131,8 @@ mod tests {
     use super::*;
     use crate::scene::SceneFile;
 
-    /// Few enough bodies move that every frame keeps the others. Of those queried, many or few have
-    /// just been woken.
+    /// Few enough bodies move that every frame keeps the others. Of those queried in warm frames,
+    /// many have just been woken in half of the scenes, and hardly any in the others.
     #[test]
     fn calibration_worlds_keep_bodies() {
         let text = "name = \"a\"\nframes = 2\n[box]\npartners = 1\n\
@@ -141,14 +146,21 @@ mod tests {
         for subject in 0..SCENES {
             worlds.turn(subject, &mut observed).unwrap();
         }
+        let [warm, cold] = &observed[0];
+        assert_eq!(cold.len(), SCENES);
         let mut woken = Vec::new();
-        for turn in &observed[0][0] {
-            let rest = turn.counts.culler.rest;
-            assert_eq!(rest.queried + rest.kept, (turn.bodies * turn.frames) as u64);
-            assert!(rest.queried >= turn.frames as u64 && rest.kept > rest.queried);
-            woken.push(rest.thawed as f64 / rest.queried as f64);
+        for frames in warm.chunks(TIMED_FRAMES - 1) {
+            let (mut queried, mut thawed) = (0, 0);
+            for frame in frames {
+                let rest = frame.counts.culler.rest;
+                assert_eq!(rest.queried + rest.kept, frame.bodies as u64);
+                assert!(rest.queried >= 1 && rest.kept > rest.queried);
+                (queried, thawed) = (queried + rest.queried, thawed + rest.thawed);
+            }
+            woken.push(thawed as f64 / queried as f64);
         }
         woken.sort_by(f64::total_cmp);
-        assert!(woken[2] < 0.15 && woken[SCENES - 3] > 0.25, "{woken:?}");
+        assert!(woken[SCENES / 2 - 1] < 0.05, "{woken:?}");
+        assert!(woken[SCENES - 3] > 0.2, "{woken:?}");
     }
 }

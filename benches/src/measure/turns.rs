@@ -38,7 +38,7 @@ const PREPARED_BODIES: usize = 1 << 13;
 /// two microseconds and disturbs the caches, and short frames are rarely interrupted.
 const LEAST_WATCHED_SECONDS: f64 = 100e-6;
 /// The most frames of a turn.
-const MOST_FRAMES: usize = 8;
+pub const MOST_TURN_FRAMES: usize = 8;
 /// Bytes by which the stack is displaced at once, what a call takes included or not.
 const DISPLACEMENT: usize = 208;
 /// Displacements that go round a page, and by how many the next frame's is larger; they share no
@@ -163,7 +163,7 @@ pub const FEWEST_TIMED_FRAMES: NonZeroU32 = NonZeroU32::MIN.saturating_add(1);
 /// which is warm.
 #[must_use]
 pub fn turn_frames(bodies: usize) -> usize {
-    (PREPARED_BODIES / bodies.max(1)).clamp(2, MOST_FRAMES)
+    (PREPARED_BODIES / bodies.max(1)).clamp(2, MOST_TURN_FRAMES)
 }
 
 /// The times of one contestant's frames, in the order of their measurement.
@@ -279,18 +279,18 @@ impl Quartiles {
     }
 }
 
-/// The poses of the next turn's frames; none after the last frame. Seconds of the steps are
-/// appended to `steps`.
+/// The poses of the next turn's frames, at most `frames`; none after the last frame. Seconds of the
+/// steps are appended to `steps`.
 ///
 /// # Errors
 /// A body that leaves the contract.
 pub fn next_turn(
     trajectory: &mut Trajectory,
-    bodies: usize,
+    frames: usize,
     steps: &mut Vec<f64>,
 ) -> Result<Vec<Bodies>, SimulationError> {
     let mut poses = Vec::new();
-    while poses.len() < turn_frames(bodies) {
+    while poses.len() < frames {
         let stepped = trajectory.next_number() > 0;
         let Some(bodies) = trajectory.advance()? else {
             break;

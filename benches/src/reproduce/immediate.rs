@@ -7,7 +7,7 @@
 //! all at the end, and differs in nothing else.
 
 use super::plan::PaperScene;
-use crate::measure::turns::{Regime, Turns, median, next_turn};
+use crate::measure::turns::{Regime, Turns, median, next_turn, turn_frames};
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
 use sdop::bodies::Bodies;
@@ -150,8 +150,9 @@ pub fn measure(
     let mut seconds = vec![Vec::new(); loops.len()];
     let mut trajectory = Trajectory::new(scene)?.with_frames(FRAMES);
     let mut turns = Turns::from_stream(2);
+    let frames = turn_frames(scene.bodies.len());
     loop {
-        let poses = next_turn(&mut trajectory, scene.bodies.len(), &mut Vec::new())?;
+        let poses = next_turn(&mut trajectory, frames, &mut Vec::new())?;
         if poses.is_empty() {
             break;
         }

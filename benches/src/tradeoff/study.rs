@@ -107,7 +107,7 @@ impl Findings {
             simd: settings.machine.simd.clone(),
             truth: measured.true_pairs(),
             partners: 2.0 * hits / settings.bodies as f64,
-            advice: pays::advice(&cheapest, &self.narrow_phase),
+            advice: pays::advice(&cheapest, &self.narrow_phase, settings.has_rest),
             narrow_phase: self.narrow_phase,
             interest: interest::rows(&first.interest, &self.interest),
             rows,

@@ -75,6 +75,9 @@ pub struct Settings {
     pub frames: u32,
     /// The runs' seeds.
     pub seeds: Vec<u64>,
+    /// Whether bodies fall asleep.
+    #[serde(default)]
+    pub has_rest: bool,
     samples: u32,
     pairs: u32,
     window: u32,
@@ -212,6 +215,7 @@ impl Comparison {
             bodies: self.scene.bodies.len(),
             frames: self.scene.frames,
             seeds: seeds(&self.file, &self.plan),
+            has_rest: self.scene.effects.rest.is_some(),
             samples,
             pairs,
             window,
