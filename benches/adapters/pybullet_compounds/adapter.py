@@ -11,7 +11,7 @@ from wire import ObjectCuller, serve
 
 if "--version" not in sys.argv:
     pybullet.connect(pybullet.DIRECT)
-    FOLDER = Path(tempfile.mkdtemp())
+    FOLDER = tempfile.TemporaryDirectory()  # removed at the end
 
 
 class Adapter(ObjectCuller):
@@ -55,7 +55,7 @@ class Adapter(ObjectCuller):
 def mesh_file(shape):
     text = "".join(f"v {x} {y} {z}\n" for x, y, z in shape["vertices"])
     text += "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in shape["triangles"])
-    path = FOLDER / f"{abs(hash(text))}.obj"
+    path = Path(FOLDER.name) / f"{abs(hash(text))}.obj"
     path.write_text(text)
     return str(path)
 
