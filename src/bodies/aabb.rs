@@ -36,34 +36,6 @@ impl Aabb {
         std::array::from_fn(|axis| 0.5 * self.max[axis] - 0.5 * self.min[axis])
     }
 
-    /// Whether the ends have the same bits as another's. Comparing bits works in every
-    /// floating-point mode.
-    #[inline]
-    pub(crate) fn has_bits_of(&self, other: &Self) -> bool {
-        // Written out and without a branch: of every box that is set.
-        let difference = |axis: usize| {
-            (self.min[axis].to_bits() ^ other.min[axis].to_bits())
-                | (self.max[axis].to_bits() ^ other.max[axis].to_bits())
-        };
-        difference(0) | difference(1) | difference(2) == 0
-    }
-
-    /// Whether the ends are finite and in order. Compares bits, so it works in every floating-point
-    /// mode; it is false for a lower end of 0 and an upper end of −0.
-    #[inline]
-    fn is_surely_sound(&self) -> bool {
-        const INFINITY: u32 = f32::INFINITY.to_bits();
-        // The bits of positive numbers are in the order of the numbers; those of negative ones in
-        // the opposite order.
-        let rank = |bits: u32| (bits ^ (((bits as i32) >> 31) as u32 >> 1)) as i32;
-        let size = |bits: u32| bits & !(1 << 31);
-        let is_sound = |axis: usize| {
-            let (lo, hi) = (self.min[axis].to_bits(), self.max[axis].to_bits());
-            (size(lo) < INFINITY) & (size(hi) < INFINITY) & (rank(lo) <= rank(hi))
-        };
-        is_sound(0) & is_sound(1) & is_sound(2)
-    }
-
     /// Checks that a box is valid; `body` is its number in the error.
     #[inline]
     pub(crate) fn check(&self, body: usize) -> Result<(), ContractError> {

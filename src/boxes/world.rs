@@ -187,6 +187,13 @@ impl BoxWorld {
     pub fn set(&mut self, id: BodyId, body: impl Into<BoxBody>) -> Result<(), WorldError> {
         let (slot, body) = (self.ids.slot(id)?, body.into());
         body.bounds.check(slot)?;
+        self.set_checked(slot, body);
+        Ok(())
+    }
+
+    /// [`Self::set`] of a present box to a valid one.
+    #[inline]
+    pub(crate) fn set_checked(&mut self, slot: usize, body: BoxBody) {
         let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.dynamic[slot]);
         let is_same = body.bounds.has_bits_of(&self.bounds[slot])
             && is_dynamic == was_dynamic
@@ -196,7 +203,6 @@ impl BoxWorld {
             self.movers.note(slot, &self.ids);
         }
         self.put(slot, body);
-        Ok(())
     }
 
     /// Moves or resizes a box. It costs nothing if the ends are equal, and a box at rest stays at

@@ -5,10 +5,11 @@ use super::PeriodicError;
 use super::images::{ImageWorld, PlacedBody, Placement, forward_images};
 use super::periods::Periods;
 use crate::bodies::contract::refuse;
-use crate::bodies::{Aabb, Groups, Motion};
+use crate::bodies::{Groups, Motion};
 use crate::boxes::{BoxBody, BoxWorld};
+use crate::query::QueryVolume;
 use crate::rounding::period::{is_below_half, is_within, shifted, wrap};
-use crate::rounding::{LIMIT, down, up};
+use crate::rounding::{LIMIT, outward_box};
 use crate::world::{BodyId, WorldError, WorldPairs};
 
 /// A box of [`PeriodicBoxes`](super::PeriodicBoxes).
@@ -36,6 +37,7 @@ impl PeriodicBox {
         }
     }
 
+    #[inline]
     fn check(&self, slot: usize) -> Result<(), PeriodicError> {
         let is_sound = |axis: usize| {
             let [lo, hi] = [self.min[axis], self.max[axis]];
@@ -51,9 +53,10 @@ impl PeriodicBox {
     }
 
     /// The box in f32 about this one, moved by whole periods.
+    #[inline]
     fn image(&self, shift: [i32; 3], periods: &Periods) -> BoxBody {
         let (mut min, mut max) = (self.min, self.max);
-        for (axis, period) in periods.iter() {
+        for (axis, period) in periods.iter().filter(|&(axis, _)| shift[axis] != 0) {
             // An end is moved by no period, exactly, or to where it is half of the period or more,
             // and the sum is off by 2⁻⁵³ of itself.
             let moved = |end: f64| {
@@ -63,18 +66,55 @@ impl PeriodicBox {
             (min[axis], max[axis]) = (moved(min[axis]), moved(max[axis]));
         }
         BoxBody {
-            bounds: Aabb::new(min.map(down), max.map(up)),
+            bounds: outward_box(&min, &max),
             motion: self.motion,
             groups: self.groups,
         }
     }
 }
 
+/// The place of a box that is not within one period about the origin.
+fn wrapped(slot: usize, body: &PeriodicBox, periods: &Periods) -> Result<Placement, PeriodicError> {
+    let mut place = Placement::default();
+    for (axis, period) in periods.iter() {
+        let [lo, hi] = [body.min[axis], body.max[axis]];
+        if !is_below_half(lo, hi, period) {
+            return Err(periods.size_error(slot, axis, hi - lo));
+        }
+        periods.check_position(slot, axis, lo)?;
+        let (rest, n) = wrap(lo, period);
+        let size = hi - lo;
+        let is_beyond = rest + 0.5 * size > 0.5 * period;
+        place.shift[axis] = -n - i32::from(is_beyond);
+        place.lo[axis] = if is_beyond { rest - period } else { rest };
+        place.hi[axis] = place.lo[axis] + size;
+    }
+    Ok(place)
+}
+
+/// Whether a box between two ends meets another one that is moved by whole periods.
+fn meets(
+    [min, max]: [&[f64; 3]; 2],
+    other: &PeriodicBox,
+    image: [i32; 3],
+    periods: &Periods,
+) -> bool {
+    let periods = periods.get();
+    (0..3).all(|axis| {
+        let (n, period) = (image[axis], periods[axis].unwrap_or(0.0)); // n is 0 without one
+        is_within(min[axis], other.max[axis], n, period)
+            && is_within(other.min[axis], max[axis], -n, period)
+    })
+}
+
 impl ImageWorld for BoxWorld {
     type Body = PeriodicBox;
 
+    const IS_EXACT: bool = true;
+
     forward_images!(PeriodicBox, PeriodicBox::image);
 
+    #[inline]
     fn place(
         &self,
         slot: usize,
@@ -82,21 +122,14 @@ impl ImageWorld for BoxWorld {
         periods: &Periods,
     ) -> Result<Placement, PeriodicError> {
         body.check(slot)?;
-        let mut place = Placement::default();
-        for (axis, period) in periods.iter() {
-            let [lo, hi] = [body.min[axis], body.max[axis]];
-            if !is_below_half(lo, hi, period) {
-                return Err(periods.size_error(slot, axis, hi - lo));
-            }
-            periods.check_position(slot, axis, lo)?;
-            let (rest, n) = wrap(lo, period);
-            let size = hi - lo;
-            let is_beyond = rest + 0.5 * size > 0.5 * period;
-            place.shift[axis] = -n - i32::from(is_beyond);
-            place.lo[axis] = if is_beyond { rest - period } else { rest };
-            place.hi[axis] = place.lo[axis] + size;
+        if periods.contain(&body.min, &body.max) {
+            return Ok(Placement {
+                lo: body.min,
+                hi: body.max,
+                ..Placement::default()
+            });
         }
-        Ok(place)
+        wrapped(slot, body, periods)
     }
 
     fn may_touch(
@@ -105,16 +138,18 @@ impl ImageWorld for BoxWorld {
         b: &PlacedBody<PeriodicBox>,
         image: [i32; 3],
     ) -> bool {
-        let (a, b) = (&a.body, &b.body);
-        periods
-            .get()
-            .iter()
-            .zip(image)
-            .enumerate()
-            .all(|(axis, (period, n))| {
-                let period = period.unwrap_or(0.0); // n is 0
-                is_within(a.min[axis], b.max[axis], n, period)
-                    && is_within(b.min[axis], a.max[axis], -n, period)
-            })
+        meets([&a.body.min, &a.body.max], &b.body, image, periods)
+    }
+
+    fn may_touch_volume(
+        periods: &Periods,
+        body: &PlacedBody<PeriodicBox>,
+        image: [i32; 3],
+        volume: &QueryVolume<'_>,
+    ) -> bool {
+        match volume {
+            QueryVolume::Box { min, max } => meets([min, max], &body.body, image, periods),
+            _ => true,
+        }
     }
 }

@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use super::PeriodicError;
 use super::periods::Periods;
+use crate::query::QueryVolume;
 use crate::world::{BodyId, WorldError, WorldPairs};
 
 /// Where a body is within one period of each periodic axis, −½ to ½ of it about the origin.
@@ -25,11 +26,42 @@ pub struct PlacedBody<B> {
     pub place: Placement,
 }
 
+/// What is in a slot of the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Image {
+    pub of: BodyId,
+    /// One bit per axis along which the body is moved by one period more than to its place.
+    pub axes: u8,
+    /// The axes along which a body, in its own slot, has images across the border.
+    pub across: u8,
+    /// By how many periods the body is moved.
+    pub shift: [i32; 3],
+    pub is_small: bool,
+}
+
+impl Image {
+    pub fn new(of: BodyId, axes: u8, place: &Placement) -> Self {
+        let shift = [0, 1, 2].map(|axis| place.shift[axis] + i32::from(axes >> axis & 1));
+        Self {
+            of,
+            axes,
+            across: 0,
+            shift,
+            is_small: place.is_small,
+        }
+    }
+}
+
 /// A world that can hold the images of bodies: [`World`](crate::World) or
 /// [`BoxWorld`](crate::BoxWorld).
 pub trait ImageWorld: sealed::Sealed {
     /// A body as the user gives it, anywhere.
-    type Body: Copy + Debug + PartialEq;
+    type Body: Copy + Debug + PartialEq + Sync;
+
+    /// Whether pairs are decided exactly, so that they don't depend on the period in which a body
+    /// is held.
+    #[doc(hidden)]
+    const IS_EXACT: bool;
 
     /// Checks a body and finds its place.
     #[doc(hidden)]
@@ -40,7 +72,7 @@ pub trait ImageWorld: sealed::Sealed {
         periods: &Periods,
     ) -> Result<Placement, PeriodicError>;
 
-    /// Adds the image of a body that is moved by whole periods.
+    /// Adds the image of a body that is moved by whole periods and has a place.
     #[doc(hidden)]
     fn add_image(
         &mut self,
@@ -49,15 +81,9 @@ pub trait ImageWorld: sealed::Sealed {
         periods: &Periods,
     ) -> Result<BodyId, WorldError>;
 
-    /// Changes the image of a body.
+    /// Changes the image of a body, which has a place.
     #[doc(hidden)]
-    fn set_image(
-        &mut self,
-        id: BodyId,
-        body: &Self::Body,
-        shift: [i32; 3],
-        periods: &Periods,
-    ) -> Result<(), WorldError>;
+    fn set_image(&mut self, id: BodyId, body: &Self::Body, shift: [i32; 3], periods: &Periods);
 
     #[doc(hidden)]
     fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError>;
@@ -74,6 +100,17 @@ pub trait ImageWorld: sealed::Sealed {
         b: &PlacedBody<Self::Body>,
         image: [i32; 3],
     ) -> bool;
+
+    /// Whether a body that an index has found may touch a volume, moved by this number of periods.
+    #[doc(hidden)]
+    fn may_touch_volume(
+        _periods: &Periods,
+        _body: &PlacedBody<Self::Body>,
+        _image: [i32; 3],
+        _volume: &QueryVolume<'_>,
+    ) -> bool {
+        true
+    }
 
     #[doc(hidden)]
     fn has_image(&self, id: BodyId) -> bool;
@@ -101,14 +138,9 @@ macro_rules! forward_images {
             self.insert($image(body, shift, periods))
         }
 
-        fn set_image(
-            &mut self,
-            id: BodyId,
-            body: &$body,
-            shift: [i32; 3],
-            periods: &Periods,
-        ) -> Result<(), WorldError> {
-            self.set(id, $image(body, shift, periods))
+        #[inline]
+        fn set_image(&mut self, id: BodyId, body: &$body, shift: [i32; 3], periods: &Periods) {
+            self.set_checked(id.slot(), $image(body, shift, periods));
         }
 
         fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError> {
@@ -119,6 +151,7 @@ macro_rules! forward_images {
             self.cull()
         }
 
+        #[inline]
         fn has_image(&self, id: BodyId) -> bool {
             self.contains(id)
         }

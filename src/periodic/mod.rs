@@ -20,9 +20,9 @@
 //!
 //! Internally, an ordinary world holds each body within one period. A body near a lower border also
 //! has images beyond the upper one: one image near a single border, three at an edge, seven at a
-//! corner. "Near" means within the width of the widest body so far, so a single giant makes many
-//! bodies cost more. Bodies without images cost no more than in a world without periods, except
-//! that each reported pair is compared once more.
+//! corner. "Near" means within one to two widths of the widest body so far, so a single giant makes
+//! many bodies cost more. Setting a body costs about three times as much as in a world without
+//! periods, and each reported pair is compared once more. [`PeriodicIndex`] answers queries.
 //!
 //! ```
 //! use sdop::periodic::{PeriodicBox, PeriodicBoxes};
@@ -36,6 +36,7 @@
 //! # Ok::<(), sdop::periodic::PeriodicError>(())
 //! ```
 
+mod borders;
 mod boxes;
 mod error;
 mod events;
@@ -43,12 +44,14 @@ mod images;
 #[cfg(feature = "shapes")]
 mod meshes;
 mod periods;
+mod query;
 mod world;
 
 pub use boxes::PeriodicBox;
 pub use error::PeriodicError;
 pub use events::PeriodicEvents;
 pub use images::ImageWorld;
+pub use query::{PeriodicHit, PeriodicIndex};
 pub use world::{Periodic, PeriodicPair};
 
 use crate::boxes::{BoxCullerBuilder, BoxWorld};

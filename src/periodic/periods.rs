@@ -8,12 +8,26 @@ const NAMES: [char; 3] = ['x', 'y', 'z'];
 
 /// The period of each axis that has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Periods([Option<f64>; 3]);
+pub struct Periods {
+    of_axes: [Option<f64>; 3],
+    /// Half of each period; infinite along other axes.
+    halves: [f64; 3],
+}
+
+impl Default for Periods {
+    fn default() -> Self {
+        Self {
+            of_axes: [None; 3],
+            halves: [f64::INFINITY; 3],
+        }
+    }
+}
 
 impl Periods {
-    pub fn new(periods: [Option<f64>; 3]) -> Result<Self, PeriodicError> {
+    pub fn new(of_axes: [Option<f64>; 3]) -> Result<Self, PeriodicError> {
         let [least, most] = PERIOD_LIMITS;
-        let checked = Self(periods);
+        let halves = of_axes.map(|period| period.map_or(f64::INFINITY, |period| 0.5 * period));
+        let checked = Self { of_axes, halves };
         for (axis, period) in checked.iter() {
             if !(least <= period && period <= most) {
                 let axis = NAMES[axis];
@@ -24,14 +38,31 @@ impl Periods {
     }
 
     pub fn get(&self) -> [Option<f64>; 3] {
-        self.0
+        self.of_axes
     }
 
     /// The periodic axes and their periods.
     #[inline]
     pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
-        let axes = self.0.into_iter().enumerate();
+        let axes = self.of_axes.into_iter().enumerate();
         axes.filter_map(|(axis, period)| period.map(|period| (axis, period)))
+    }
+
+    /// Whether a box is within one period about the origin, and surely shorter than half of it,
+    /// along each periodic axis.
+    #[inline]
+    pub fn contain(&self, min: &[f64; 3], max: &[f64; 3]) -> bool {
+        (0..3).all(|axis| {
+            let (half, lo, hi) = (self.halves[axis], min[axis], max[axis]);
+            -half <= lo && hi <= half && hi - lo < half
+        })
+    }
+
+    /// Whether a place is more than half of a period away from another along an axis.
+    #[inline]
+    pub fn is_jump(&self, from: &[f64; 3], to: &[f64; 3]) -> bool {
+        let is_far = |axis: usize| (to[axis] - from[axis]).abs() > self.halves[axis];
+        is_far(0) | is_far(1) | is_far(2)
     }
 
     /// Checks that a body is less than [`MOST_PERIODS`] away.
@@ -41,7 +72,7 @@ impl Periods {
         axis: usize,
         position: f64,
     ) -> Result<(), PeriodicError> {
-        match self.0[axis] {
+        match self.of_axes[axis] {
             Some(period) if !(position.abs() <= MOST_PERIODS * period) => Err(PeriodicError::Far {
                 body,
                 axis: NAMES[axis],
@@ -58,7 +89,7 @@ impl Periods {
             body,
             axis: NAMES[axis],
             size,
-            period: self.0[axis].unwrap_or(f64::INFINITY),
+            period: self.of_axes[axis].unwrap_or(f64::INFINITY),
         }
     }
 }

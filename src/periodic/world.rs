@@ -1,18 +1,14 @@
 //! A world with periodic axes: bodies, their images, and the pairs of both.
 
-use super::images::{ImageWorld, PlacedBody, Placement};
+use super::borders::Borders;
+use super::images::{Image, ImageWorld, PlacedBody, Placement};
 use super::periods::Periods;
 use super::{PeriodicError, PeriodicEvents};
 use crate::simd::in_default_mode;
 use crate::world::{BodyId, WorldError};
 
-/// The factor by which the widest body counts as wider than it is, so that bodies of nearly the
-/// same size don't all become the widest so far.
-const WIDEST_FACTOR: f64 = 1.0 + 1.0 / 64.0;
-
-/// 2⁻⁴⁰, as a multiple of the period: more than rounding takes from the ends of placed bodies. A
-/// body that is nearer to the border than that has an image across it.
-const BORDER_ERROR: f64 = 1.0 / (1_u64 << 40) as f64;
+/// The images of all bodies are placed anew if more than one in this number of bodies was set.
+const BODIES_PER_CHANGE: usize = 16;
 
 /// Two bodies that may touch, the second one moved by whole periods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -29,21 +25,24 @@ pub struct PeriodicPair {
 /// A clone continues as the original would, on its own threads.
 #[derive(Clone, Debug)]
 pub struct Periodic<W: ImageWorld> {
-    periods: Periods,
+    pub(super) periods: Periods,
     /// All images. An image that is not moved has the id of its body.
     world: W,
     /// The bodies by slot of the world; slots of images have invalid entries.
-    bodies: Vec<PlacedBody<W::Body>>,
+    pub(super) bodies: Vec<PlacedBody<W::Body>>,
     /// The images by slot of the world.
-    images: Vec<Image>,
+    pub(super) images: Vec<Image>,
     /// The other images of each body, by slot.
     ghosts: Vec<Vec<BodyId>>,
-    /// Along each axis, no body is wider than twice this.
-    widest: [f64; 3],
-    /// Slots of bodies whose images have to be placed, and a mark at each.
-    changed: Vec<u32>,
-    is_changed: Vec<bool>,
-    are_all_changed: bool,
+    pub(super) borders: Borders,
+    /// Slots of bodies whose images across borders have to be placed by the next cull, or of all.
+    late: Vec<u32>,
+    are_all_late: bool,
+    /// Whether one of them lacks an image or has jumped to another border; the others have an image
+    /// too many.
+    is_any_missing: bool,
+    /// Number of bodies set since the last cull.
+    sets: usize,
     pairs: Vec<PeriodicPair>,
     /// Those of them that were found at the images of a border.
     across: Vec<PeriodicPair>,
@@ -51,41 +50,20 @@ pub struct Periodic<W: ImageWorld> {
     seen: Vec<PeriodicPair>,
 }
 
-/// What is in a slot of the world.
-#[derive(Clone, Copy, Debug)]
-struct Image {
-    of: BodyId,
-    /// One bit per axis along which the body is moved by one period more than to its place.
-    axes: u8,
-    /// By how many periods the body is moved.
-    shift: [i32; 3],
-    is_small: bool,
-}
-
-impl Image {
-    fn new(of: BodyId, axes: u8, place: &Placement) -> Self {
-        let shift = [0, 1, 2].map(|axis| place.shift[axis] + i32::from(axes >> axis & 1));
-        Self {
-            of,
-            axes,
-            shift,
-            is_small: place.is_small,
-        }
-    }
-}
-
 impl<W: ImageWorld> Periodic<W> {
     pub(super) fn of(world: W, periods: [Option<f64>; 3]) -> Result<Self, PeriodicError> {
+        let periods = Periods::new(periods)?;
         Ok(Self {
-            periods: Periods::new(periods)?,
+            periods,
             world,
             bodies: Vec::new(),
             images: Vec::new(),
             ghosts: Vec::new(),
-            widest: [0.0; 3],
-            changed: Vec::new(),
-            is_changed: Vec::new(),
-            are_all_changed: false,
+            borders: Borders::new(&periods),
+            late: Vec::new(),
+            are_all_late: false,
+            is_any_missing: false,
+            sets: 0,
             pairs: Vec::new(),
             across: Vec::new(),
             seen: Vec::new(),
@@ -108,11 +86,14 @@ impl<W: ImageWorld> Periodic<W> {
         let slots: Vec<usize> = self.slots_of_bodies().collect();
         let place = |&slot: &usize| self.world.place(slot, &self.bodies[slot].body, &periods);
         let places = in_default_mode(|| slots.iter().map(place).collect::<Result<Vec<_>, _>>())?;
-        (self.periods, self.widest) = (periods, [0.0; 3]);
-        for (slot, place) in slots.into_iter().zip(places) {
-            let body = self.bodies[slot].body;
-            self.put(slot, PlacedBody { body, place });
-        }
+        (self.periods, self.borders) = (periods, Borders::new(&periods));
+        self.are_all_late = true;
+        in_default_mode(|| {
+            for (slot, place) in slots.into_iter().zip(places) {
+                let body = self.bodies[slot].body;
+                self.put(slot, &body, &place);
+            }
+        });
         Ok(())
     }
 
@@ -128,7 +109,7 @@ impl<W: ImageWorld> Periodic<W> {
             let place = self.world.place(slot, &body, &self.periods)?;
             let id = self.world.add_image(&body, place.shift, &self.periods)?;
             self.name(id, Image::new(id, 0, &place), PlacedBody { body, place });
-            self.put(id.slot(), PlacedBody { body, place });
+            self.look_across(id.slot(), &place);
             Ok(id)
         })
     }
@@ -159,9 +140,15 @@ impl<W: ImageWorld> Periodic<W> {
     /// The body has been removed, or as [`Self::insert`].
     pub fn set(&mut self, id: BodyId, body: impl Into<W::Body>) -> Result<(), PeriodicError> {
         let (slot, body) = (self.slot(id)?, body.into());
-        let place = in_default_mode(|| self.world.place(slot, &body, &self.periods))?;
-        self.put(slot, PlacedBody { body, place });
-        Ok(())
+        in_default_mode(|| {
+            let mut place = self.world.place(slot, &body, &self.periods)?;
+            let former = &self.bodies[slot].place;
+            if W::IS_EXACT && self.periods.is_jump(&former.lo, &place.lo) {
+                self.borders.keep(&mut place, &former.lo, &self.periods);
+            }
+            self.put(slot, &body, &place);
+            Ok(())
+        })
     }
 
     /// Whether the body exists.
@@ -217,7 +204,10 @@ impl<W: ImageWorld> Periodic<W> {
     /// There are more images than can be numbered, or as the world's `cull`. [`Self::pairs`] are
     /// those of the cull before.
     pub fn cull(&mut self) -> Result<&[PeriodicPair], PeriodicError> {
-        in_default_mode(|| self.place_changed())?;
+        if self.are_all_late || !self.late.is_empty() {
+            in_default_mode(|| self.place_late())?;
+        }
+        self.sets = 0;
         self.find()?;
         Ok(&self.pairs)
     }
@@ -256,93 +246,134 @@ impl<W: ImageWorld> Periodic<W> {
             self.images.resize(slot + 1, image);
             self.bodies.resize(slot + 1, body);
             self.ghosts.resize(slot + 1, Vec::new());
-            self.is_changed.resize(slot + 1, false);
         }
-        self.images[slot] = image;
+        (self.images[slot], self.bodies[slot]) = (image, body);
     }
 
-    /// Keeps a body as it is from now on. Its images are placed by the next cull.
-    fn put(&mut self, slot: usize, placed: PlacedBody<W::Body>) {
-        for (axis, _) in self.periods.iter() {
-            let half = 0.5 * (placed.place.hi[axis] - placed.place.lo[axis]);
-            if half > self.widest[axis] {
-                self.widest[axis] = half * WIDEST_FACTOR;
-                self.are_all_changed = true;
+    /// Sets a present body and the images that it has.
+    #[inline]
+    fn put(&mut self, slot: usize, body: &W::Body, place: &Placement) {
+        if W::IS_EXACT && self.periods.is_jump(&self.bodies[slot].place.lo, &place.lo) {
+            self.is_any_missing = true;
+            self.note_late(slot);
+        }
+        let (image, placed) = (&mut self.images[slot], &mut self.bodies[slot]);
+        (placed.body, placed.place) = (*body, *place);
+        (image.shift, image.is_small) = (place.shift, place.is_small);
+        let of = image.of;
+        self.world.set_image(of, body, place.shift, &self.periods);
+        if self.images[slot].across != 0 {
+            self.put_ghosts(slot);
+        }
+        self.look_across(slot, place);
+    }
+
+    /// Sets the images across borders that a body has.
+    fn put_ghosts(&mut self, slot: usize) {
+        let (of, placed) = (self.images[slot].of, self.bodies[slot]);
+        for &ghost in &self.ghosts[slot] {
+            let image = Image::new(of, self.images[ghost.slot()].axes, &placed.place);
+            self.world
+                .set_image(ghost, &placed.body, image.shift, &self.periods);
+            (self.images[ghost.slot()], self.bodies[ghost.slot()]) = (image, placed);
+        }
+    }
+
+    /// Notes a body that has been set if it lacks an image across a border, or has one too many.
+    #[inline]
+    fn look_across(&mut self, slot: usize, Placement { lo, hi, .. }: &Placement) {
+        self.sets += 1;
+        if self.borders.grow(lo, hi, &self.periods) {
+            self.are_all_late = true;
+        }
+        let across = self.images[slot].across;
+        let is_missing = self.borders.near(lo, 0.0) & !across != 0;
+        if is_missing || across & !self.borders.near(lo, 2.0) != 0 {
+            self.is_any_missing |= is_missing;
+            self.note_late(slot);
+        }
+    }
+
+    /// Makes the next cull place the images of a body.
+    fn note_late(&mut self, slot: usize) {
+        if self.late.len() == self.images.len() {
+            self.are_all_late = true; // some bodies were set many times
+        }
+        if !self.are_all_late {
+            self.late.push(slot as u32);
+        }
+    }
+
+    /// Places the images of the bodies that need it. If many bodies move, all are placed at once,
+    /// with some slack, so that the next frames need not do so.
+    fn place_late(&mut self) -> Result<(), WorldError> {
+        let late = std::mem::take(&mut self.late);
+        let are_many = self.sets * BODIES_PER_CHANGE > self.images.len();
+        if self.are_all_late || are_many && self.is_any_missing {
+            self.are_all_late = true; // until all are placed
+            for slot in 0..self.images.len() {
+                self.place_anew(slot)?;
+            }
+        } else if !are_many {
+            self.are_all_late = true;
+            for slot in late {
+                self.place_anew(slot as usize)?;
             }
         }
-        self.bodies[slot] = placed;
-        self.note(slot);
-    }
-
-    fn note(&mut self, slot: usize) {
-        if !std::mem::replace(&mut self.is_changed[slot], true) {
-            self.changed.push(slot as u32);
-        }
-    }
-
-    /// Places the images of all bodies that have changed.
-    fn place_changed(&mut self) -> Result<(), WorldError> {
-        if std::mem::take(&mut self.are_all_changed) {
-            (0..self.images.len()).for_each(|slot| self.note(slot));
-        }
-        for number in 0..self.changed.len() {
-            let slot = self.changed[number] as usize;
-            let id = self.images[slot].of;
-            if self.images[slot].axes == 0 && self.world.has_image(id) {
-                self.place_images(id)?;
-            }
-        }
-        for slot in self.changed.drain(..) {
-            self.is_changed[slot as usize] = false;
-        }
+        (self.are_all_late, self.is_any_missing) = (false, false);
         Ok(())
     }
 
-    /// Places the image of a body within the period, and those beyond the upper borders that other
-    /// bodies may touch across them: of no axis but those near the lower border.
-    fn place_images(&mut self, id: BodyId) -> Result<(), WorldError> {
-        let slot = id.slot();
-        let PlacedBody { body, place } = self.bodies[slot];
-        self.images[slot] = Image::new(id, 0, &place);
-        self.world
-            .set_image(id, &body, place.shift, &self.periods)?;
-        let near = self.near_borders(&place);
+    /// Wraps the body in a slot, if there is one, and places its images.
+    fn place_anew(&mut self, slot: usize) -> Result<(), WorldError> {
+        let Image { of, axes, .. } = self.images[slot];
+        if axes != 0 || !self.world.has_image(of) {
+            return Ok(());
+        }
+        let (body, periods) = (&self.bodies[slot].body, &self.periods);
+        if let Ok(place) = self.world.place(slot, body, periods)
+            && place.shift != self.images[slot].shift
+        {
+            self.world.set_image(of, body, place.shift, periods);
+            self.images[slot] = Image {
+                across: self.images[slot].across,
+                ..Image::new(of, 0, &place)
+            };
+            self.bodies[slot].place = place;
+        }
+        let across = self.borders.near(&self.bodies[slot].place.lo, 1.0);
+        self.place_ghosts(slot, across)
+    }
+
+    /// Gives a body the images beyond the upper borders of these axes, and no others.
+    fn place_ghosts(&mut self, slot: usize, across: u8) -> Result<(), WorldError> {
+        if across | self.images[slot].across == 0 {
+            return Ok(());
+        }
+        let (id, placed) = (self.images[slot].of, self.bodies[slot]);
         let mut former = std::mem::take(&mut self.ghosts[slot]);
-        let mut placed = Vec::new();
-        let mut axes = (1..8_u8).filter(|axes| axes & !near == 0);
+        let mut ghosts = Vec::new();
+        let mut axes = (1..8_u8).filter(|axes| axes & !across == 0);
         let outcome = axes.try_for_each(|axes| {
-            let image = Image::new(id, axes, &place);
+            let image = Image::new(id, axes, &placed.place);
+            let (body, shift, periods) = (&placed.body, image.shift, &self.periods);
             let ghost = match former.pop() {
                 Some(ghost) => {
-                    placed.push(ghost);
-                    self.world
-                        .set_image(ghost, &body, image.shift, &self.periods)?;
+                    self.world.set_image(ghost, body, shift, periods);
                     ghost
                 }
-                None => {
-                    let ghost = self.world.add_image(&body, image.shift, &self.periods)?;
-                    placed.push(ghost);
-                    ghost
-                }
+                None => self.world.add_image(body, shift, periods)?,
             };
-            self.name(ghost, image, PlacedBody { body, place });
+            ghosts.push(ghost);
+            self.name(ghost, image, placed);
             Ok(())
         });
         for ghost in former {
             self.world.remove_image(ghost)?;
         }
-        self.ghosts[slot] = placed;
+        self.ghosts[slot] = ghosts;
+        self.images[slot].across = across;
         outcome
-    }
-
-    /// The axes along which a body is so near to the lower border that one at the upper border may
-    /// touch it.
-    fn near_borders(&self, place: &Placement) -> u8 {
-        let axes = self.periods.iter().map(|(axis, period)| {
-            let nearest = self.widest[axis] - (0.5 - BORDER_ERROR) * period;
-            u8::from(place.lo[axis] <= nearest) << axis
-        });
-        axes.sum()
     }
 
     /// Culls the images and lists the pairs of their bodies.
@@ -351,7 +382,7 @@ impl<W: ImageWorld> Periodic<W> {
         self.pairs.clear();
         self.across.clear();
         for [a, b] in found {
-            let [one, two] = [a, b].map(|id| self.images[id.slot()]);
+            let [one, two] = [a, b].map(|id| &self.images[id.slot()]);
             // Two images that are moved along one axis are found without that, too.
             if one.axes & two.axes != 0 || one.of == two.of {
                 continue;

@@ -114,6 +114,24 @@ impl<'a> Probe<'a> {
     }
 }
 
+impl QueryVolume<'_> {
+    /// The point that it is placed by.
+    pub(crate) fn origin(&self) -> [f64; 3] {
+        match *self {
+            Self::Box { min, .. } => min,
+            Self::Ball { centre, .. } => centre,
+            Self::Shape { translation, .. } => translation,
+        }
+    }
+
+    /// The ends of a box about it, off by roundings of f64.
+    pub(crate) fn ends(&self) -> [[f64; 3]; 2] {
+        let origin = self.origin();
+        let Aabb { min, max } = Probe::new(self).bounds(origin);
+        [min, max].map(|ends| [0, 1, 2].map(|axis| origin[axis] + f64::from(ends[axis])))
+    }
+}
+
 impl QueryIndex {
     /// The bodies that may touch a volume, sorted by slot.
     ///
@@ -138,7 +156,7 @@ impl QueryIndex {
     }
 
     /// Answers many queries on all threads. `answer` appends the answer to one query.
-    pub(super) fn each_of<Q: Sync, T: Send>(
+    pub(crate) fn each_of<Q: Sync, T: Send>(
         &self,
         queries: &[Q],
         answer: impl Fn(&Q, &mut Vec<T>) + Sync,
@@ -167,7 +185,8 @@ impl QueryIndex {
         answers
     }
 
-    fn touch(&self, volume: &QueryVolume<'_>, found: &mut Vec<BodyId>) {
+    /// Appends the bodies that may touch a volume within the contract, sorted by slot.
+    pub(crate) fn touch(&self, volume: &QueryVolume<'_>, found: &mut Vec<BodyId>) {
         let start = found.len();
         let probe = Probe::new(volume);
         let bounds = probe.bounds(self.origin);

@@ -12,7 +12,8 @@
 //! meet. For balls and lines, a box may also be reported at a distance below 2⁻⁵⁰ of the lengths
 //! involved, because f64 rounds. Bodies of a `World` are grown by their margins and tested by their
 //! boxes, balls and or-DOPs, as in culling, so a narrow phase has to test the reported ones.
-//! Queries ignore groups and whether a body moves: filter the answers.
+//! Queries ignore groups and whether a body moves: filter the answers. In space that repeats, use
+//! [`PeriodicIndex`](crate::periodic::PeriodicIndex).
 //!
 //! ```
 //! use sdop::{Aabb, BoxWorld, Line, QueryIndex, QueryVolume};

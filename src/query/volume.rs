@@ -81,6 +81,20 @@ pub struct QueryError {
 }
 
 impl QueryError {
+    pub(crate) fn new(
+        query: usize,
+        quantity: &'static str,
+        value: String,
+        hint: &'static str,
+    ) -> Self {
+        Self {
+            query,
+            quantity,
+            value,
+            hint,
+        }
+    }
+
     /// How to mend it.
     #[must_use]
     pub fn help(&self) -> &str {
@@ -104,12 +118,12 @@ impl QueryCheck {
         if is_sound {
             return Ok(());
         }
-        Err(QueryError {
-            query: self.0,
+        Err(QueryError::new(
+            self.0,
             quantity,
-            value: format!("{value:?}"),
+            format!("{value:?}"),
             hint,
-        })
+        ))
     }
 
     fn vector(&self, quantity: &'static str, v: [f64; 3]) -> Result<(), QueryError> {
@@ -130,7 +144,7 @@ impl QueryCheck {
 }
 
 impl QueryVolume<'_> {
-    pub(super) fn check(&self, query: usize) -> Result<(), QueryError> {
+    pub(crate) fn check(&self, query: usize) -> Result<(), QueryError> {
         let check = QueryCheck(query);
         match *self {
             Self::Box { min, max } => {
@@ -153,11 +167,8 @@ impl QueryVolume<'_> {
                 check.length("shape's size", shape.reach())?;
                 check.length("margin", margin.into())?;
                 let pose = shape.check_pose(query, rotation, translation);
-                pose.map_err(|error| QueryError {
-                    query,
-                    quantity: error.quantity,
-                    value: error.value,
-                    hint: error.hint,
+                pose.map_err(|error| {
+                    QueryError::new(query, error.quantity, error.value, error.hint)
                 })
             }
         }

@@ -25,6 +25,8 @@ pub mod skin;
 pub mod slab;
 pub mod sphere;
 
+use crate::simd::Aabb;
+
 /// 2ᵉ for a normal exponent.
 pub const fn exp2(e: i32) -> f64 {
     assert!(-1022 <= e && e <= 1023);
@@ -63,6 +65,24 @@ pub const fn up(x: f64) -> f32 {
 /// The mirror of [`up`]: an f32 certainly below the exact value that `x` approximates.
 pub const fn down(x: f64) -> f32 {
     (x as f32).next_down()
+}
+
+/// The f32 box about an f64 box: each end is that of [`down`] and [`up`], except that next to a
+/// zero it may be a zero.
+#[inline]
+#[must_use]
+pub fn outward_box(min: &[f64; 3], max: &[f64; 3]) -> Aabb {
+    // The bits of an f32 in the order of the numbers, and back. No branch, of every box that is
+    // set.
+    let ranked = |bits: i32| bits ^ ((bits >> 31) & i32::MAX);
+    let stepped = |x: f64, by: i32| {
+        let rank = ranked((x as f32).to_bits() as i32) + by;
+        f32::from_bits(ranked(rank) as u32)
+    };
+    Aabb {
+        min: min.map(|x| stepped(x, -1)),
+        max: max.map(|x| stepped(x, 1)),
+    }
 }
 
 /// The smallest f32 that is at least `x`, itself if it is an f32.
@@ -110,6 +130,33 @@ mod tests {
         }
         assert_eq!(up(1.0), 1.0 + f32::EPSILON);
         assert_eq!(down(1.0), 1.0 - f32::EPSILON / 2.0);
+    }
+
+    /// The box has the ends that one-sided rounding gives, but for the sign and the side of a zero,
+    /// and contains the f64 box always.
+    #[test]
+    fn outward_boxes_contain() {
+        let least = f64::from(f32::from_bits(1));
+        let sizes = [
+            0.0,
+            0.4 * least,
+            0.6 * least,
+            least,
+            1.0,
+            1.0 + exp2(-40),
+            exp2(60),
+        ];
+        for x in sizes.into_iter().flat_map(|size| [size, -size]) {
+            let Aabb { min, max } = outward_box(&[x, 1.0, x], &[x, 1.0, x]);
+            assert!(f64::from(min[0]) <= x && x <= f64::from(max[2]), "{x:e}");
+            if x.abs() > least {
+                assert_eq!(
+                    ([min[0], min[2]], [max[0], max[2]]),
+                    ([down(x); 2], [up(x); 2])
+                );
+            }
+            assert_eq!((min[1], max[1]), (down(1.0), up(1.0)));
+        }
     }
 
     #[test]

@@ -1,5 +1,8 @@
 //! World-aligned boxes with the memory layout that vector loads rely on.
 
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::*;
+
 /// A closed, world-aligned box: boxes that touch meet. Its ends are finite, and each lower end is
 /// at most the upper one; sides may have no length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -13,6 +16,91 @@ pub struct Aabb {
 
 const _: () = assert!(size_of::<Aabb>() == size_of::<[f32; 6]>());
 const _: () = assert!(align_of::<Aabb>() == align_of::<[f32; 6]>());
+
+/// The bits of infinity, above those of every finite positive number.
+const INFINITY: u32 = f32::INFINITY.to_bits();
+
+/// What a world asks of each box that is set, by bits, so that it holds in every floating-point
+/// mode.
+#[cfg(target_arch = "x86_64")]
+impl Aabb {
+    /// The lower ends, the upper ones, and 0 in each fourth lane.
+    #[inline(always)]
+    fn bits_of_ends(&self) -> [__m128i; 2] {
+        let numbers = std::ptr::from_ref(self);
+        // SAFETY: every CPU of this architecture has SSE2. A box is six times four bytes (asserted
+        // above); the loads read the first four numbers and the last two, unaligned.
+        unsafe {
+            // As wide as a box is copied: a load that spans two fresh stores waits for both.
+            let front = _mm_loadu_si128(numbers.cast());
+            let back = _mm_loadl_epi64(numbers.cast::<u8>().add(16).cast());
+            let lower = _mm_srli_si128::<4>(_mm_slli_si128::<4>(front));
+            let upper = _mm_or_si128(_mm_srli_si128::<12>(front), _mm_slli_si128::<4>(back));
+            [lower, upper]
+        }
+    }
+
+    /// Whether the ends have the same bits as another's.
+    #[inline]
+    pub(crate) fn has_bits_of(&self, other: &Self) -> bool {
+        let ([lower, upper], [other_lower, other_upper]) =
+            (self.bits_of_ends(), other.bits_of_ends());
+        // SAFETY: every CPU of this architecture has SSE2.
+        unsafe {
+            let lower = _mm_cmpeq_epi32(lower, other_lower);
+            let upper = _mm_cmpeq_epi32(upper, other_upper);
+            _mm_movemask_epi8(_mm_and_si128(lower, upper)) == 0xffff
+        }
+    }
+
+    /// Whether the ends are finite and in order; it is false for a lower end of 0 and an upper end
+    /// of −0.
+    #[inline]
+    pub(crate) fn is_surely_sound(&self) -> bool {
+        let [lower, upper] = self.bits_of_ends();
+        // SAFETY: every CPU of this architecture has SSE2.
+        unsafe {
+            let infinity = _mm_set1_epi32(INFINITY as i32);
+            let is_finite = |ends| {
+                let size = _mm_and_si128(ends, _mm_set1_epi32(i32::MAX));
+                _mm_cmpgt_epi32(infinity, size)
+            };
+            // The bits of positive numbers are in the order of the numbers; those of negative ones
+            // in the opposite order.
+            let rank = |ends| _mm_xor_si128(ends, _mm_srli_epi32::<1>(_mm_srai_epi32::<31>(ends)));
+            let are_finite = _mm_and_si128(is_finite(lower), is_finite(upper));
+            let are_reversed = _mm_cmpgt_epi32(rank(lower), rank(upper));
+            _mm_movemask_epi8(_mm_andnot_si128(are_reversed, are_finite)) == 0xffff
+        }
+    }
+}
+
+/// What a world asks of each box that is set, by bits, so that it holds in every floating-point
+/// mode.
+#[cfg(not(target_arch = "x86_64"))]
+impl Aabb {
+    /// Whether the ends have the same bits as another's.
+    #[inline]
+    pub(crate) fn has_bits_of(&self, other: &Self) -> bool {
+        let bits = |aabb: &Self| [aabb.min, aabb.max].map(|ends| ends.map(f32::to_bits));
+        bits(self) == bits(other)
+    }
+
+    /// Whether the ends are finite and in order; it is false for a lower end of 0 and an upper end
+    /// of −0.
+    #[inline]
+    pub(crate) fn is_surely_sound(&self) -> bool {
+        // The bits of positive numbers are in the order of the numbers; those of negative ones in
+        // the opposite order.
+        let rank = |bits: u32| (bits ^ (((bits as i32) >> 31) as u32 >> 1)) as i32;
+        let size = |bits: u32| bits & !(1 << 31);
+        let is_sound = |axis: usize| {
+            let (lo, hi) = (self.min[axis].to_bits(), self.max[axis].to_bits());
+            (size(lo) < INFINITY) & (size(hi) < INFINITY) & (rank(lo) <= rank(hi))
+        };
+        is_sound(0) & is_sound(1) & is_sound(2)
+    }
+}
 
 /// The six numbers of each box: those of its lower corner, then those of its upper corner.
 #[must_use]
@@ -53,7 +141,6 @@ impl TaggedBox {
     #[inline(always)]
     #[cfg(target_arch = "x86_64")]
     pub fn meets(&self, other: &Self) -> bool {
-        use std::arch::x86_64::{_mm_and_ps, _mm_cmple_ps, _mm_load_ps, _mm_movemask_ps};
         let halves = |tagged| {
             let corners = std::ptr::from_ref::<Self>(tagged).cast::<f32>();
             // SAFETY: every CPU of this architecture has SSE2. A tagged box is eight times four
@@ -104,6 +191,39 @@ mod tests {
                 above.min[axis] = above.min[axis].next_up();
                 assert!(!middle.meets(&below) && !middle.meets(&above));
                 assert!(!below.meets(&middle) && !above.meets(&middle));
+            }
+        }
+    }
+
+    /// Every pair of these numbers as ends of one axis, between sound ends of the others.
+    #[test]
+    fn soundness_and_bits_are_those_of_numbers() {
+        let least = f32::from_bits(1);
+        let positive = [0.0, least, f32::MIN_POSITIVE, 1.0, f32::MAX, f32::INFINITY];
+        let all: Vec<f32> = (positive.iter().flat_map(|&x| [-x, x]))
+            .chain([f32::NAN, -f32::NAN])
+            .collect();
+        let aabb = |axis: usize, lo, hi| {
+            let mut aabb = Aabb {
+                min: [-1.0, -2.0, -3.0],
+                max: [1.0, -2.0, 3.0],
+            };
+            (aabb.min[axis], aabb.max[axis]) = (lo, hi);
+            aabb
+        };
+        for axis in 0..3 {
+            for (&lo, &hi) in all.iter().flat_map(|lo| all.iter().map(move |hi| (lo, hi))) {
+                let is_sound = lo.is_finite() && hi.is_finite() && lo <= hi;
+                let are_zeros = lo == 0.0 && hi == 0.0 && !lo.is_sign_negative();
+                let expected = is_sound && !(are_zeros && hi.is_sign_negative());
+                assert_eq!(aabb(axis, lo, hi).is_surely_sound(), expected, "{lo} {hi}");
+                for &other in &all {
+                    let is_same = other.to_bits() == hi.to_bits();
+                    let [one, two] = [hi, other].map(|end| aabb(axis, lo, end));
+                    assert_eq!(one.has_bits_of(&two), is_same, "{hi} {other}");
+                    let [one, two] = [hi, other].map(|end| aabb(axis, end, lo));
+                    assert_eq!(one.has_bits_of(&two), is_same, "{hi} {other}");
+                }
             }
         }
     }

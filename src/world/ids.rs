@@ -156,8 +156,12 @@ impl Ids {
     #[inline]
     pub fn slot(&self, id: BodyId) -> Result<usize, WorldError> {
         let slot = id.slot as usize;
-        let lives = self.present.get(slot) == Some(&true) && self.generation[slot] == id.generation;
-        lives.then_some(slot).ok_or(WorldError::Gone(id))
+        // An error that isn't needed would be made and dropped for every body that is set.
+        if self.present.get(slot) == Some(&true) && self.generation[slot] == id.generation {
+            Ok(slot)
+        } else {
+            Err(WorldError::Gone(id))
+        }
     }
 
     /// Whether each slot has a body.

@@ -282,6 +282,12 @@ impl World {
     pub fn set(&mut self, id: BodyId, body: Body) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
         self.check(slot, &body)?;
+        self.set_checked(slot, body);
+        Ok(())
+    }
+
+    /// [`Self::set`] of a present body to one within the contract.
+    pub(crate) fn set_checked(&mut self, slot: usize, body: Body) {
         let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.bodies.dynamic[slot]);
         let is_same = self.is_at(slot, body.rotation, body.translation)
             && body.margin.to_bits() == self.margin[slot].to_bits()
@@ -295,7 +301,6 @@ impl World {
         self.shapes[self.shape[slot] as usize].bodies -= 1;
         self.shapes[body.shape as usize].bodies += 1;
         self.put(slot, body);
-        Ok(())
     }
 
     /// Moves a body by any distance. It costs nothing if the pose is equal, and a body at rest

@@ -5,7 +5,7 @@ use sdop::{ProceduralShape, Shape, ShapeSpec};
 use super::*;
 
 /// A cube of this side, whose faces are exact.
-fn cube(side: f32) -> Shape {
+pub fn cube(side: f32) -> Shape {
     let [x, y, z] = [side; 3];
     let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
     let spec = ShapeSpec {

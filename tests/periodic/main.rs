@@ -10,6 +10,7 @@ mod forms;
 mod layouts;
 mod meshes;
 mod misuse;
+mod queries;
 #[allow(dead_code, reason = "the suite of boxes uses the rest")]
 #[path = "../boxes/scenes.rs"]
 mod scenes;

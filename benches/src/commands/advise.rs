@@ -2,9 +2,8 @@
 
 use miette::miette;
 use sdop::settings::{CullSettings, Strategy};
-use sdop_bench::tradeoff::advise::{
-    Advice, Candidate, CandidateFilter, FRAMES, WorldTimes, advise,
-};
+use sdop_bench::tradeoff::advise::{Advice, Candidate, CandidateFilter, FRAMES, advise};
+use sdop_bench::tradeoff::worlds::WorldTimes;
 
 use super::Outcome;
 use super::output::{Format, emit, rows};
@@ -111,6 +110,7 @@ fn text(advice: &Advice) -> String {
         variant,
         culler,
         world,
+        ..
     }) = &advice.world
     {
         let way = if world.mean < culler.mean {

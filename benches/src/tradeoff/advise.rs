@@ -12,6 +12,7 @@ use super::decide::{Choice, choose_measured};
 use super::density::{lines, lines_of_a_run};
 use super::pays::{CheapestRange, Line, envelope};
 use super::variant::{Variant, s_dops};
+use super::worlds::{self, WorldTimes};
 use crate::measure::conditions::Conditions;
 use crate::measure::estimate::Estimate;
 use crate::scene::{Scene, SceneFile};
@@ -73,17 +74,6 @@ pub struct Advice {
     pub conditions: Conditions,
 }
 
-/// What a world saves that keeps the pairs of sleeping bodies.
-#[derive(Clone, Debug, Serialize)]
-pub struct WorldTimes {
-    /// The cheapest variant that worlds are timed with.
-    pub variant: String,
-    /// T of a culler, which is given all poses: seconds per warm frame of a run.
-    pub culler: Estimate,
-    /// T of a world, which is given the poses that have changed.
-    pub world: Estimate,
-}
-
 /// One candidate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
@@ -135,7 +125,9 @@ pub fn advise(
         variants.find(|variant| variant.name == candidate.name)
     };
     let world = match candidates.iter().find_map(cheapest) {
-        Some(variant) if scene.effects.rest.is_some() => Some(in_world(&scene, variant, tier)?),
+        Some(variant) if scene.effects.rest.is_some() => {
+            worlds::times(&scene, std::slice::from_ref(variant), tier)?.pop()
+        }
         _ => None,
     };
     Ok(Some(Advice {
@@ -155,18 +147,6 @@ pub fn advise(
         finders,
         candidates,
     }))
-}
-
-/// Times a variant in a culler and in a world, on the same frames.
-fn in_world(scene: &Scene, variant: &Variant, tier: Tier) -> Result<WorldTimes, TradeoffError> {
-    let both = [variant.clone(), variant.clone().in_world()];
-    let times = lines_of_a_run(scene, &both, tier)?;
-    let [culler, world] = [0, 1].map(|at| Estimate::in_order(&times[at].times));
-    Ok(WorldTimes {
-        variant: variant.name.clone(),
-        culler,
-        world,
-    })
 }
 
 /// S-DOP with the scene's settings and each finder.

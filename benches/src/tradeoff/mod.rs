@@ -24,6 +24,7 @@ pub mod truth;
 pub mod units;
 pub mod variant;
 pub mod vary;
+pub mod worlds;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate};
 pub use result::{Tradeoff, VariantResult};

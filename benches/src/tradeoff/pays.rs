@@ -117,14 +117,9 @@ pub fn break_even(steep: &Line, flat: &Line) -> f64 {
     ((flat.time() - steep.time()) / (steep.pairs - flat.pairs)).max(0.0)
 }
 
-/// What the advice for a scene with `rest` adds.
-const REST_ADVICE: &str = " The scene has `rest`. All times here are those of a Culler, which is \
-     given every pose in every frame; `sdop cost` and `sdop advise` also time a World, which keeps \
-     the pairs of sleeping bodies.";
-
 /// One line that says which variant to use, by the price of a narrow-phase check.
 #[must_use]
-pub fn advice(cheapest: &[CheapestRange], narrow_phase: &NarrowPhase, has_rest: bool) -> String {
+pub fn advice(cheapest: &[CheapestRange], narrow_phase: &NarrowPhase) -> String {
     let parts: Vec<String> = cheapest
         .iter()
         .map(|stretch| match stretch.from {
@@ -135,11 +130,10 @@ pub fn advice(cheapest: &[CheapestRange], narrow_phase: &NarrowPhase, has_rest: 
     let own = cheapest.iter().rfind(|s| s.from <= narrow_phase.miss);
     format!(
         "Cheapest at this density, by the price of a narrow-phase check: {}. The exact reference takes {:.0} ns to find two \
-         meshes apart: with it, take {}.{}",
+         meshes apart: with it, take {}.",
         parts.join("; "),
         1e9 * narrow_phase.miss,
-        own.map_or("nothing", |s| s.name.as_str()),
-        if has_rest { REST_ADVICE } else { "" }
+        own.map_or("nothing", |s| s.name.as_str())
     )
 }
 
@@ -233,14 +227,6 @@ mod tests {
             let cost = chosen.map_or(f64::NAN, |l| l.time() + price * l.pairs);
             assert!((cost - least).abs() < 1e-12, "at {price}");
         }
-    }
-
-    /// Times of cullers alone aren't passed off as the cost of a scene in which bodies sleep.
-    #[test]
-    fn advice_names_worlds_with_rest() {
-        let advice = |has_rest| advice(&[], &NarrowPhase::default(), has_rest);
-        assert!(advice(true).contains("`sdop cost`"), "{}", advice(true));
-        assert!(!advice(false).contains("`sdop cost`"));
     }
 
     #[test]

@@ -12,6 +12,7 @@ use super::safety::SafetyRow;
 use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
 use super::vary::Variation;
+use super::worlds::WorldTimes;
 use crate::cost::table::{Cost, PriceRow};
 use crate::measure::conditions::Conditions;
 use crate::measure::counts::Volume;
@@ -101,6 +102,9 @@ pub struct Tradeoff {
     pub clock: Vec<ClockRow>,
     /// Interest sets.
     pub interest: Vec<InterestRow>,
+    /// Worlds, if bodies of the scene fall asleep.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub worlds: Vec<WorldTimes>,
     /// The scene's shapes and some with known answers, each against itself.
     pub shapes: Vec<ShapeSurvival>,
     /// Margins, arithmetic and tiers.

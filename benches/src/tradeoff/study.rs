@@ -16,6 +16,7 @@ use super::truth::NarrowPhase;
 use super::units::{ComparedVariants, SeedCounts, Settings, StudyPart};
 use super::variant::Variant;
 use super::vary::Variation;
+use super::worlds::WorldTimes;
 use crate::cost::pass::Pass;
 use crate::cost::table;
 use crate::measure::conditions::Conditions;
@@ -33,6 +34,7 @@ pub struct Findings {
     narrow_phase: NarrowPhase,
     clock: Vec<ClockRow>,
     interest: Vec<[Estimate; 2]>,
+    worlds: Vec<WorldTimes>,
     densities: Vec<Density>,
     variations: Vec<Variation>,
     safety: Vec<SafetyRow>,
@@ -50,6 +52,7 @@ impl Findings {
             StudyPart::NarrowPhase(seconds) => self.narrow_phase = seconds,
             StudyPart::Clock(rows) => self.clock = rows,
             StudyPart::Interest(times) => self.interest = times,
+            StudyPart::Worlds(times) => self.worlds = times,
             StudyPart::Density(density) => self.densities.extend(density),
             StudyPart::Variation(variation) => self.variations.extend(variation),
             StudyPart::Safety(rows) => self.safety = rows,
@@ -107,9 +110,10 @@ impl Findings {
             simd: settings.machine.simd.clone(),
             truth: measured.true_pairs(),
             partners: 2.0 * hits / settings.bodies as f64,
-            advice: pays::advice(&cheapest, &self.narrow_phase, settings.has_rest),
+            advice: pays::advice(&cheapest, &self.narrow_phase),
             narrow_phase: self.narrow_phase,
             interest: interest::rows(&first.interest, &self.interest),
+            worlds: self.worlds,
             rows,
             cheapest,
             densities: self.densities,

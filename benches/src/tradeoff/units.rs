@@ -20,6 +20,7 @@ use super::timing::{PASSES, Windows};
 use super::truth::{ExactJudge, NarrowPhase, Sample, samples};
 use super::variant::{self, Variant};
 use super::vary::{self, SceneChange, Variation};
+use super::worlds::{self, WorldTimes};
 use super::{Estimate, TradeoffError};
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::{Pass, pass};
@@ -75,9 +76,6 @@ pub struct Settings {
     pub frames: u32,
     /// The runs' seeds.
     pub seeds: Vec<u64>,
-    /// Whether bodies fall asleep.
-    #[serde(default)]
-    pub has_rest: bool,
     samples: u32,
     pairs: u32,
     window: u32,
@@ -121,6 +119,8 @@ enum TradeoffUnit {
     Clock,
     /// Culling of interest.
     Interest,
+    /// Cullers beside worlds.
+    Worlds,
     /// The scene at a multiple of its density.
     Density(f32),
     /// The scene with one change.
@@ -142,6 +142,7 @@ pub(super) enum StudyPart {
     Clock(Vec<ClockRow>),
     /// Eager and lazy.
     Interest(Vec<[Estimate; 2]>),
+    Worlds(Vec<WorldTimes>),
     Density(Option<Density>),
     Variation(Option<Variation>),
     Safety(Vec<SafetyRow>),
@@ -190,7 +191,11 @@ impl Comparison {
         Ok(Self {
             plan: plan.clone(),
             variants: variant::all(&scene, hits.round() as u64),
-            units: units(&seeds(&file, plan), shapes.len()),
+            units: units(
+                &seeds(&file, plan),
+                shapes.len(),
+                scene.effects.rest.is_some(),
+            ),
             file,
             scene,
             hits,
@@ -215,7 +220,6 @@ impl Comparison {
             bodies: self.scene.bodies.len(),
             frames: self.scene.frames,
             seeds: seeds(&self.file, &self.plan),
-            has_rest: self.scene.effects.rest.is_some(),
             samples,
             pairs,
             window,
@@ -251,6 +255,7 @@ impl Comparison {
             TradeoffUnit::Interest => {
                 StudyPart::Interest(interest::times(scene, tier, self.plan.samples)?)
             }
+            TradeoffUnit::Worlds => StudyPart::Worlds(worlds::times(scene, &self.variants, tier)?),
             TradeoffUnit::Density(factor) => {
                 StudyPart::Density(density::at(file, factor, tier, self.samples_of_changed())?)
             }
@@ -332,7 +337,7 @@ impl Comparison {
 }
 
 /// All units: first counts, then times.
-fn units(seeds: &[u64], shapes: usize) -> Vec<TradeoffUnit> {
+fn units(seeds: &[u64], shapes: usize, has_rest: bool) -> Vec<TradeoffUnit> {
     // One pass per seed, and not too few.
     let passes = seeds.iter().cycle().take(seeds.len().max(PASSES));
     let once = [
@@ -346,6 +351,7 @@ fn units(seeds: &[u64], shapes: usize) -> Vec<TradeoffUnit> {
     units.extend((0..shapes).map(TradeoffUnit::Shape));
     units.extend(passes.copied().map(TradeoffUnit::Pass));
     units.extend(once);
+    units.extend(has_rest.then_some(TradeoffUnit::Worlds));
     units.extend(density::FACTORS.map(TradeoffUnit::Density));
     units.extend(vary::changes().into_iter().map(TradeoffUnit::Variation));
     units.push(TradeoffUnit::Safety);
@@ -401,6 +407,7 @@ impl Sweep for Comparison {
             TradeoffUnit::NarrowPhase => "times of the narrow phase".to_owned(),
             TradeoffUnit::Clock => "budgets of time".to_owned(),
             TradeoffUnit::Interest => "times of interest sets".to_owned(),
+            TradeoffUnit::Worlds => "times of worlds".to_owned(),
             TradeoffUnit::Density(factor) => format!("{factor} times the density"),
             TradeoffUnit::Variation(change) => change.to_string(),
             TradeoffUnit::Safety => "the price of safety".to_owned(),
@@ -421,6 +428,7 @@ impl Sweep for Comparison {
             | TradeoffUnit::NarrowPhase
             | TradeoffUnit::Clock
             | TradeoffUnit::Interest
+            | TradeoffUnit::Worlds
             | TradeoffUnit::Density(_)
             | TradeoffUnit::Variation(_)
             | TradeoffUnit::Safety => true,

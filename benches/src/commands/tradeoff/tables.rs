@@ -40,11 +40,9 @@ pub fn brief(result: &Tradeoff) -> String {
     });
     let mut parts = vec![result.advice.clone()];
     parts.extend(result.conditions.warning());
-    parts.extend([
-        heading(result),
-        short.to_string(),
-        "--all prints the rest.".to_owned(),
-    ]);
+    parts.extend([heading(result), short.to_string()]);
+    parts.extend(in_worlds(result));
+    parts.push("--all prints the rest.".to_owned());
     parts.join("\n\n")
 }
 
@@ -57,6 +55,9 @@ pub fn text(result: &Tradeoff) -> String {
         "Which variant, by density, class of shapes and price of a narrow-phase check".into(),
         decisions(result).to_string(),
         variants(result).to_string(),
+    ]);
+    parts.extend(in_worlds(result));
+    parts.extend([
         "Time-critical: precision against the budget of tests".into(),
         budgets(result).to_string(),
         "Time-critical: the clock overrun, microseconds".into(),
@@ -73,6 +74,24 @@ pub fn text(result: &Tradeoff) -> String {
         safety(result).to_string(),
     ]);
     parts.join("\n\n")
+}
+
+/// For a scene in which bodies fall asleep: each variant in a culler and in a world, the fastest
+/// world first.
+fn in_worlds(result: &Tradeoff) -> Option<String> {
+    let mut fastest = result.worlds.clone();
+    fastest.sort_by(|a, b| a.world.mean.total_cmp(&b.world.mean));
+    let header = ["variant", "reported", "culler, warm µs", "world, warm µs"];
+    let times = rows(&header, &fastest, |row| {
+        vec![
+            row.variant.clone(),
+            format!("{:.1}", row.reported),
+            plus_minus(&row.culler, 1e6, 1),
+            plus_minus(&row.world, 1e6, 1),
+        ]
+    });
+    let title = "Bodies fall asleep: a culler is given every pose, a world keeps the pairs of those that stay";
+    (!fastest.is_empty()).then(|| format!("{title}\n\n{times}"))
 }
 
 /// One row per density and class of shapes, one column per price of a check: what to use, and what
