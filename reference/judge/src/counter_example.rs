@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::score::Miss;
 use super::shrink::SmallestCase;
+use super::truth::images;
 use super::witness::DEEPEST;
 use crate::contestant::WorldBox;
 
@@ -28,7 +29,10 @@ impl SmallestCase {
             let [first, second] = boxes.map(|ends| corners(&ends));
             lines.push(format!("box {}: {first}", pair[0]));
             lines.push(format!("box {}: {second}", pair[1]));
-            lines.extend(axes(&boxes, pair));
+            match self.case.frames[self.miss.frame].periods {
+                Some(periods) => lines.extend(image_line(&boxes, pair, periods)),
+                None => lines.extend(axes(&boxes, pair)),
+            }
         }
         let Some(witness) = &self.witness else {
             return lines;
@@ -123,6 +127,20 @@ impl AxisOverlap {
             coordinate(boxes[starts][axis])
         )
     }
+}
+
+/// By how many periods the second box is moved where it meets the first.
+fn image_line(boxes: &[WorldBox; 2], pair: [u32; 2], periods: [Option<f64>; 3]) -> Option<String> {
+    let image = *images(&boxes[0], &boxes[1], periods).first()?;
+    let moved = [0, 1, 2].map(|axis| match periods[axis] {
+        Some(period) => format!("{} · {period}", image[axis]),
+        None => "0".to_owned(),
+    });
+    let moved = moved.join(", ");
+    Some(format!(
+        "box {} meets it when moved by ({moved}), whole periods",
+        pair[1]
+    ))
 }
 
 /// Every axis on which two boxes only touch, or the one on which they overlap least.
