@@ -29,8 +29,9 @@ impl SmallestCase {
             let [first, second] = boxes.map(|ends| corners(&ends));
             lines.push(format!("box {}: {first}", pair[0]));
             lines.push(format!("box {}: {second}", pair[1]));
-            match self.case.frames[self.miss.frame].periods {
-                Some(periods) => lines.extend(image_line(&boxes, pair, periods)),
+            let periods = self.case.frames[self.miss.frame].periods;
+            match periods.and_then(|periods| image_line(&boxes, pair[1], periods)) {
+                Some(line) => lines.push(line),
                 None => lines.extend(axes(&boxes, pair)),
             }
         }
@@ -129,17 +130,17 @@ impl AxisOverlap {
     }
 }
 
-/// By how many periods the second box is moved where it meets the first.
-fn image_line(boxes: &[WorldBox; 2], pair: [u32; 2], periods: [Option<f64>; 3]) -> Option<String> {
-    let image = *images(&boxes[0], &boxes[1], periods).first()?;
+/// By how many periods the second box is moved where it meets the first; `None` if it isn't moved.
+fn image_line(boxes: &[WorldBox; 2], second: u32, periods: [Option<f64>; 3]) -> Option<String> {
+    let met = images(&boxes[0], &boxes[1], periods);
+    let image = met.first().filter(|image| **image != [0; 3])?;
     let moved = [0, 1, 2].map(|axis| match periods[axis] {
-        Some(period) => format!("{} · {period}", image[axis]),
-        None => "0".to_owned(),
+        Some(period) if image[axis] != 0 => format!("{} · {period}", image[axis]),
+        _ => "0".to_owned(),
     });
     let moved = moved.join(", ");
     Some(format!(
-        "box {} meets it when moved by ({moved}), whole periods",
-        pair[1]
+        "box {second} meets it when moved by ({moved}), whole periods"
     ))
 }
 

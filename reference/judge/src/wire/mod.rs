@@ -16,7 +16,7 @@ choices! {
     Wire, "wire", {
         /// A JSON object a line, as `sdop run --record` writes them.
         Ndjson = "ndjson",
-        /// Words and counts, every f32 as eight hexadecimal digits, read by scanf.
+        /// Words and counts, every f32 as eight hexadecimal digits: read by scanf.
         Text = "text",
     }
 }
