@@ -1,5 +1,5 @@
-"""freud: AABBQuery and LinkCell by a radius, in a box large enough that nothing wraps around; in the
-cell of the periods for the claim periodic."""
+"""freud: AABBQuery and LinkCell by a radius, in a box large enough that nothing wraps around; in
+the cell of the periods for the claim periodic."""
 
 import sys
 

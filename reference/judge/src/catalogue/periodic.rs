@@ -1,9 +1,9 @@
 //! Boxes in space that repeats, which touch across the borders of its cells.
 //!
 //! Boxes are in rows of two. Along some axes, the first box of a row ends exactly where an image of
-//! the second one begins, or overlaps it by an ulp, or ends an ulp before it. Along the others, both
-//! are in one place. Ends and periods are whole numbers of a short binary unit, so that their sums
-//! are exact, unless a kind is about other numbers.
+//! the second one begins, or overlaps it by an ulp, or ends an ulp before it. Along the others,
+//! both are in one place. Ends and periods are whole numbers of a short binary unit, so that their
+//! sums are exact, unless a kind is about other numbers.
 
 use rand::{Rng, RngExt};
 
@@ -58,7 +58,7 @@ pub fn touching(
         _ => axis == number as usize % 3 || rng.random(),
     });
     let periods = draw_periods(kind, crossed, rng);
-    // Half of the rows touch by other periods, if there are some.
+    // If periods change, half of the rows touch by the first ones and half by the second ones.
     let across =
         |row: usize| [0, 1, 2].map(|axis| periods[row % 2][axis].filter(|_| crossed[axis]));
     let rows: Vec<[WorldBox; 2]> = (0..ROWS)
@@ -135,8 +135,9 @@ fn row_boxes(kind: PeriodicKind, row: usize, across: Periods, rng: &mut impl Rng
     [first, second]
 }
 
-/// Where the first box of a row ends, and where the second one begins: there is an image of that
-/// end, in every third row just below, and in others just above, so that the boxes are apart.
+/// Where the first box of a row ends, and where the second one begins: at an image of that end. In
+/// every third row it begins an ulp lower, and in another third an ulp higher, so that the boxes
+/// are apart.
 fn across_border(kind: PeriodicKind, row: usize, period: f64, rng: &mut impl Rng) -> (f32, f32) {
     let near = |begin: f32| [begin, begin.next_down(), begin.next_up()][row % 3];
     match kind {
@@ -175,7 +176,7 @@ fn far_end(period: f64, rng: &mut impl Rng) -> f32 {
 
 /// In half of the rows, the first box has the higher number.
 fn in_order<T>(row: usize, [first, second]: [T; 2]) -> [T; 2] {
-    if row / 2 % 2 == 0 {
+    if (row / 2).is_multiple_of(2) {
         [first, second]
     } else {
         [second, first]

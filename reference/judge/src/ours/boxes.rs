@@ -40,7 +40,6 @@ pub struct BoxCell {
 
 impl BoxCell {
     /// The choices of this cell; its tier and number of threads are the mode's.
-    #[must_use]
     pub fn builder(&self, mode: Mode) -> BoxCullerBuilder {
         let of = BoxCuller::builder().finder(self.finder);
         let of = of.tier(mode.tier).threads(mode.threads);
