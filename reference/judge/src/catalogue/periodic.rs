@@ -12,7 +12,6 @@ use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use crate::contestant::WorldBox;
 use sdop::rounding::floor_f32;
-use sdop::rounding::period::wrap;
 
 /// Where boxes touch, or what changes from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,8 +141,9 @@ fn across_border(kind: PeriodicKind, row: usize, period: f64, rng: &mut impl Rng
     let near = |begin: f32| [begin, begin.next_down(), begin.next_up()][row % 3];
     match kind {
         PeriodicKind::Far => {
-            let rest = |end: f32| wrap(f64::from(end), period).0;
-            let ends: [f32; 16] = std::array::from_fn(|_| far_end(period, rng));
+            // Exact.
+            let rest = |end: f32| f64::from(end) % period;
+            let ends: [f32; 64] = std::array::from_fn(|_| far_end(period, rng));
             // The nearer to zero the image is, the finer is the f32 there.
             let end = ends.into_iter().fold(ends[0], |best, end| {
                 if rest(end).abs() < rest(best).abs() {
@@ -160,16 +160,21 @@ fn across_border(kind: PeriodicKind, row: usize, period: f64, rng: &mut impl Rng
             (end, [0.0, -tiny, tiny][row % 3])
         }
         _ => {
-            let border = period as f32 * [0.5, 1.0][rng.random_range(0..2)];
-            let end = border + units(-32..=32, rng);
+            // The border of a cell about zero, or of one that begins there.
+            let border = period as f32 * [0.5, 1.0][row / 4 % 2];
+            let end = border + units(-16..=16, rng);
             (end, near(end - period as f32))
         }
     }
 }
 
-/// A position some hundreds or many millions of periods away.
+/// A position some hundreds to many millions of periods away, half of the time as far as may be.
 fn far_end(period: f64, rng: &mut impl Rng) -> f32 {
-    let exponent: i32 = rng.random_range(8..=26);
+    let exponent = if rng.random() {
+        26
+    } else {
+        rng.random_range(8..=26)
+    };
     let side = if rng.random() { 1.0 } else { -1.0 };
     (side * rng.random_range(1.0..2.0) * 2_f64.powi(exponent) * period) as f32
 }
