@@ -35,8 +35,8 @@ class Culler:
     """Whether its bodies may have parts; without that, cases of the claim parts are skipped."""
 
     given: dict[str, Any]
-    """The frame as the judge gives it, for what a claim adds: groups, excluded pairs, margins, and
-    the parts of each body."""
+    """The frame as the judge gives it, for what a claim adds: groups, excluded pairs, margins,
+    periods, and the parts of each body."""
 
     def change(self, body_shapes: Array, dynamic: Array, was: Array) -> None:
         self.body_shapes, self.dynamic = np.asarray(body_shapes), np.asarray(dynamic, dtype=bool)
@@ -103,6 +103,22 @@ def centres_and_halves(boxes: Array, dtype: type = np.float64) -> tuple[Array, A
     while (small := (centres - halves > lower) | (centres + halves < upper)).any():
         halves = np.where(small, np.nextafter(halves, dtype(np.inf)), halves)
     return centres, halves
+
+
+def in_cell(boxes: Array, periods: list[float | None]) -> tuple[Array, Array, float]:
+    """Where space repeats, for libraries that take points and one distance: the centres of boxes in
+    the cell from zero to its sides, the sides, and the distance within which are the centres of all
+    boxes that meet, with room for rounding to float32. Along an axis without a period, the cell is
+    so long that nothing meets across its ends."""
+    centres, halves = centres_and_halves(boxes)
+    repeats = np.array([period is not None for period in periods])
+    lengths = np.array([period or 1.0 for period in periods])
+    points = np.where(repeats, np.fmod(centres, lengths), centres - centres.min(axis=0))
+    points = np.where(points < 0.0, points + lengths, points)
+    points = np.where(repeats & (points >= lengths), 0.0, points)
+    size = max(float(points.max()), float(lengths.max()))
+    reach = 2.0 * float(np.linalg.norm(halves.max(axis=0))) + 2.0**-20 * size
+    return points, np.where(repeats, lengths, points.max(axis=0) + 2.0 * reach), reach
 
 
 def cover(kept: Array, halves: Array) -> bool:

@@ -398,12 +398,12 @@ fn case_is_shown_with_answers() {
     assert!(message.contains("its poses are given"), "{message}");
 }
 
-/// A case of boxes, of which a program reports nothing in the frames from `missed` on; the header
+/// A case of a claim, of which a program reports nothing in the frames from `missed` on; the header
 /// of its page.
-fn silent_from(missed: u64, name: &str) -> Value {
+fn silent_from(claim: &str, missed: u64, name: &str) -> Value {
     let directory = tempfile::tempdir().unwrap();
     let cases = directory.path().join("cases");
-    let arguments = ["cases", "--claims", "aabb", "--case", name, "--out"];
+    let arguments = ["cases", "--claims", claim, "--case", name, "--out"];
     stdout(&[&arguments[..], &[text(&cases)]].concat());
     let case = cases.join(format!("{name}.ndjson"));
     let [answers, page] = ["answers", "page.html"].map(|name| directory.path().join(name));
@@ -438,7 +438,7 @@ fn silent_from(missed: u64, name: &str) -> Value {
 #[test]
 fn counter_example_shows_judged_volumes() {
     // The first frame is answered rightly; each pair meets in every other frame.
-    let header = silent_from(1, "churn/teleport/0004");
+    let header = silent_from("aabb", 1, "churn/teleport/0004");
     assert_eq!(header["layers"], serde_json::json!(["boxes"]));
     let focus = &header["focus"];
     let body = |n: usize| focus["bodies"][n].as_u64().unwrap();
@@ -453,8 +453,14 @@ fn counter_example_shows_judged_volumes() {
             .to_string()
             .contains("The case aims at: ")
     );
+    // Where space repeats, it has the periods of each frame.
+    let header = silent_from("periodic", 2, "periodic/changed/0000");
+    let blocks = header["blocks"].as_array().unwrap();
+    let periods = blocks.iter().find(|block| block["name"] == "periods");
+    assert_eq!(periods.unwrap()["length"], 3 * 6);
+    assert_eq!(header["meet"], "boxes or their images");
     // Where the set of bodies changes, the frames with the set of the miss are shown.
-    let header = silent_from(2, "churn/insert-remove/0004");
+    let header = silent_from("aabb", 2, "churn/insert-remove/0004");
     assert_eq!(
         (&header["frames"], &header["focus"]["frame"]),
         (&1.into(), &0.into())

@@ -258,6 +258,7 @@ fn counter_examples_are_unit_tests() {
         as_test(language, "aabb", "box/range/0000");
         as_test(language, "mesh", "exact/tip-on-face/0000");
         as_test(language, "parts", "parts/touch/0000");
+        as_test(language, "periodic", "periodic/changed/0000");
     }
     as_test("python", "sphere", "touch/ball-ball/0000");
     as_test("rust", "or-dop", "touch/face-corner/0000");

@@ -8,6 +8,7 @@ mod cheats;
 mod commands;
 mod cullers;
 mod parts;
+mod periodic;
 mod programs;
 mod rust;
 mod twins;

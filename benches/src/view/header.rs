@@ -130,6 +130,7 @@ fn meet(claim: Claim) -> &'static str {
         Claim::Aabb | Claim::Order | Claim::Restore => "boxes",
         Claim::Filter => "boxes that no filter parts",
         Claim::Margin => "boxes within their margins",
+        Claim::Periodic => "boxes or their images",
         Claim::OrDop => "or-DOPs",
         Claim::Hull => "convex hulls",
         Claim::Mesh => "meshes",

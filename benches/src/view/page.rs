@@ -94,6 +94,11 @@ impl Page {
         if let Some(boxes) = &show.boxes {
             page.put("boxes", boxes.concat().into_flattened())?;
         }
+        if let Some(periods) = &show.periods {
+            let periods = periods.as_flattened().iter();
+            let periods = periods.map(|period| period.unwrap_or(0.0));
+            page.put("periods", periods.collect::<Vec<f64>>())?;
+        }
         page.put_pairs(show, culled)?;
         page.put_shapes(show)?;
         for (side, culled) in culled.iter().enumerate() {

@@ -36,6 +36,8 @@ pub struct ShownRun {
     pub claim: Claim,
     /// The boxes that a case gives with each frame, if its claim is about them.
     pub boxes: Option<Vec<Vec<WorldBox>>>,
+    /// The periods of each frame, if a case has such.
+    pub periods: Option<Vec<[Option<f64>; 3]>>,
     /// The missed pair that the page opens at.
     pub focus: Option<Focus>,
     /// Messages to show on the page.
@@ -98,6 +100,7 @@ impl ShownRun {
             frames,
             claim: Claim::Mesh,
             boxes: None,
+            periods: None,
             focus: None,
             messages: Vec::new(),
         };
@@ -142,6 +145,7 @@ impl ShownRun {
             frames,
             claim: Claim::Mesh,
             boxes: None,
+            periods: None,
             focus: None,
             messages: Vec::new(),
         })
@@ -171,6 +175,7 @@ impl ShownRun {
             frames: frames.iter().enumerate().map(line).collect(),
             claim: Claim::Mesh,
             boxes: None,
+            periods: None,
             focus: None,
             messages: Vec::new(),
             shapes,
@@ -248,11 +253,8 @@ impl ShownRun {
                 case.frames.len()
             ));
         }
-        let boxes = || {
-            case.frames[shown.clone()]
-                .iter()
-                .map(|frame| frame.boxes.clone())
-        };
+        let given = &case.frames[shown.clone()];
+        let boxes = || given.iter().map(|frame| frame.boxes.clone());
         Ok(Self {
             source: file_name(source),
             header,
@@ -261,6 +263,7 @@ impl ShownRun {
             frames: frames.drain(shown.clone()).collect(),
             claim: case.claim,
             boxes: case.claim.is_of_boxes().then(|| boxes().collect()),
+            periods: given.iter().map(|frame| frame.periods).collect(),
             focus: focus.map(|focus| Focus {
                 frame: focus.frame - shown.start,
                 ..focus

@@ -37,6 +37,7 @@ impl Language {
 /// Numbers in nested lists; every list of one depth holds items of one kind.
 enum ArgumentData {
     Float(f32),
+    Double(f64),
     Integer(i64),
     Truth(bool),
     List(Vec<ArgumentData>),
@@ -200,7 +201,7 @@ fn arguments(smallest: &SmallestCase) -> Vec<Argument> {
     arguments
 }
 
-/// Filters, margins and states, where a frame has them.
+/// Filters, margins, periods and states, where a frame has them.
 fn asked_on_top(frames: &[Frame]) -> Vec<Argument> {
     let list =
         |of: &dyn Fn(&Frame) -> ArgumentData| ArgumentData::List(frames.iter().map(of).collect());
@@ -238,6 +239,18 @@ fn asked_on_top(frames: &[Frame]) -> Vec<Argument> {
             data: list(&|frame| {
                 let margins = frame.margins.iter().flatten();
                 ArgumentData::List(margins.map(|&x| ArgumentData::Float(x)).collect())
+            }),
+        });
+    }
+    if frames.iter().any(|frame| frame.periods.is_some()) {
+        arguments.push(Argument {
+            name: "periods",
+            meaning: "of each frame: the periods of x, y and z, 0 for an axis without one",
+            types: ["Vec<Vec<f64>>", "std::vector<std::vector<double>>"],
+            data: list(&|frame| {
+                let periods = frame.periods.unwrap_or_default();
+                let periods = periods.map(|period| ArgumentData::Double(period.unwrap_or(0.0)));
+                ArgumentData::List(periods.into())
             }),
         });
     }
@@ -366,6 +379,7 @@ impl ArgumentData {
         };
         match (self, language) {
             (Self::Float(x), _) => number(*x),
+            (Self::Double(x), _) => format!("{x:?}"),
             (Self::Integer(n), _) => n.to_string(),
             (Self::Truth(true), Language::Python) => "True".to_owned(),
             (Self::Truth(false), Language::Python) => "False".to_owned(),

@@ -3,7 +3,9 @@
 use super::claim::Claim;
 use crate::contestant::{BodyPart, Filter, WorldBox};
 use crate::ours::reference_shapes::InvalidInput;
+use sdop::Motion;
 use sdop::bodies::Bodies;
+use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicError};
 use sdop::rounding::pose::{COORDINATE_ERROR, rotation, transform};
 use sdop::rounding::{down, up};
 use sdop::volume::Shape;
@@ -25,6 +27,9 @@ pub struct Frame {
     pub margins: Option<Vec<f32>>,
     /// The parts of each body, for the claim `parts`: a body with an empty list is its shape alone.
     pub parts: Option<Vec<Vec<BodyPart>>>,
+    /// The period of each axis that has one, for the claim `periodic`. Each box is shorter than
+    /// half of it.
+    pub periods: Option<[Option<f64>; 3]>,
     /// Whether the culler goes back to the state that it has saved, before this frame.
     pub restore: bool,
     /// Whether it saves its state after this frame.
@@ -91,6 +96,34 @@ impl Frame {
     pub fn posed_parts(&self, i: usize) -> Result<Vec<(u32, WidePose)>, InvalidInput> {
         let parts = self.parts.as_ref().map_or(&[][..], |parts| &parts[i]);
         posed_parts(&self.bodies, i, parts)
+    }
+
+    /// The box of a body, for a world of periodic boxes.
+    #[must_use]
+    pub fn periodic_box(&self, i: usize) -> PeriodicBox {
+        let [x0, y0, z0, x1, y1, z1] = self.boxes[i].map(f64::from);
+        PeriodicBox {
+            motion: if self.bodies.dynamic[i] {
+                Motion::Dynamic
+            } else {
+                Motion::Fixed
+            },
+            ..PeriodicBox::new([x0, y0, z0], [x1, y1, z1])
+        }
+    }
+
+    /// Checks that the periods are lengths, and that each box is shorter than half of them and not
+    /// too many of them away from the origin.
+    ///
+    /// # Errors
+    /// As our own periodic boxes.
+    pub fn check_periods(&self) -> Result<(), PeriodicError> {
+        let Some(periods) = self.periods else {
+            return Ok(());
+        };
+        let mut world = PeriodicBoxes::new(periods)?;
+        let mut boxes = (0..self.boxes.len()).map(|i| self.periodic_box(i));
+        boxes.try_for_each(|body| world.insert(body).map(|_| ()))
     }
 
     /// Whether every body has the number that it had in the frame before.

@@ -27,6 +27,9 @@ choices! {
         Margin = "margin",
         /// As `mesh`, for bodies of several posed shapes: of any part of one and any of the other.
         Parts = "parts",
+        /// As `aabb`, in space that repeats along the axes that have a period: some image of one
+        /// box shares a point with the other.
+        Periodic = "periodic",
     }
 }
 

@@ -90,6 +90,13 @@ pub trait Contestant<Frame: ?Sized = Bodies> {
         false
     }
 
+    /// Takes over the period of each axis that has one, for the coming frames. Returns false if its
+    /// space can't repeat.
+    fn periods(&mut self, periods: [Option<f64>; 3]) -> bool {
+        let _ = periods;
+        false
+    }
+
     /// Saves its state after the last frame, and drops a state that was saved before. Returns false
     /// if it can't.
     fn save(&mut self) -> bool {
@@ -136,6 +143,10 @@ macro_rules! pass_on {
 
             fn body_parts(&mut self, parts: &[Vec<BodyPart>]) -> bool {
                 (**self).body_parts(parts)
+            }
+
+            fn periods(&mut self, periods: [Option<f64>; 3]) -> bool {
+                (**self).periods(periods)
             }
 
             fn save(&mut self) -> bool {

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::score::Miss;
 use super::shrink::SmallestCase;
+use super::truth::images;
 use super::witness::DEEPEST;
 use crate::contestant::WorldBox;
 
@@ -28,7 +29,11 @@ impl SmallestCase {
             let [first, second] = boxes.map(|ends| corners(&ends));
             lines.push(format!("box {}: {first}", pair[0]));
             lines.push(format!("box {}: {second}", pair[1]));
-            lines.extend(axes(&boxes, pair));
+            let periods = self.case.frames[self.miss.frame].periods;
+            match periods.and_then(|periods| image_line(&boxes, pair[1], periods)) {
+                Some(line) => lines.push(line),
+                None => lines.extend(axes(&boxes, pair)),
+            }
         }
         let Some(witness) = &self.witness else {
             return lines;
@@ -123,6 +128,20 @@ impl AxisOverlap {
             coordinate(boxes[starts][axis])
         )
     }
+}
+
+/// By how many periods the second box is moved where it meets the first; `None` if it isn't moved.
+fn image_line(boxes: &[WorldBox; 2], second: u32, periods: [Option<f64>; 3]) -> Option<String> {
+    let met = images(&boxes[0], &boxes[1], periods);
+    let image = met.first().filter(|image| **image != [0; 3])?;
+    let moved = [0, 1, 2].map(|axis| match periods[axis] {
+        Some(period) if image[axis] != 0 => format!("{} · {period}", image[axis]),
+        _ => "0".to_owned(),
+    });
+    let moved = moved.join(", ");
+    Some(format!(
+        "box {second} meets it when moved by ({moved}), whole periods"
+    ))
 }
 
 /// Every axis on which two boxes only touch, or the one on which they overlap least.

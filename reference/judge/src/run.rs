@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 use sdop::choice::nearest;
+use sdop::periodic::PeriodicError;
 use sdop::volume::Shape;
 
 use super::case::{Case, Frame};
@@ -34,6 +35,16 @@ pub enum JudgeError {
         case: String,
         /// The claim.
         claim: Claim,
+    },
+    /// Periods outside of the contract, or boxes that are too large or too far away for them.
+    #[error("{case}, frame {frame}: {problem}; {}", .problem.help())]
+    Periods {
+        /// The case's name.
+        case: String,
+        /// The frame.
+        frame: usize,
+        /// What is wrong with it.
+        problem: PeriodicError,
     },
     /// No case's name matches.
     #[error("no case of the claim {claim} matches `{pattern}`")]
@@ -259,7 +270,8 @@ pub fn examine(
 /// matter.
 ///
 /// # Errors
-/// A case that the reference refuses, and bodies with parts unless the claim is `parts`.
+/// A case that the reference refuses, bodies with parts unless the claim is `parts`, and boxes
+/// that don't fit their periods.
 pub fn examine_given(
     subject: &dyn Subject,
     options: &Options,
@@ -269,6 +281,13 @@ pub fn examine_given(
     if claim != Claim::Parts && case.frames.iter().any(|frame| frame.parts.is_some()) {
         let case = case.name;
         return Err(JudgeError::Parts { case, claim });
+    }
+    for (frame, checked) in case.frames.iter().map(Frame::check_periods).enumerate() {
+        checked.map_err(|problem| JudgeError::Periods {
+            case: case.name.clone(),
+            frame,
+            problem,
+        })?;
     }
     let case = Case { claim, ..case };
     let judged = judge_case(subject, &case, true)?;

@@ -6,9 +6,10 @@ use super::answer::{Answer, AnswerError, StopReason, sorted};
 use super::case::{Case, Frame};
 use super::claim::Claim;
 use super::subject::Subject;
-use super::truth::{Truth, boxes_meet};
+use super::truth::{Truth, boxes_meet, images};
 use crate::contestant::WorldBox;
 use crate::ours::reference_shapes::InvalidInput;
+use sdop::rounding::period::wrap;
 
 /// Pairs counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -331,7 +332,10 @@ fn meet_loosely(
         return balls.pair(frame, pair);
     }
     let [a, b] = pair.map(|body| grown(&frame.boxes[body as usize]));
-    Ok(boxes_meet(&a, &b))
+    Ok(match frame.periods {
+        Some(periods) => !images(&a, &b, periods).is_empty(),
+        None => boxes_meet(&a, &b),
+    })
 }
 
 /// A box with half of its size around it.
@@ -345,8 +349,8 @@ fn grown(ends: &WorldBox) -> WorldBox {
     grown
 }
 
-/// The frame with the second body moved toward the first by 2⁻¹⁸ of their size and distance from
-/// the origin, on each axis.
+/// The frame with the second body moved toward the first, or its nearest image, by 2⁻¹⁸ of their
+/// size and distance from the origin, on each axis.
 fn nearer(frame: &Frame, [i, j]: [u32; 2]) -> Frame {
     let mut nearer = frame.clone();
     let (i, j) = (i as usize, j as usize);
@@ -355,6 +359,8 @@ fn nearer(frame: &Frame, [i, j]: [u32; 2]) -> Frame {
     let by = size * 2_f32.powi(-18);
     for axis in 0..3 {
         let gap = (b[axis] + b[axis + 3]) / 2.0 - (a[axis] + a[axis + 3]) / 2.0;
+        let period = frame.periods.and_then(|periods| periods[axis]);
+        let gap = period.map_or(gap, |period| wrap(f64::from(gap), period).0 as f32);
         let step = by.min(gap.abs()) * -gap.signum();
         nearer.bodies.translation[j][axis] += step;
         nearer.boxes[j][axis] += step;

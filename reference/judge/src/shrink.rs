@@ -61,6 +61,7 @@ pub fn shrink_while(case: &Case, time: Duration, wrong: FailureCheck<'_>) -> Opt
     search.fewer_parts();
     search.fewer_shapes();
     search.fewer_triangles();
+    search.fewer_periods();
     search.fewer_digits();
     let from = case.name.clone();
     let Search {
@@ -223,6 +224,28 @@ impl Search<'_> {
         }
     }
 
+    /// No period along an axis, or one of fewer binary digits.
+    fn fewer_periods(&mut self) {
+        for (frame, axis) in (0..3 * self.case.frames.len()).map(|at| (at / 3, at % 3)) {
+            let periods = self.case.frames[frame].periods;
+            let Some(full) = periods.and_then(|periods| periods[axis]) else {
+                continue;
+            };
+            let digits = [2, 4, 8, 12, 16, 20].map(|digits| rounded(full as f32, digits));
+            let shorter = digits.map(|period| Some(f64::from(period)));
+            for period in [None].into_iter().chain(shorter) {
+                let mut case = self.case.clone();
+                if let Some(periods) = &mut case.frames[frame].periods {
+                    periods[axis] = period;
+                }
+                let is_sound = case.frames[frame].check_periods().is_ok();
+                if period == Some(full) || is_sound && self.try_case(case) {
+                    break;
+                }
+            }
+        }
+    }
+
     /// Poses, or boxes, of fewer binary digits.
     fn fewer_digits(&mut self) {
         for frame in 0..self.case.frames.len() {
@@ -271,6 +294,7 @@ impl Search<'_> {
             let rotations = &case.frames[frame].bodies.rotation;
             let mut sound = rotations.iter().all(|q| *q != [0.0; 4])
                 && case.frames[frame].boxes.iter().all(ordered);
+            sound &= case.frames[frame].check_periods().is_ok();
             if !self.case.claim.is_of_boxes() && sound {
                 sound = refit(&mut case, frame).is_some();
             }

@@ -119,6 +119,9 @@ fn prepared(culler: &mut impl Contestant, frame: &Frame) -> Result<(), &'static 
     if let Some(margins) = &frame.margins {
         can(culler.margins(margins), "it has no margins")?;
     }
+    if let Some(periods) = frame.periods {
+        can(culler.periods(periods), "its space has no periods")?;
+    }
     match &frame.parts {
         Some(parts) => can(culler.body_parts(parts), "its bodies are single shapes"),
         None => Ok(()),

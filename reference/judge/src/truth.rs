@@ -2,7 +2,7 @@
 
 use sdop_reference as reference;
 use sdop_reference::exact::common::{self, Point};
-use sdop_reference::exact::{meeting, ordop, sphere};
+use sdop_reference::exact::{meeting, ordop, period, sphere};
 use sdop_reference::{WidePose, wide};
 
 use super::case::Frame;
@@ -100,6 +100,7 @@ impl Truth {
             Claim::Aabb | Claim::Order | Claim::Restore => Some(boxes_meet(a, b)),
             Claim::Filter => Some(boxes_meet(a, b) && !self.parts(frame, pair)),
             Claim::Margin => Some(boxes_near(a, b, margins())),
+            Claim::Periodic => Some(!images(a, b, frame.periods.unwrap_or_default()).is_empty()),
             Claim::Sphere | Claim::OrDop | Claim::Hull | Claim::Mesh | Claim::Parts => None,
         }
     }
@@ -128,12 +129,16 @@ impl Truth {
         Ok(pairs)
     }
 
-    /// A point that both bodies share; `None` when the claim doesn't hold of them.
+    /// A point that both bodies share; `None` when the claim doesn't hold of them. In space that
+    /// repeats, it is a point of the first body and of an image of the second.
     #[must_use]
     pub fn common_point(&self, frame: &Frame, [i, j]: [u32; 2]) -> Option<Point> {
         if self.claim.is_of_boxes() {
-            // Boxes within their margins need not share any.
             let (a, b) = (&frame.boxes[i as usize], &frame.boxes[j as usize]);
+            if let (Claim::Periodic, Some(periods)) = (self.claim, frame.periods) {
+                return period::common_point(corners(a), corners(b), periods);
+            }
+            // Boxes within their margins need not share any.
             return boxes_meet(a, b).then(|| Point::of([0, 1, 2].map(|axis| a[axis].max(b[axis]))));
         }
         if frame.parts.is_some() {
@@ -160,6 +165,18 @@ type PosedPart<'a> = (&'a reference::Shape, WidePose);
 #[must_use]
 pub fn boxes_meet(a: &WorldBox, b: &WorldBox) -> bool {
     (0..3).all(|axis| a[axis] <= b[axis + 3] && b[axis] <= a[axis + 3])
+}
+
+/// The numbers of periods along each axis by which the second of two closed boxes is moved where
+/// it shares a point with the first one, in exact arithmetic.
+#[must_use]
+pub fn images(a: &WorldBox, b: &WorldBox, periods: [Option<f64>; 3]) -> Vec<[i64; 3]> {
+    period::meeting_images(corners(a), corners(b), periods)
+}
+
+fn corners(ends: &WorldBox) -> [[f64; 3]; 2] {
+    let [x0, y0, z0, x1, y1, z1] = ends.map(f64::from);
+    [[x0, y0, z0], [x1, y1, z1]]
 }
 
 /// Closed boxes, each grown by a margin in real arithmetic, share a point.

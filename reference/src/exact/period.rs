@@ -1,9 +1,9 @@
-//! Space that repeats along some axes, in exact fractions: the images in which two boxes meet, and
-//! how far apart the images of two points are. Touching counts.
+//! Space that repeats along some axes, in exact fractions: the images in which two boxes meet, a
+//! point that they share there, and how far apart the images of two points are. Touching counts.
 
 use dashu_ratio::RBig;
 
-use super::common::lifted;
+use super::common::{Point, lifted};
 use crate::linear::Vector;
 use crate::number::Number;
 
@@ -43,6 +43,24 @@ pub fn meeting_images(
         images = images.into_iter().flat_map(along).collect();
     }
     images
+}
+
+/// A point of the first of two boxes that an image of the second one shares; `None` if none does.
+///
+/// # Panics
+/// As [`meeting_images`].
+#[must_use]
+pub fn common_point(
+    a: [Vector<f64>; 2],
+    b: [Vector<f64>; 2],
+    periods: [Option<f64>; 3],
+) -> Option<Point> {
+    let image = *meeting_images(a, b, periods).first()?;
+    let (a, b) = (lifted(a[0]), lifted(b[0]));
+    Some(Point([0, 1, 2].map(|axis| {
+        let period = RBig::lift(periods[axis].unwrap_or(0.0), 0);
+        a[axis].larger(&(&b[axis] + RBig::from(image[axis]) * period))
+    })))
 }
 
 /// The difference of two points, of which the second is moved by whole periods, if f64 holds it.
@@ -105,6 +123,20 @@ mod tests {
         assert_eq!(images([3.0, 6.0, -15.0]), [[0; 3]; 0]);
         let wide = [[0.0; 3], [4.0, 8.0, 16.0]];
         assert_eq!(meeting_images(unit, wide, periods).len(), 8);
+    }
+
+    /// The second box begins in the first, one period of 0.1 further left: at 0.5 − 0.1, which no
+    /// f64 holds.
+    #[test]
+    fn common_points_are_exact() {
+        let periods = [Some(0.1), None, None];
+        let point = common_point(along_x(0.375, 0.4375), along_x(0.5, 0.5), periods);
+        let [x, ..] = point.map_or_else(Default::default, |point| point.0);
+        assert_eq!(x, RBig::lift(0.5, 0) - RBig::lift(0.1, 0));
+        assert_eq!(
+            common_point(along_x(0.0, 0.0625), along_x(0.375, 0.375), periods),
+            None
+        );
     }
 
     #[test]

@@ -14,6 +14,7 @@ mod crowds;
 mod exact_touches;
 mod grid;
 mod parts;
+mod periodic;
 mod sleep;
 mod stale_data;
 
@@ -36,6 +37,7 @@ pub use boxes::of_boxes;
 use claim_inputs::ClaimInputKind;
 use crowds::CrowdKind;
 use parts::PartsKind;
+use periodic::PeriodicKind;
 use stale_data::StaleKind;
 
 /// A case that can't be drawn.
@@ -92,6 +94,8 @@ enum CaseDraw {
     ClaimInput(ClaimInputKind, &'static [Claim; 1]),
     /// Bodies of several parts.
     Parts(PartsKind),
+    /// Boxes in space that repeats.
+    Periodic(PeriodicKind),
     /// A file of the hard cases.
     Hard(&'static str),
 }
@@ -201,6 +205,13 @@ sdop_data::with_hard_cases! { groups! {
     parts_touch "parts/touch", 6, CaseDraw::Parts(PartsKind::Still), "parts whose own rotation or offset is left out or not turned with the body, all parts but the first left out", after "Physijs #28 and bepuphysics2 #244";
     parts_move "parts/move", 3, CaseDraw::Parts(PartsKind::Moving), "parts that stay behind when their body moves or turns";
     parts_reframe "parts/reframe", 3, CaseDraw::Parts(PartsKind::Reframed), "stale parts after the frame of a body has changed", after "newton #4008 and playcanvas #3695";
+    periodic_face "periodic/face", 6, CaseDraw::Periodic(PeriodicKind::Face), "images left out, touching taken for apart";
+    periodic_edge "periodic/edge", 3, CaseDraw::Periodic(PeriodicKind::Edge), "images across one border alone";
+    periodic_corner "periodic/corner", 3, CaseDraw::Periodic(PeriodicKind::Corner), "images across one border or two alone";
+    periodic_far "periodic/far", 6, CaseDraw::Periodic(PeriodicKind::Far), "positions wrapped once alone, or by a rounded product";
+    periodic_rounded "periodic/rounded", 3, CaseDraw::Periodic(PeriodicKind::Rounded), "ends compared after a rounded sum with the period";
+    periodic_changed "periodic/changed", 3, CaseDraw::Periodic(PeriodicKind::Changed), "stale images after a period has changed";
+    periodic_crossing "periodic/crossing", 6, CaseDraw::Periodic(PeriodicKind::Crossing), "stale images of bodies that cross a border";
 } }
 
 /// Every group: the catalogue's own, then the files of hard cases as `hard/…`.
@@ -246,6 +257,7 @@ impl CaseGroup {
             CaseDraw::Boxes(_) => &[Claim::Aabb],
             CaseDraw::ClaimInput(_, claims) => claims,
             CaseDraw::Parts(_) => &[Claim::Parts],
+            CaseDraw::Periodic(_) => &[Claim::Periodic],
             // So many bodies that meshes would take minutes.
             CaseDraw::Crowd(CrowdKind::NewPairs | CrowdKind::Partners) => {
                 &[Claim::Sphere, Claim::Aabb]
@@ -343,6 +355,7 @@ impl CaseGroup {
             CaseDraw::Approach(kind) => Ok(approaches::approach(kind, number, rng)?),
             CaseDraw::ClaimInput(kind, _) => claim_inputs::with_input(kind, number, rng),
             CaseDraw::Parts(kind) => parts::touching(kind, number, rng),
+            CaseDraw::Periodic(kind) => periodic::touching(kind, number, rng),
             CaseDraw::Hard(text) => hard_case(text, number, seed),
         }
     }

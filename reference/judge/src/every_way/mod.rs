@@ -2,6 +2,7 @@
 //! ([`rounds`]), and as a subject like any other program ([`subject`]).
 
 pub mod ledger;
+mod lives;
 mod parts;
 pub mod rounds;
 pub mod run;

@@ -1,19 +1,17 @@
 //! Cases of bodies with parts in a long-lived world of compounds.
 
-use std::collections::HashMap;
-
+use super::lives;
 use crate::case::{Case, Frame};
 use crate::contestant::BodyPart;
 use crate::ours::configurations::Mode;
-use crate::ours::histories::{CompoundWorld, HistoryError, JudgedWorld, culler};
+use crate::ours::histories::{CompoundWorld, HistoryError, culler};
 use crate::shrink::Lists;
 use sdop::Motion;
 use sdop::compound::{Compound, Part, PartCuller};
 use sdop::settings::{Budget, CullSettings};
-use sdop::world::{Body, BodyId, World};
+use sdop::world::{Body, World};
 
-/// The pairs of bodies with parts that may touch, frame by frame, sorted. One world has all frames:
-/// bodies are set, inserted and removed.
+/// The pairs of bodies with parts that may touch, frame by frame, sorted.
 pub(super) fn lists(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists, HistoryError> {
     let way = CullSettings {
         budget: Some(Budget::Tests(3)),
@@ -42,44 +40,17 @@ pub(super) fn lists(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists
         world: World::with(shapes, &culler(&way, mode))?,
         parts,
     };
-    let (mut held, mut lists): (Vec<(BodyId, Body)>, Lists) = (Vec::new(), Vec::new());
-    for frame in &case.frames {
-        let bodies = &frame.bodies;
-        let former = |i: usize| match &frame.was {
-            Some(was) => was[i].map(|number| held[number as usize]),
-            None => held.get(i).copied(),
+    let body = |frame: &Frame, i: usize| {
+        let translation = frame.bodies.translation[i].map(f64::from);
+        let mut body = Body::at(number(frame, i), frame.bodies.rotation[i], translation);
+        body.motion = if frame.bodies.dynamic[i] {
+            Motion::Dynamic
+        } else {
+            Motion::Fixed
         };
-        let stay: Vec<Option<(BodyId, Body)>> = (0..bodies.len()).map(former).collect();
-        for gone in held.iter().filter(|one| !stay.contains(&Some(**one))) {
-            JudgedWorld::remove(&mut world, gone.0)?;
-        }
-        let mut now = Vec::new();
-        for (i, former) in stay.into_iter().enumerate() {
-            let translation = bodies.translation[i].map(f64::from);
-            let mut body = Body::at(number(frame, i), bodies.rotation[i], translation);
-            body.motion = if bodies.dynamic[i] {
-                Motion::Dynamic
-            } else {
-                Motion::Fixed
-            };
-            let id = match former {
-                Some((id, from)) => world.change(id, from, body).map(|()| id),
-                None => JudgedWorld::insert(&mut world, body),
-            };
-            now.push((id?, body));
-        }
-        held = now;
-        let numbers: HashMap<BodyId, u32> = held.iter().map(|one| one.0).zip(0..).collect();
-        let pairs = world
-            .cull()?
-            .into_iter()
-            .filter(|pair| pair.parts.is_none());
-        let pairs = pairs.map(|pair| pair.bodies.map(|id| numbers[&id]));
-        let mut list: Vec<[u32; 2]> = pairs.map(|[i, j]| [i.min(j), i.max(j)]).collect();
-        list.sort_unstable();
-        lists.push(list);
-    }
-    Ok(lists)
+        body
+    };
+    lives::lists(&mut world, case, body, |_, _| Ok(()))
 }
 
 fn part(part: &BodyPart) -> Part {

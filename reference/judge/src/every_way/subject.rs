@@ -1,7 +1,7 @@
 //! Our cullers as a subject: in every way that they have, each in the mode whose turn it is.
 
-use super::parts;
 use super::run::RoundError;
+use super::{lives, parts};
 use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
@@ -9,9 +9,11 @@ use crate::contestant::WorldBox;
 use crate::ours::boxes::BoxCell;
 use crate::ours::compare::{culler, settings};
 use crate::ours::configurations::{Mode, Rotation, ways};
+use crate::ours::histories::HistoryError;
 use crate::shrink::Lists;
 use crate::subject::Subject;
 use sdop::bodies::Aabb;
+use sdop::periodic::PeriodicBoxes;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::volume::{Axes, DirectionSet};
 
@@ -22,7 +24,12 @@ pub fn makes(strategy: Strategy, claim: Claim) -> bool {
         Claim::Sphere => strategy == Strategy::Sphere,
         Claim::OrDop => strategy == Strategy::OrDop,
         Claim::Hull | Claim::Mesh | Claim::Parts => strategy.scheme().culls(),
-        Claim::Aabb | Claim::Order | Claim::Filter | Claim::Restore | Claim::Margin => false,
+        Claim::Aabb
+        | Claim::Order
+        | Claim::Filter
+        | Claim::Restore
+        | Claim::Margin
+        | Claim::Periodic => false,
     }
 }
 
@@ -40,7 +47,7 @@ impl EveryWay {
     }
 
     /// The claims that our cullers make.
-    pub const CLAIMS: [Claim; 7] = [
+    pub const CLAIMS: [Claim; 8] = [
         Claim::Sphere,
         Claim::Aabb,
         Claim::OrDop,
@@ -48,12 +55,16 @@ impl EveryWay {
         Claim::Mesh,
         Claim::Order,
         Claim::Parts,
+        Claim::Periodic,
     ];
 
     fn lists(&self, case: &Case) -> Result<Lists, RoundError> {
         if case.claim.is_of_boxes() {
             let cells = BoxCell::all(&self.rotation);
-            return all_report(cells.map(|(cell, mode)| boxes(case, cell, mode)));
+            return all_report(cells.map(|(cell, mode)| match case.claim {
+                Claim::Periodic => Ok(periodic(case, cell, mode)?),
+                _ => boxes(case, cell, mode),
+            }));
         }
         let ways = ways(DirectionSet::K18, Axes::Principal).into_iter();
         let ways = ways.filter(|way| makes(way.strategy, case.claim));
@@ -118,4 +129,17 @@ fn boxes(case: &Case, cell: BoxCell, mode: Mode) -> Result<Lists, RoundError> {
         Ok(culler.cull(&boxes)?.sorted())
     };
     case.frames.iter().map(list).collect()
+}
+
+/// The boxes and their images by one finder, in one world for all frames.
+fn periodic(case: &Case, cell: BoxCell, mode: Mode) -> Result<Lists, HistoryError> {
+    let periods = |frame: &Frame| frame.periods.unwrap_or_default();
+    let first = case.frames.first().map_or([None; 3], periods);
+    let mut world = PeriodicBoxes::with(&cell.builder(mode), first)?;
+    lives::lists(&mut world, case, Frame::periodic_box, |world, frame| {
+        if world.periods() != periods(frame) {
+            world.set_periods(periods(frame))?;
+        }
+        Ok(())
+    })
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use super::compare::difference;
 use super::configurations::{Mode, Rotation};
 use sdop::bodies::Aabb;
-use sdop::boxes::BoxCuller;
+use sdop::boxes::{BoxCuller, BoxCullerBuilder};
 use sdop::culler::CullError;
 use sdop::settings::{Finder, Updates};
 
@@ -39,14 +39,19 @@ pub struct BoxCell {
 }
 
 impl BoxCell {
-    /// The culler of this cell; its tier and number of threads are the mode's.
+    /// The choices of this cell; its tier and number of threads are the mode's.
+    pub fn builder(&self, mode: Mode) -> BoxCullerBuilder {
+        let of = BoxCuller::builder().finder(self.finder);
+        let of = of.tier(mode.tier).threads(mode.threads);
+        of.worth_waking(0)
+    }
+
+    /// The culler of this cell.
     ///
     /// # Errors
     /// Threads that the system refuses.
     pub fn culler(&self, mode: Mode) -> Result<BoxCuller, CullError> {
-        let of = BoxCuller::builder().finder(self.finder);
-        let of = of.tier(mode.tier).threads(mode.threads);
-        of.worth_waking(0).build()
+        self.builder(mode).build()
     }
 
     /// Every cell, and a mode of it: given boxes have no update mode.

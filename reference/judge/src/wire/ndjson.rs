@@ -4,8 +4,9 @@
 //! Line 1 may have `flag`, `source` and `claims`; a frame has `boxes` for the claims about given
 //! boxes, and `bodies` when the set changes, each with its former number as `was` (null for a new
 //! body). For some claims it also has `groups` and `excluded`, or `margins`, or `save` and
-//! `restore`. A body of several shapes has `parts` in place of `shape`, so that a reader that knows
-//! single shapes alone reports an error.
+//! `restore`, or `periods`, which alone are f64 (null for an axis without one). A body of several
+//! shapes has `parts` in place of `shape`, so that a reader that knows single shapes alone reports
+//! an error.
 
 use std::io::BufRead;
 
@@ -111,6 +112,8 @@ struct CaseFrame {
     excluded: Option<Vec<[u32; 2]>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     margins: Option<Vec<f32>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    periods: Option<[Option<f64>; 3]>,
     #[serde(default, skip_serializing_if = "is_false")]
     restore: bool,
     #[serde(default, skip_serializing_if = "is_false")]
@@ -153,6 +156,7 @@ pub(crate) fn encode(case: &Case, reported: &[Vec<[u32; 2]>]) -> serde_json::Res
             groups: frame.filter.as_ref().map(|filter| filter.groups.clone()),
             excluded: frame.filter.as_ref().map(|filter| filter.excluded.clone()),
             margins: frame.margins.clone(),
+            periods: frame.periods,
             restore: frame.restore,
             save: frame.save,
             pairs: reported.get(number).cloned(),
@@ -249,6 +253,9 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
         }
         frame.was = was;
         (frame.restore, frame.save) = (line.restore, line.save);
+        frame.periods = line.periods;
+        let checked = frame.check_periods();
+        checked.map_err(|e| at(format!("{e}; {}", e.help())))?;
         frame.margins = line
             .margins
             .map(|margins| sized(margins, &bodies, "margins"))
@@ -392,14 +399,14 @@ mod tests {
     use super::*;
     use crate::catalogue::groups;
 
-    /// All numbers of a value but groups, which are 32 bits each.
+    /// All numbers of a value but groups, which are 32 bits each, and periods, which are f64.
     fn numbers(value: &Value, found: &mut Vec<f64>) {
         match value {
             Value::Number(number) => found.extend(number.as_f64()),
             Value::Array(items) => items.iter().for_each(|item| numbers(item, found)),
             Value::Object(items) => items
                 .iter()
-                .filter(|(key, _)| *key != "groups")
+                .filter(|(key, _)| !["groups", "periods"].contains(&key.as_str()))
                 .for_each(|(_, item)| numbers(item, found)),
             _ => {}
         }

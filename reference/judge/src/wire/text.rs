@@ -1,5 +1,6 @@
 //! Cases as words between white space: every count precedes what it counts, every f32 is its bits
-//! in eight hexadecimal digits. The page in `examples/judge` has the grammar.
+//! in eight hexadecimal digits, and every f64 in sixteen. The page in `examples/judge` has the
+//! grammar.
 
 use std::fmt::Write as _;
 
@@ -101,6 +102,10 @@ fn write_frame(text: &mut String, claim: Claim, number: usize, frame: &Frame) {
         for (i, was) in was.iter().enumerate() {
             write_body(text, claim, frame, i, Some(was.map_or(-1, i64::from)));
         }
+    }
+    if let Some(periods) = frame.periods {
+        let [x, y, z] = periods.map(|period| period.unwrap_or(0.0).to_bits());
+        let _ = writeln!(text, "periods {x:016x} {y:016x} {z:016x}");
     }
     let _ = writeln!(text, "frame {number} {}", bodies.len());
     for i in 0..bodies.len() {

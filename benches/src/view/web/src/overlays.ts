@@ -1,14 +1,16 @@
-// Overlays that can be switched on: spheres, or-DOPs, world boxes, pairs, grid cells.
+// Overlays that can be switched on: spheres, or-DOPs, world boxes, pairs, grid cells. The cell of a
+// space that repeats is always shown.
 
 import { Group } from "three";
 import type { Color, Vector3 } from "three";
 import type { Bodies } from "./bodies.ts";
+import { MEETS } from "./data.ts";
 import { cubeLines, extent, plus, rotate, sphereLines, type Triple, turnFromX, UPRIGHT } from "./figures.ts";
 import { Faces } from "./faces.ts";
 import { Wires } from "./lines.ts";
 import { halfSpaces, polytope } from "./polytope.ts";
 import { type Run, State } from "./run.ts";
-import type { Space } from "./space.ts";
+import { boundsOf, type Space } from "./space.ts";
 import type { Theme } from "./theme.ts";
 
 /** The overlays, by their names in the page's address. */
@@ -44,10 +46,12 @@ export class Overlays extends Group {
   private readonly boxes = new Wires(cubeLines(), 0.7);
   private readonly faces: Faces;
   private readonly cells = new Wires(cubeLines(), 0.35);
+  private readonly images = new Wires(cubeLines(), 0.3);
   private readonly halos = new Wires(THICK_SEGMENT, 0.9, true);
   private readonly pairs = new Wires(THICK_SEGMENT, 0.9, true);
   private readonly marks = new Wires(sphereLines(40), 1, true);
   private readonly markedPairs = new Wires(THICK_SEGMENT, 1, true);
+  private readonly all: (Wires | Faces)[];
   private readonly hulls: Float64Array[];
   private readonly widest: number;
 
@@ -72,7 +76,9 @@ export class Overlays extends Group {
     );
     this.faces = new Faces(run.boxesAt(0) ? run.header.bodies : 0);
     this.widest = Math.max(0, ...Array.from(new Set(run.shapeOf), (shape) => shapes[shape].ball[3]));
-    this.add(this.spheres, ...this.ordops, this.boxes, this.faces, this.cells, this.halos, this.pairs, this.marks, this.markedPairs);
+    const { spheres, ordops, boxes, faces, cells, images, halos, pairs, marks, markedPairs } = this;
+    this.all = [spheres, ...ordops, boxes, faces, cells, images, halos, pairs, marks, markedPairs];
+    this.add(...this.all);
   }
 
   /**
@@ -80,12 +86,12 @@ export class Overlays extends Group {
    */
   update(moment: Moment, marked: Map<number, Color>): void {
     const { switches } = moment;
-    const all = [this.spheres, ...this.ordops, this.boxes, this.faces, this.cells, this.halos, this.pairs, this.marks, this.markedPairs];
-    for (const wires of all) wires.begin();
+    for (const wires of this.all) wires.begin();
     if (switches.spheres) this.addSpheres(moment);
     if (switches.ordops) this.addOrDops(moment);
     if (switches.boxes) this.addBoxes(moment);
     if (switches.cells) this.addCells(moment);
+    this.addPeriods(moment);
     this.addPairs(moment);
     this.addSharedPoint(moment);
     for (const [body, colour] of marked) {
@@ -93,7 +99,7 @@ export class Overlays extends Group {
       const radius = 1.08 * ball.radius;
       this.marks.put(ball.centre, UPRIGHT, [radius, radius, radius], colour);
     }
-    for (const wires of all) wires.end();
+    for (const wires of this.all) wires.end();
   }
 
   private *shown(moment: Moment): Generator<[number, Color]> {
@@ -157,6 +163,32 @@ export class Overlays extends Group {
       const centre = at.map((x) => (x + 0.5) * cell) as Triple;
       this.cells.put(centre, UPRIGHT, [cell / 2, cell / 2, cell / 2], moment.theme.cells);
     }
+  }
+
+  /**
+   * Where space repeats: a cell, which begins at the origin along axes with a period, and the
+   * images of boxes that meet others across a border.
+   */
+  private addPeriods(moment: Moment): void {
+    const { run, space } = this;
+    const periods = run.periodsAt(moment.frame);
+    if (!periods) return;
+    const { centre, half } = boundsOf(run, moment.frame);
+    const halves = [0, 1, 2].map((axis) => (periods[axis] > 0 ? periods[axis] / 2 : half)) as Triple;
+    const [x, y, z] = [0, 1, 2].map((axis) => (periods[axis] > 0 ? halves[axis] : centre[axis]));
+    const size = halves.map((length) => length * space.scale) as Triple;
+    this.images.put([space.x(x), space.y(y), space.z(z)], UPRIGHT, size, moment.theme.cells);
+    for (const { i, j, flags } of run.pairsAt(moment.frame)) {
+      if (!(flags & MEETS)) continue;
+      this.addImage(i, j, moment);
+      this.addImage(j, i, moment);
+    }
+  }
+
+  private addImage(body: number, other: number, { frame, colour }: Moment): void {
+    const [way, box, tint] = [this.run.wayToImage(frame, body, other), this.bodies.box(body), colour(body)];
+    if (!way || !box || !tint) return;
+    this.images.put(plus(box.centre, way.map((x) => x * this.space.scale) as Triple), UPRIGHT, box.half, tint);
   }
 
   /**

@@ -50,6 +50,8 @@ export class Run {
    * then the upper one.
    */
   private readonly boxes: Float32Array | null;
+  /** Three periods per frame, 0 along an axis without one. */
+  private readonly periods: Float64Array | null;
   /** The poses of all bodies in the last requested frame: q (x, y, z, w), then t. */
   private readonly posed: Float32Array;
   private posedFrame = -1;
@@ -77,6 +79,7 @@ export class Run {
     this.counters = runs.map((run, r) => (run.volumes ? block<Float64Array>(`counters-${r}`, 3 * run.volumes.length * frames) : null));
     this.terms = runs.map((run, r) => (run.construct === null ? null : block<Float64Array>(`terms-${r}`, 3 * frames)));
     this.boxes = blocks.has("boxes") ? block<Float32Array>("boxes", 6 * bodies * frames) : null;
+    this.periods = blocks.has("periods") ? block<Float64Array>("periods", 3 * frames) : null;
     this.posed = this.first.slice();
   }
 
@@ -101,6 +104,22 @@ export class Run {
   boxesAt(frame: number): Float32Array | null {
     const length = 6 * this.header.bodies;
     return this.boxes && this.boxes.subarray(frame * length, (frame + 1) * length);
+  }
+
+  /** The periods of a frame, 0 along an axis without one; null where space doesn't repeat. */
+  periodsAt(frame: number): Float64Array | null {
+    const periods = this.periods?.subarray(3 * frame, 3 * frame + 3);
+    return periods?.some((period) => period > 0) ? periods : null;
+  }
+
+  /** How far a body is moved to its image nearest to another; null if that is the body itself. */
+  wayToImage(frame: number, body: number, other: number): [number, number, number] | null {
+    const periods = this.periodsAt(frame);
+    if (!periods) return null;
+    const [from, to] = [body, other].map((number) => this.cubeAbout(frame, number).centre);
+    const along = (axis: number) => (periods[axis] > 0 ? Math.round((to[axis] - from[axis]) / periods[axis]) * periods[axis] : 0);
+    const way: [number, number, number] = [along(0), along(1), along(2)];
+    return way.some((x) => x !== 0) ? way : null;
   }
 
   /** A cube about a body, in the world: about its given box, or about its mesh in any rotation. */

@@ -216,6 +216,19 @@ test("a case's boxes are those of each frame, and a picture is about them", () =
   assert.throws(() => new Run(header(), new Map([...blocks(), ["boxes", boxes.slice(1)] as const])), /block boxes has 35 numbers, not 36/);
 });
 
+test("where space repeats, a body is moved to its image nearest to another", () => {
+  const boxes = new Float32Array([...[0, 4, 0, 1, 5, 1], ...[9, 24, 9, 10, 25, 10], ...[2, 4, 0, 3, 5, 1]]);
+  const periods = new Float64Array([10, 10, 0, 0, 0, 0]);
+  const given = [["boxes", new Float32Array([...boxes, ...boxes])], ["periods", periods]] as const;
+  const run = new Run(header(), new Map<string, Numbers>([...blocks(), ...given]));
+  assert.deepEqual([...run.periodsAt(0)!], [10, 10, 0]);
+  assert.deepEqual(run.wayToImage(0, 1, 0), [-10, -20, 0]);
+  assert.deepEqual(run.wayToImage(0, 0, 1), [10, 20, 0]);
+  assert.equal(run.wayToImage(0, 0, 2), null);
+  assert.deepEqual([run.periodsAt(1), run.wayToImage(1, 1, 0)], [null, null]);
+  assert.equal(new Run(header(), blocks()).periodsAt(0), null);
+});
+
 test("a counter-example's picture is about its frame, and about its pair where that is small", () => {
   const focus = (bodies: [number, number]) => header({ focus: { frame: 1, bodies, point: null } });
   // In the second frame body 1 is at (7, 8, 9), the others at (1, 0, 0) and (3, 0, 0), each of
