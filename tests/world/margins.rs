@@ -195,3 +195,38 @@ fn changed_margin_counts_next_cull() {
         }
     }
 }
+
+/// Bodies at rest keep the margin that they have, while another body has had so many that unused
+/// ones are removed.
+#[test]
+fn resting_bodies_keep_their_margins() {
+    let shape = cube(DirectionSet::K6, Axes::Model);
+    let spheres = Culler::builder().strategy(Strategy::Sphere);
+    let mut world = World::with(vec![shape], &spheres).unwrap();
+    let at = |x: f64, margin| Body {
+        margin,
+        translation: [x; 3],
+        ..Body::default()
+    };
+    let still: Vec<BodyId> = (0..40)
+        .map(|number| {
+            world
+                .insert(at(100.0 * f64::from(number), 1.0).fixed())
+                .unwrap()
+        })
+        .collect();
+    let mover = world.insert(at(50.0, 0.0)).unwrap(); // between two others
+    world.cull().unwrap();
+    let apart = 2.5; // then corners are √3/2 apart, and no origin changes
+    for number in 0..200 {
+        let margin = 1.0e-9 * 1.1_f32.powi(number);
+        let other = number as usize % still.len();
+        let near = world.body(still[other]).unwrap().translation[0] + apart;
+        for (place, pairs) in [(50.0, vec![]), (near, vec![[still[other], mover]])] {
+            world.set(mover, at(place, margin)).unwrap();
+            world.cull().unwrap();
+            assert!(world.pairs().eq(pairs), "margin {margin} at {place}");
+        }
+    }
+    assert!(world.counters().rest.kept > 300 * 40, "few bodies change");
+}

@@ -4,6 +4,7 @@ use std::io::{BufRead, Write};
 use std::time::Instant;
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 /// A box: lower corner, upper corner.
 pub type Box6 = [f32; 6];
@@ -11,7 +12,11 @@ pub type Box6 = [f32; 6];
 /// A body: its shape, and whether it is static.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct Body {
+    #[serde(default)]
     pub shape: usize,
+    /// Several shapes, which no adapter here has.
+    #[serde(default)]
+    parts: Option<IgnoredAny>,
     #[serde(rename = "static")]
     pub fixed: bool,
     /// Its number in the frame before; `None` for a new one.
@@ -54,6 +59,16 @@ struct Line {
     poses: Option<Vec<[f32; 7]>>,
     groups: Option<Vec<[u32; 2]>>,
     excluded: Option<Vec<[usize; 2]>>,
+    periods: Option<IgnoredAny>,
+}
+
+/// What no adapter here has.
+fn beyond_all(frame: &Frame, repeats: bool) -> Option<&'static str> {
+    let has_parts = frame.bodies.iter().any(|body| body.parts.is_some());
+    if has_parts {
+        return Some("a body has one shape");
+    }
+    repeats.then_some("space does not repeat")
 }
 
 /// Answers cases on standard input until it ends, each with a new culler, or prints the version of
@@ -98,13 +113,14 @@ pub fn serve<C: FnMut(&Frame) -> Found>(package: &str, make: impl Fn() -> C) {
                 .collect();
             (frame.bodies, frame.ids) = (bodies, ids);
         }
+        let beyond = beyond_all(&frame, line.periods.is_some());
         (frame.boxes, frame.poses) = (
             line.boxes.unwrap_or_default(),
             line.poses.unwrap_or_default(),
         );
         (frame.groups, frame.excluded) = (line.groups, line.excluded.unwrap_or_default());
         let start = Instant::now();
-        let found = find(&frame);
+        let found = beyond.map_or_else(|| find(&frame), Err);
         let (number, ns) = (
             line.frame.unwrap_or_default(),
             start.elapsed().as_nanos() as u64,
