@@ -13,7 +13,8 @@ use crate::ours::forms::{self, Form};
 use crate::ours::hard::HardCaseGroup;
 use crate::ours::histories::{
     Repeated, Robots, draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_compounds,
-    judge_meshes, judge_periodic_boxes, judge_periodic_meshes,
+    judge_meshes, judge_periodic_boxes, judge_periodic_meshes, judge_queries_of_boxes,
+    judge_queries_of_meshes,
 };
 use crate::ours::reference_shapes::Shapes;
 use crate::ours::seeded_draws::{ContactSpec, crowd, probe};
@@ -80,10 +81,11 @@ pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
 
 /// Long-lived worlds of a seed for one or-DOP, number `number` of all that a seed has: one history
 /// of given boxes and one of meshes, by every strategy and overlap test, both in space that
-/// repeats, and one of compounds. The modes of eight or-DOPs fill every cell.
+/// repeats and both asked, and one of compounds. The modes of eight or-DOPs fill every cell.
 ///
 /// # Errors
-/// As [`judge_meshes`], [`judge_periodic_meshes`] and [`judge_compounds`].
+/// As [`judge_meshes`], [`judge_periodic_meshes`], [`judge_queries_of_meshes`] and
+/// [`judge_compounds`].
 pub fn histories(
     seed: u64,
     number: usize,
@@ -104,6 +106,9 @@ pub fn histories(
     let meshes = draw_meshes(&shapes, &mut below);
     let mut judged = judge_boxes(&boxes, &modes(0))?;
     judged.add(judge_meshes(&shapes, &meshes, (k, axes), modes)?);
+    judged.add(judge_queries_of_boxes(&boxes, &modes(0))?);
+    let queried = judge_queries_of_meshes(&shapes, &meshes, (k, axes), &modes(0));
+    judged.add(queried?);
     let boxes = Repeated::boxes(&boxes, &mut below);
     judged.add(judge_periodic_boxes(&boxes, &modes(0))?);
     let meshes = Repeated::meshes(&meshes, &mut below);

@@ -13,7 +13,7 @@ use sdop::volume::{DirectionSet, Hull, OrDop, Shape};
 pub use reference::InvalidInput;
 
 /// Shapes as the culler and as the reference knows them, in one order.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Shapes {
     /// The shapes as built.
     pub built: Vec<Shape>,

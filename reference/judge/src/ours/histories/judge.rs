@@ -353,7 +353,7 @@ pub(super) fn grown_shape(body: &Body) -> u32 {
 }
 
 /// The exact answers about the present bodies, grown by their margins.
-fn answers(
+pub(super) fn answers(
     shapes: &Shapes,
     state: &State<Body>,
     k: DirectionSet,
@@ -370,7 +370,7 @@ fn answers(
 }
 
 /// The pairs that a way must report.
-fn required_of(state: &State<Body>, answers: &Answers, way: &CullSettings) -> Pairs {
+pub(super) fn required_of(state: &State<Body>, answers: &Answers, way: &CullSettings) -> Pairs {
     let (numbers, parts) = state.parts(|body| body.groups);
     let interest: Vec<u32> = (0..)
         .zip(&numbers)

@@ -1,13 +1,14 @@
 //! Histories of long-lived worlds: frames in which a few bodies are inserted, removed, moved, put
 //! to rest, woken, fixed or changed. After each frame, a world's pairs are compared with the exact
 //! answers and with those of a newly built world, and its events with the difference of its lists.
-//! Worlds in which space repeats live through the same histories, and worlds of compounds through
-//! histories of robots whose parts touch.
+//! Worlds in which space repeats and worlds that are asked instead of culled live through the same
+//! histories, and worlds of compounds through histories of robots whose parts touch.
 
 mod compounds;
 mod draw;
 mod judge;
 mod periodic;
+mod queries;
 mod robots;
 mod state;
 #[cfg(test)]
@@ -21,14 +22,17 @@ pub use draw::{draw_boxes, draw_meshes, history_shapes};
 pub(crate) use judge::culler;
 pub use judge::{judge_boxes, judge_meshes};
 pub use periodic::{Repeated, judge_periodic_boxes, judge_periodic_meshes};
+pub use queries::{judge_queries_of_boxes, judge_queries_of_meshes};
 pub use robots::Robots;
 pub(crate) use worlds::{CompoundWorld, JudgedWorld};
 
 use super::configurations::{Rotation, rows, variants};
 use super::reference_shapes::InvalidInput;
+use sdop::ThreadsError;
 use sdop::choice::choices;
 use sdop::compound::CompoundError;
 use sdop::periodic::PeriodicError;
+use sdop::query::QueryError;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::world::WorldError;
 
@@ -44,6 +48,12 @@ pub enum HistoryError {
     /// Parts that no compound can have.
     #[error(transparent)]
     Compound(#[from] CompoundError),
+    /// Threads that the system refuses.
+    #[error(transparent)]
+    Threads(#[from] ThreadsError),
+    /// Volumes that no query can have.
+    #[error(transparent)]
+    Query(#[from] QueryError),
     /// Numbers that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),
@@ -102,7 +112,7 @@ pub struct History<B> {
 }
 
 /// The world that is judged: given boxes, meshes by a strategy with an overlap test, both in space
-/// that may repeat, or compounds.
+/// that may repeat, compounds, or what an index answers about boxes and meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WorldKind {
     /// A `BoxWorld`.
@@ -115,6 +125,10 @@ pub enum WorldKind {
     PeriodicMeshes(Strategy),
     /// A `World` with a `PartCuller`, with the default overlap test.
     Compounds(Strategy),
+    /// A `QueryIndex` of a `BoxWorld`.
+    AskedBoxes,
+    /// A `QueryIndex` of a `World`.
+    AskedMeshes,
 }
 
 impl WorldKind {
@@ -133,9 +147,9 @@ impl WorldKind {
             ChangeKind::Margin | ChangeKind::Reshaped | ChangeKind::Interest
         );
         match self {
-            Self::Boxes | Self::PeriodicBoxes => !is_of_meshes,
+            Self::Boxes | Self::PeriodicBoxes | Self::AskedBoxes => !is_of_meshes,
             Self::Meshes(..) | Self::Compounds(_) => true,
-            Self::PeriodicMeshes(_) => change != ChangeKind::Interest,
+            Self::PeriodicMeshes(_) | Self::AskedMeshes => change != ChangeKind::Interest,
         }
     }
 
@@ -149,6 +163,8 @@ impl WorldKind {
             Self::PeriodicBoxes => "periodic boxes".to_owned(),
             Self::PeriodicMeshes(strategy) => format!("periodic {strategy}"),
             Self::Compounds(strategy) => format!("compounds {strategy}"),
+            Self::AskedBoxes => "queries of boxes".to_owned(),
+            Self::AskedMeshes => "queries of meshes".to_owned(),
         }
     }
 }
@@ -176,6 +192,7 @@ impl HistoryCell {
         let worlds = worlds.chain([WorldKind::PeriodicBoxes]);
         let worlds = worlds.chain(periodic::STRATEGIES.map(WorldKind::PeriodicMeshes));
         let worlds = worlds.chain(compounds::strategies().map(WorldKind::Compounds));
+        let worlds = worlds.chain([WorldKind::AskedBoxes, WorldKind::AskedMeshes]);
         let mut cells = Vec::new();
         for world in worlds {
             let has = |change: &ChangeKind| world.has(*change);

@@ -1,0 +1,216 @@
+//! Histories in which worlds are asked: after each frame an index of the world is brought up to
+//! date, and each body's own volume is a query. Of what is found, the pairs that a cull would report
+//! are compared, since queries ignore groups, exclusion and motion.
+
+use sdop::Motion;
+use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};
+use sdop::query::{QueryIndex, QueryShape, QuerySource, QueryVolume};
+use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
+use sdop::simd::Tier;
+use sdop::volume::{Axes, DirectionSet};
+use sdop::world::{Body, BodyId, Events, World};
+
+use super::judge::{Life, Truth, answers, culler, required_boxes, required_of, with_margins};
+use super::state::State;
+use super::worlds::{JudgedWorld, Properties, ReportedPair};
+use super::{History, HistoryError, HistoryLedger, WorldKind};
+use crate::ours::answers::Predicate;
+use crate::ours::configurations::Mode;
+use crate::ours::reference_shapes::Shapes;
+
+/// A world that can be asked about the volumes of its own bodies.
+trait AskedWorld: JudgedWorld + QuerySource {
+    /// All bodies, sorted by slot.
+    fn all(&self) -> Vec<(BodyId, Self::Body)>;
+    fn excludes(&self, pair: [BodyId; 2]) -> bool;
+    /// A body as a query. Meshes have these shapes.
+    fn volume<'a>(body: &Self::Body, shapes: &'a [QueryShape]) -> QueryVolume<'a>;
+}
+
+impl AskedWorld for BoxWorld {
+    fn all(&self) -> Vec<(BodyId, BoxBody)> {
+        self.bodies().collect()
+    }
+
+    fn excludes(&self, [a, b]: [BodyId; 2]) -> bool {
+        self.is_excluded(a, b)
+    }
+
+    fn volume<'a>(body: &BoxBody, _: &'a [QueryShape]) -> QueryVolume<'a> {
+        body.bounds.into()
+    }
+}
+
+impl AskedWorld for World {
+    fn all(&self) -> Vec<(BodyId, Body)> {
+        self.bodies().collect()
+    }
+
+    fn excludes(&self, [a, b]: [BodyId; 2]) -> bool {
+        self.is_excluded(a, b)
+    }
+
+    fn volume<'a>(body: &Body, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
+        QueryVolume::Shape {
+            shape: &shapes[body.shape as usize],
+            rotation: body.rotation,
+            translation: body.translation,
+            margin: body.margin,
+        }
+    }
+}
+
+/// A world and its index.
+struct Asked<W> {
+    world: W,
+    index: QueryIndex,
+    shapes: Vec<QueryShape>,
+}
+
+impl<W: AskedWorld> Asked<W> {
+    fn new(world: W, shapes: &Shapes, mode: Mode) -> Result<Self, HistoryError> {
+        let index = QueryIndex::with_threads(mode.threads)?;
+        Ok(Self {
+            world,
+            index: index.on_tier(mode.tier),
+            shapes: shapes.built.iter().map(QueryShape::new).collect(),
+        })
+    }
+}
+
+impl<W: AskedWorld> JudgedWorld for Asked<W> {
+    type Body = W::Body;
+
+    fn insert(&mut self, body: W::Body) -> Result<BodyId, HistoryError> {
+        self.world.insert(body)
+    }
+
+    fn remove(&mut self, id: BodyId) -> Result<(), HistoryError> {
+        self.world.remove(id)
+    }
+
+    fn change(&mut self, id: BodyId, from: W::Body, to: W::Body) -> Result<(), HistoryError> {
+        self.world.change(id, from, to)
+    }
+
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), HistoryError> {
+        self.world.exclude(pair, excluded)
+    }
+
+    fn interest(&mut self, _: &[BodyId]) -> Result<(), HistoryError> {
+        Ok(())
+    }
+
+    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
+        self.index.update(&self.world);
+        let bodies = self.world.all();
+        let volumes = bodies.iter().map(|(_, body)| W::volume(body, &self.shapes));
+        let found = self.index.touching_all(&volumes.collect::<Vec<_>>())?;
+        let mut pairs = Vec::new();
+        for (&(id, mut body), found) in bodies.iter().zip(found.iter()) {
+            for &other in found.iter().filter(|&&other| id < other) {
+                let at = bodies.binary_search_by_key(&other, |&(id, _)| id);
+                let counts = at.is_ok_and(|at| {
+                    let mut partner = bodies[at].1;
+                    let motions = [*body.motion(), *partner.motion()];
+                    motions != [Motion::Fixed; 2]
+                        && body.groups().collide(*partner.groups())
+                        && !self.world.excludes([id, other])
+                });
+                pairs.extend(counts.then(|| ReportedPair::of([id, other], None)));
+            }
+        }
+        self.world.cull()?; // from then on, slots of removed bodies are given again
+        Ok(pairs)
+    }
+
+    fn events(&mut self) -> Option<Events> {
+        None
+    }
+}
+
+/// A history of boxes in these modes.
+///
+/// # Errors
+/// Threads that the system refuses, invalid boxes.
+pub fn judge_queries_of_boxes(
+    history: &History<BoxBody>,
+    modes: &[Mode],
+) -> Result<HistoryLedger, HistoryError> {
+    let states = State::all(history)?;
+    let truth = Truth::exact(required_boxes(&states)); // boxes are compared as they are
+    let mut ledger = HistoryLedger::default();
+    for &mode in modes {
+        let world = BoxWorld::with(&BoxCuller::builder().finder(Finder::AllPairs))?;
+        let life = Life::new(
+            Asked::new(world, &Shapes::default(), mode)?,
+            history,
+            &states,
+        )?;
+        life.live(WorldKind::AskedBoxes, mode, &truth, &mut ledger)?;
+    }
+    Ok(ledger)
+}
+
+/// A history of meshes in these modes. All is required that neither balls nor or-DOPs nor the axes
+/// of the world separate in exact arithmetic, without margins: a query grows a mesh by its margin
+/// on all sides, which is less than its slabs moved out by it.
+///
+/// # Errors
+/// Threads that the system refuses, poses outside the contract.
+pub fn judge_queries_of_meshes(
+    shapes: &Shapes,
+    history: &History<Body>,
+    (k, axes): (DirectionSet, Axes),
+    modes: &[Mode],
+) -> Result<HistoryLedger, HistoryError> {
+    let way = CullSettings {
+        strategy: Strategy::SDopSequential,
+        pairs: Finder::AllPairs,
+        overlap: Overlap::TwoSided,
+        k,
+        axes,
+        ..CullSettings::default()
+    };
+    let asked = |mode| {
+        let built = shapes.built.clone();
+        let world = World::with(built, &culler(&way, Mode::plain(Tier::SCALAR)))?;
+        Asked::new(world, shapes, mode)
+    };
+    let states = State::all(history)?;
+    let grown = with_margins(shapes)?;
+    let predicates = [
+        Predicate::Sphere,
+        Predicate::OrDop(way.overlap),
+        Predicate::Aabb,
+    ];
+    let boxes = CullSettings {
+        strategy: Strategy::Aabb,
+        ..way.clone()
+    };
+    let required = states.iter().map(|state| {
+        let mut state = state.clone();
+        let bodies = state.bodies.iter_mut().flatten();
+        bodies.for_each(|body| body.margin = 0.0);
+        let answers = answers(&grown, &state, k, &predicates)?;
+        let [mut required, by_boxes] = [&way, &boxes].map(|way| required_of(&state, &answers, way));
+        required.retain(|pair| by_boxes.binary_search(pair).is_ok());
+        Ok(required)
+    });
+    let required = required.collect::<Result<_, HistoryError>>()?;
+    let fresh = states
+        .iter()
+        .map(|state| state.fresh(asked(Mode::plain(Tier::SCALAR))?));
+    let truth = Truth {
+        required,
+        fresh: fresh.collect::<Result<_, _>>()?,
+        may_lack: false,
+        allowed: None,
+    };
+    let mut ledger = HistoryLedger::default();
+    for &mode in modes {
+        let life = Life::new(asked(mode)?, history, &states)?;
+        life.live(WorldKind::AskedMeshes, mode, &truth, &mut ledger)?;
+    }
+    Ok(ledger)
+}
