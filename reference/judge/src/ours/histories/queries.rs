@@ -1,6 +1,6 @@
 //! Histories in which worlds are asked: after each frame an index of the world is brought up to
-//! date, and each body's volume is a query. Of what is found, the pairs that a cull would report are
-//! compared, since queries ignore groups, exclusion and motion.
+//! date, and each body's volume is a query. The pairs that a cull would report are compared, since
+//! queries ignore groups, exclusion and motion.
 
 use sdop::Motion;
 use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};
