@@ -21,7 +21,7 @@
 //! Internally, an ordinary world holds each body within one period. A body near a lower border also
 //! has images beyond the upper one: one image near a single border, three at an edge, seven at a
 //! corner. "Near" means within one to two widths of the widest body so far, so a single giant makes
-//! many bodies cost more. Setting a body costs about three times as much as in a world without
+//! many bodies cost more. Setting a body costs several times as much as in a world without
 //! periods, and each reported pair is compared once more. [`PeriodicIndex`] answers queries.
 //!
 //! ```
