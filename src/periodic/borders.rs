@@ -1,7 +1,9 @@
-//! Borders of the period: which bodies have images across them, and when a body is wrapped.
+//! The borders of the period: which bodies need images beyond the upper ones, and when a body is
+//! wrapped.
 
 use super::images::Placement;
 use super::periods::Periods;
+use crate::rounding::exp2;
 
 /// The factor by which the widest body counts as wider than it is, so that bodies of nearly the
 /// same size don't all become the widest so far.
@@ -14,7 +16,7 @@ const SLACK_SHARE: f64 = 0.5;
 
 /// 2⁻⁴⁰, as a multiple of the period: more than rounding takes from the ends of placed bodies. A
 /// body that is nearer to the border than that has an image across it.
-const BORDER_ERROR: f64 = 1.0 / (1_u64 << 40) as f64;
+const BORDER_ERROR: f64 = exp2(-40);
 
 /// The borders, seen from the widest body so far.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +49,7 @@ impl Borders {
         self.near[axis] = widest + self.slack[axis] - (0.5 - BORDER_ERROR) * period;
     }
 
-    /// Takes a body with these ends for the widest, if it is. Returns whether it is.
+    /// Notes a body with these ends, and returns whether it is wider than all before.
     #[inline]
     pub fn grow(&mut self, lo: &[f64; 3], hi: &[f64; 3], periods: &Periods) -> bool {
         let is_wider = |axis: usize| 0.5 * (hi[axis] - lo[axis]) > self.widest[axis];

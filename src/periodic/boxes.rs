@@ -8,7 +8,7 @@ use crate::bodies::contract::refuse;
 use crate::bodies::{Groups, Motion};
 use crate::boxes::{BoxBody, BoxWorld};
 use crate::query::QueryVolume;
-use crate::rounding::period::{is_below_half, is_within, shifted, wrap};
+use crate::rounding::period::{is_below_half, is_within, wrap};
 use crate::rounding::{LIMIT, outward_box};
 use crate::world::{BodyId, WorldError, WorldPairs};
 
@@ -55,16 +55,9 @@ impl PeriodicBox {
     /// The box in f32 about this one, moved by whole periods.
     #[inline]
     fn image(&self, shift: [i32; 3], periods: &Periods) -> BoxBody {
-        let (mut min, mut max) = (self.min, self.max);
-        for (axis, period) in periods.iter().filter(|&(axis, _)| shift[axis] != 0) {
-            // An end is moved by no period, exactly, or to where it is half of the period or more,
-            // and the sum is off by 2⁻⁵³ of itself.
-            let moved = |end: f64| {
-                let (rest, n) = wrap(end, period);
-                shifted(rest, n + shift[axis], period).0
-            };
-            (min[axis], max[axis]) = (moved(min[axis]), moved(max[axis]));
-        }
+        // An end that is moved is where it is half of the period or more, exactly or off by 2⁻⁵³ of
+        // itself.
+        let [min, max] = [self.min, self.max].map(|ends| periods.moved(ends, shift).0);
         BoxBody {
             bounds: outward_box(&min, &max),
             motion: self.motion,

@@ -3,10 +3,10 @@
 
 use super::PeriodicError;
 use super::images::{ImageWorld, PlacedBody, Placement, forward_images};
-use super::periods::Periods;
-use crate::rounding::period::{shifted, wrap};
+use super::periods::{Periods, margin_about};
+use crate::rounding::exp2;
+use crate::rounding::period::wrap;
 use crate::rounding::query::largest;
-use crate::rounding::{exp2, up};
 use crate::world::{Body, BodyId, World, WorldError, WorldPairs, compose};
 
 /// 2⁻⁴⁸, as a multiple of the period: more than rounding takes from the ends of a placed body, and
@@ -28,17 +28,12 @@ const REACH_SHARE: f64 = exp2(-9);
 
 /// The image of a body that is moved by whole periods.
 fn image(body: &Body, shift: [i32; 3], periods: &Periods) -> Body {
-    let mut image = *body;
-    let mut errors = [0.0; 3];
-    for (axis, period) in periods.iter().filter(|&(axis, _)| shift[axis] != 0) {
-        let (rest, n) = wrap(body.translation[axis], period);
-        (image.translation[axis], errors[axis]) = shifted(rest, n + shift[axis], period);
+    let (translation, errors) = periods.moved(body.translation, shift);
+    Body {
+        translation,
+        margin: margin_about(body.margin, errors),
+        ..*body
     }
-    let error = 2.0 * largest(errors); // above √3 times that
-    if error > 0.0 {
-        image.margin = up(f64::from(body.margin) + error);
-    }
-    image
 }
 
 impl ImageWorld for World {

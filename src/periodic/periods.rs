@@ -1,7 +1,9 @@
 //! The periods of the axes.
 
 use super::PeriodicError;
-use crate::rounding::period::{MOST_PERIODS, PERIOD_LIMITS};
+use crate::rounding::period::{MOST_PERIODS, PERIOD_LIMITS, shifted, wrap};
+use crate::rounding::query::largest;
+use crate::rounding::up;
 
 /// The names of the axes, for errors.
 const NAMES: [char; 3] = ['x', 'y', 'z'];
@@ -65,6 +67,21 @@ impl Periods {
         is_far(0) | is_far(1) | is_far(2)
     }
 
+    /// A position moved by whole periods, and a bound of the error on each axis. Coordinates that
+    /// are not moved stay as they are.
+    #[inline]
+    pub fn moved(&self, position: [f64; 3], by: [i32; 3]) -> ([f64; 3], [f64; 3]) {
+        let (mut moved, mut errors) = (position, [0.0; 3]);
+        if by == [0; 3] {
+            return (moved, errors); // of most bodies
+        }
+        for (axis, period) in self.iter().filter(|&(axis, _)| by[axis] != 0) {
+            let (rest, n) = wrap(position[axis], period);
+            (moved[axis], errors[axis]) = shifted(rest, n + by[axis], period);
+        }
+        (moved, errors)
+    }
+
     /// Checks that a body is less than [`MOST_PERIODS`] away.
     pub fn check_position(
         &self,
@@ -91,5 +108,22 @@ impl Periods {
             size,
             period: self.of_axes[axis].unwrap_or(f64::INFINITY),
         }
+    }
+}
+
+/// A bound of the distance between two points, from one on each axis.
+#[inline]
+pub fn distance(errors: [f64; 3]) -> f64 {
+    2.0 * largest(errors) // above √3 times that
+}
+
+/// A margin that covers the errors of a translation as well.
+#[inline]
+pub fn margin_about(margin: f32, errors: [f64; 3]) -> f32 {
+    let error = distance(errors);
+    if error > 0.0 {
+        up(f64::from(margin) + error)
+    } else {
+        margin
     }
 }

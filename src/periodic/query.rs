@@ -1,12 +1,12 @@
 //! Queries of periodic worlds: which bodies have an image that may touch a volume?
 
 use super::images::{Image, ImageWorld, PlacedBody};
-use super::periods::Periods;
+use super::periods::{Periods, distance, margin_about};
 use super::world::Periodic;
 use crate::query::{Answers, QueryError, QueryIndex, QuerySource, QueryVolume};
-use crate::rounding::period::{MOST_PERIODS, shifted, wrap};
+use crate::rounding::exp2;
+use crate::rounding::period::MOST_PERIODS;
 use crate::rounding::query::largest;
-use crate::rounding::up;
 use crate::simd::{Tier, in_default_mode};
 use crate::threads::ThreadsError;
 use crate::world::BodyId;
@@ -16,7 +16,7 @@ const MOST_LENGTH: f64 = 16.0;
 
 /// 2⁻²⁰: by how many periods a volume is taken to reach farther than it does, more than rounding
 /// takes from its place within the period.
-const RANGE_ERROR: f64 = 1.0 / (1 << 20) as f64;
+const RANGE_ERROR: f64 = exp2(-20);
 
 /// A body that may touch a volume when it is moved by whole periods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -34,8 +34,7 @@ pub struct PeriodicHit {
 /// images that may touch the volume. Along a periodic axis a volume has at most 16 periods. Its
 /// promise is that of [`QueryIndex`], for the exact periods: no image that shares a point with the
 /// volume is missed. Boxes are reported for a box exactly if they meet; for other volumes they
-/// count as large as their f32 boxes. Lines are not answered: they end after a few periods, or
-/// never.
+/// count as large as their f32 boxes. There are no queries along lines.
 ///
 /// ```
 /// use sdop::QueryVolume;
@@ -154,23 +153,29 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
     }
 
     fn touch(&self, volume: &QueryVolume<'_>, found: &mut Vec<PeriodicHit>) {
-        let start = found.len();
+        let (start, mut near) = (found.len(), Vec::new());
         let [x, y, z] = self.ways(volume);
         for x in x {
             for y in y.clone() {
                 for z in z.clone() {
-                    self.touch_moved(volume, [x, y, z], found);
+                    self.touch_moved(volume, [x, y, z], &mut near, found);
                 }
             }
         }
         found[start..].sort_unstable();
     }
 
-    /// Appends the bodies that may touch a volume where it is moved back by whole periods.
-    fn touch_moved(&self, volume: &QueryVolume<'_>, way: [i32; 3], found: &mut Vec<PeriodicHit>) {
-        let mut near = Vec::new();
-        self.index
-            .touch(&moved(volume, way, &self.periods), &mut near);
+    /// Appends the bodies that may touch a volume where it is moved back by whole periods. `near`
+    /// is room for what the index finds.
+    fn touch_moved(
+        &self,
+        volume: &QueryVolume<'_>,
+        way: [i32; 3],
+        near: &mut Vec<BodyId>,
+        found: &mut Vec<PeriodicHit>,
+    ) {
+        near.clear();
+        self.index.touch(&moved(volume, way, &self.periods), near);
         for id in near {
             let Image {
                 of, axes, shift, ..
@@ -199,24 +204,10 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
 
 /// A volume that contains another one moved back by whole periods.
 fn moved<'a>(volume: &QueryVolume<'a>, way: [i32; 3], periods: &Periods) -> QueryVolume<'a> {
-    if way == [0; 3] {
-        return *volume;
-    }
-    let back = |at: [f64; 3]| {
-        let (mut there, mut errors) = (at, [0.0; 3]);
-        for (axis, period) in periods.iter() {
-            let (rest, n) = wrap(at[axis], period);
-            (there[axis], errors[axis]) = shifted(rest, n - way[axis], period);
-        }
-        (there, errors)
-    };
-    let error_of = |errors| 2.0 * largest(errors); // above √3 times that
+    let back = |at: [f64; 3]| periods.moved(at, way.map(|n| -n));
     match *volume {
         QueryVolume::Box { min, max } => {
-            let ([min, max], [below, above]) = {
-                let ((min, below), (max, above)) = (back(min), back(max));
-                ([min, max], [below, above])
-            };
+            let ((min, below), (max, above)) = (back(min), back(max));
             QueryVolume::Box {
                 min: [0, 1, 2].map(|axis| outward(min[axis], -below[axis])),
                 max: [0, 1, 2].map(|axis| outward(max[axis], above[axis])),
@@ -224,7 +215,7 @@ fn moved<'a>(volume: &QueryVolume<'a>, way: [i32; 3], periods: &Periods) -> Quer
         }
         QueryVolume::Ball { centre, radius } => {
             let (centre, errors) = back(centre);
-            let radius = outward(radius, error_of(errors));
+            let radius = outward(radius, distance(errors));
             QueryVolume::Ball { centre, radius }
         }
         QueryVolume::Shape {
@@ -234,16 +225,11 @@ fn moved<'a>(volume: &QueryVolume<'a>, way: [i32; 3], periods: &Periods) -> Quer
             margin,
         } => {
             let (translation, errors) = back(translation);
-            let error = error_of(errors);
-            let margin = match error > 0.0 {
-                true => up(f64::from(margin) + error),
-                false => margin,
-            };
             QueryVolume::Shape {
                 shape,
                 rotation,
                 translation,
-                margin,
+                margin: margin_about(margin, errors),
             }
         }
     }

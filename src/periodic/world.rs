@@ -142,9 +142,8 @@ impl<W: ImageWorld> Periodic<W> {
         let (slot, body) = (self.slot(id)?, body.into());
         in_default_mode(|| {
             let mut place = self.world.place(slot, &body, &self.periods)?;
-            let former = &self.bodies[slot].place;
-            if W::IS_EXACT && self.periods.is_jump(&former.lo, &place.lo) {
-                self.borders.keep(&mut place, &former.lo, &self.periods);
+            if W::IS_EXACT {
+                self.settle(slot, &mut place);
             }
             self.put(slot, &body, &place);
             Ok(())
@@ -250,13 +249,23 @@ impl<W: ImageWorld> Periodic<W> {
         (self.images[slot], self.bodies[slot]) = (image, body);
     }
 
+    /// Keeps a body that has moved a little on its side of a border. If it must be wrapped, so are
+    /// all by the next cull, so that others need not be in the frames after it.
+    #[inline]
+    fn settle(&mut self, slot: usize, place: &mut Placement) {
+        let former = &self.bodies[slot].place.lo;
+        if self.periods.is_jump(former, &place.lo) {
+            self.borders.keep(place, former, &self.periods);
+            if self.periods.is_jump(former, &place.lo) {
+                self.is_any_missing = true;
+                self.note_late(slot);
+            }
+        }
+    }
+
     /// Sets a present body and the images that it has.
     #[inline]
     fn put(&mut self, slot: usize, body: &W::Body, place: &Placement) {
-        if W::IS_EXACT && self.periods.is_jump(&self.bodies[slot].place.lo, &place.lo) {
-            self.is_any_missing = true;
-            self.note_late(slot);
-        }
         let (image, placed) = (&mut self.images[slot], &mut self.bodies[slot]);
         (placed.body, placed.place) = (*body, *place);
         (image.shift, image.is_small) = (place.shift, place.is_small);
@@ -270,12 +279,12 @@ impl<W: ImageWorld> Periodic<W> {
 
     /// Sets the images across borders that a body has.
     fn put_ghosts(&mut self, slot: usize) {
-        let (of, placed) = (self.images[slot].of, self.bodies[slot]);
+        let (of, PlacedBody { body, place }) = (self.images[slot].of, &self.bodies[slot]);
         for &ghost in &self.ghosts[slot] {
-            let image = Image::new(of, self.images[ghost.slot()].axes, &placed.place);
+            let image = Image::new(of, self.images[ghost.slot()].axes, place);
             self.world
-                .set_image(ghost, &placed.body, image.shift, &self.periods);
-            (self.images[ghost.slot()], self.bodies[ghost.slot()]) = (image, placed);
+                .set_image(ghost, body, image.shift, &self.periods);
+            self.images[ghost.slot()] = image;
         }
     }
 
@@ -309,16 +318,12 @@ impl<W: ImageWorld> Periodic<W> {
     fn place_late(&mut self) -> Result<(), WorldError> {
         let late = std::mem::take(&mut self.late);
         let are_many = self.sets * BODIES_PER_CHANGE > self.images.len();
-        if self.are_all_late || are_many && self.is_any_missing {
-            self.are_all_late = true; // until all are placed
-            for slot in 0..self.images.len() {
-                self.place_anew(slot)?;
-            }
+        let are_all = self.are_all_late || are_many && self.is_any_missing;
+        self.are_all_late = true; // until those are placed that need it
+        if are_all {
+            (0..self.images.len()).try_for_each(|slot| self.place_anew(slot))?;
         } else if !are_many {
-            self.are_all_late = true;
-            for slot in late {
-                self.place_anew(slot as usize)?;
-            }
+            (late.into_iter()).try_for_each(|slot| self.place_anew(slot as usize))?;
         }
         (self.are_all_late, self.is_any_missing) = (false, false);
         Ok(())
@@ -331,7 +336,8 @@ impl<W: ImageWorld> Periodic<W> {
             return Ok(());
         }
         let (body, periods) = (&self.bodies[slot].body, &self.periods);
-        if let Ok(place) = self.world.place(slot, body, periods)
+        if W::IS_EXACT // others are wrapped whenever they are set
+            && let Ok(place) = self.world.place(slot, body, periods)
             && place.shift != self.images[slot].shift
         {
             self.world.set_image(of, body, place.shift, periods);

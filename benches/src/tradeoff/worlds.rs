@@ -33,14 +33,10 @@ pub fn times(
     tier: Tier,
 ) -> Result<Vec<WorldTimes>, TradeoffError> {
     let alone = variants.iter().filter(|variant| variant.may_be_in_world());
-    let mut all: Vec<Variant> = alone.cloned().collect();
-    let count = all.len();
-    all.extend_from_within(..);
-    all[count..]
-        .iter_mut()
-        .for_each(|variant| *variant = variant.clone().in_world());
-    let lines = lines_of_a_run(scene, &all, tier)?;
-    let (cullers, worlds) = lines.split_at(count);
+    let in_worlds = alone.clone().cloned().map(Variant::in_world);
+    let both: Vec<Variant> = alone.cloned().chain(in_worlds).collect();
+    let lines = lines_of_a_run(scene, &both, tier)?;
+    let (cullers, worlds) = lines.split_at(both.len() / 2);
     let row = |(culler, world): (&Line, &Line)| WorldTimes {
         variant: culler.name.clone(),
         reported: culler.pairs,

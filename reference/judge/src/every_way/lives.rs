@@ -7,9 +7,9 @@ use crate::ours::histories::{HistoryError, JudgedWorld};
 use crate::shrink::Lists;
 use sdop::world::BodyId;
 
-/// The pairs of bodies that a world reports, frame by frame, sorted. Bodies are set, inserted and
-/// removed: `body` is what one of a frame is in the world. Then `prepare` acts on the world, before
-/// it culls.
+/// The sorted pairs of bodies that a world reports in each frame. `body` makes the body of a frame
+/// with some number into one of the world, which is set or inserted; bodies that are gone are
+/// removed. `prepare` is called after that, before the world culls.
 pub(super) fn lists<W: JudgedWorld>(
     world: &mut W,
     case: &Case,
