@@ -1,9 +1,11 @@
 //! [`PairList`], the list of candidate or reported pairs.
 
+mod in_step;
 mod partners;
 mod runs;
 mod sort;
 
+pub(crate) use in_step::out_of_step;
 pub(crate) use partners::{PartnerPairs, Partners};
 pub(crate) use runs::{ROOM, Run, Runs};
 pub(crate) use sort::{PairSorter, key, pair_of};
@@ -52,6 +54,12 @@ impl PairList {
     #[must_use]
     pub fn second(&self) -> &[u32] {
         &self.second[..self.len]
+    }
+
+    /// The [`key`] of a pair by its number in the list.
+    #[inline(always)]
+    pub(crate) fn key_at(&self, at: usize) -> u64 {
+        key([self.first()[at], self.second()[at]])
     }
 
     /// The pairs in list order.

@@ -216,11 +216,8 @@ impl BoxWorld {
         let (ids, given) = (id_column(ids, "ids")?, self::boxes(boxes)?);
         let boxes = Aabb::from_rows(given.rows());
         check_length("boxes", boxes.len(), ids.len())?;
-        locked(py, &self.0, |world| {
-            let mut all = ids.iter().zip(boxes);
-            all.try_for_each(|(&id, &bounds)| world.set_bounds(BodyId::from_bits(id), bounds))
-        })
-        .map_err(refused)
+        let ids: Vec<_> = ids.iter().map(|&id| BodyId::from_bits(id)).collect();
+        locked(py, &self.0, |world| world.set_many(&ids, boxes)).map_err(refused)
     }
 
     /// Finds the pairs that meet now: ids of shape (m, 2), sorted.

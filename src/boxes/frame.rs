@@ -80,6 +80,11 @@ impl BoxFrames {
         }
     }
 
+    /// The tier of its kernels.
+    pub fn tier(&self) -> Tier {
+        self.tier
+    }
+
     /// Number of boxes.
     pub fn len(&self) -> usize {
         self.places.len()

@@ -9,6 +9,7 @@
 //! apart is reported. Ends may be any finite numbers. Lists depend only on the calls, never on the
 //! CPU or on threads.
 
+mod columns;
 mod crowds;
 mod cubes;
 mod culler;

@@ -214,11 +214,7 @@ impl BoxWorld {
     pub fn set_bounds(&mut self, id: BodyId, bounds: Aabb) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
         bounds.check(slot)?;
-        if !bounds.has_bits_of(&self.bounds[slot]) {
-            self.replaced |= !self.dynamic[slot];
-            self.movers.note(slot, &self.ids);
-            self.bounds[slot] = bounds;
-        }
+        self.move_to(slot, bounds);
         Ok(())
     }
 

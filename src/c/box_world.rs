@@ -144,10 +144,8 @@ pub unsafe extern "C" fn sdop_box_world_set_bounds(
         let it = unsafe { handle(world, "world") }?;
         // SAFETY: the caller's promise.
         let (ids, boxes) = unsafe { (column(ids, count, "ids")?, column(boxes, count, "boxes")?) };
-        for (&id, &bounds) in ids.iter().zip(boxes) {
-            it.0.set_bounds(BodyId::from_bits(id), bounds)?;
-        }
-        Ok(())
+        let ids: Vec<_> = ids.iter().map(|&id| BodyId::from_bits(id)).collect();
+        Ok(it.0.set_many(&ids, boxes)?)
     })
 }
 

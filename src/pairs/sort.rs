@@ -48,16 +48,39 @@ impl PairList {
         if self.iter().is_sorted() {
             return;
         }
-        let most = MOST_AS_KEYS.saturating_mul(numbers).min(u32::MAX as usize);
-        if self.len <= most {
+        if self.are_sorted_as_keys(numbers) {
             self.sort_as_keys(numbers, sorter);
         } else {
             self.sort_by_number(numbers, sorter);
         }
     }
 
+    /// The keys of the pairs in ascending order, without a change to the list. `None` if there are
+    /// so many pairs per number that [`Self::sort`] doesn't sort keys. All numbers are below
+    /// `numbers`.
+    pub(crate) fn sorted_keys(&self, numbers: usize, sorter: &mut PairSorter) -> Option<Vec<u64>> {
+        self.are_sorted_as_keys(numbers).then(|| {
+            self.sort_keys(numbers, sorter);
+            sorter.keys[..self.len].to_vec()
+        })
+    }
+
+    fn are_sorted_as_keys(&self, numbers: usize) -> bool {
+        let most = MOST_AS_KEYS.saturating_mul(numbers).min(u32::MAX as usize);
+        self.len <= most
+    }
+
     /// Sorts at most 2³² pairs as numbers of 64 bits.
     fn sort_as_keys(&mut self, numbers: usize, sorter: &mut PairSorter) {
+        self.sort_keys(numbers, sorter);
+        let columns = self.first.iter_mut().zip(&mut self.second);
+        for (&key, (first, second)) in sorter.keys.iter().zip(columns) {
+            [*first, *second] = pair_of(key);
+        }
+    }
+
+    /// Makes the sorter's keys those of this list, sorted.
+    fn sort_keys(&self, numbers: usize, sorter: &mut PairSorter) {
         let PairSorter {
             key_places: places,
             keys,
@@ -84,10 +107,6 @@ impl PairList {
             sort_long_lists(keys, places);
         }
         sort_nearly_sorted(keys);
-        let columns = self.first.iter_mut().zip(&mut self.second);
-        for (&key, (first, second)) in keys.iter().zip(columns) {
-            [*first, *second] = pair_of(key);
-        }
     }
 
     /// Sorts the second numbers of each first number on their own.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::BodyId;
 use super::pair_log::{PairIds, WorldPairs};
-use super::reported_pairs::ReportedPairs;
-use crate::pairs::{Partners, key, pair_of};
+use super::reported_pairs::{ReportedPairs, SortedKeys};
+use crate::pairs::{Partners, pair_of};
 
 /// Changes are listed if they are at most about one in this number of pairs of both culls.
 const LISTED_SHARE: usize = 2;
@@ -144,11 +144,10 @@ fn changes_between(before: &ReportedPairs, now: &ReportedPairs) -> Option<PairDi
     if before.len().abs_diff(now.len()) > most {
         return None;
     }
-    let are_of_one_time = Arc::ptr_eq(&before.generation, &now.generation);
     let [begun, ended] = if std::ptr::eq(before, now) {
         Default::default()
     } else {
-        changes_in_order(before, now, are_of_one_time, most)?
+        changes_of_lists(before, now, most)?
     };
     // Bodies are looked up at the end, because that misses the caches.
     let named = |keys: Vec<u64>, reported: &ReportedPairs| {
@@ -162,44 +161,56 @@ fn changes_between(before: &ReportedPairs, now: &ReportedPairs) -> Option<PairDi
     })
 }
 
-/// The keys of the pairs that have begun and ended from one cull to a later one, found by merging
-/// their sorted lists. `None` if there are more than `most`.
-fn changes_in_order(
+/// The keys of the pairs that have begun and ended from one cull to a later one, each kind sorted.
+/// `None` if there are more than `most`.
+fn changes_of_lists(
     before: &ReportedPairs,
     now: &ReportedPairs,
-    are_of_one_time: bool,
     most: usize,
 ) -> Option<[Vec<u64>; 2]> {
-    let [(old_first, old_second), (first, second)] =
-        [before, now].map(|reported| (reported.slots().first(), reported.slots().second()));
-    let is_same = |pair: [u32; 2]| {
-        let [before, now] = [before, now].map(|reported| &reported.generation);
-        are_of_one_time || BodyId::pair_of(pair, before) == BodyId::pair_of(pair, now)
+    let are_of_one_time = Arc::ptr_eq(&before.generation, &now.generation);
+    let in_step = || before.out_of_step(now);
+    let [old, new] = match are_of_one_time.then(in_step).flatten() {
+        Some(alone) => alone.map(SortedKeys::Copied),
+        None => [before, now].map(|reported| reported.keys(before.are_read())),
     };
+    let is_same = |key: u64| {
+        let ids = |reported: &ReportedPairs| BodyId::pair_of(pair_of(key), &reported.generation);
+        are_of_one_time || ids(before) == ids(now)
+    };
+    changes_in_order(&old, &new, is_same, most)
+}
+
+/// The keys that have begun and ended from one list to another. Equal slots are equal bodies,
+/// unless a slot was reused in between. `None` if there are more than `most`.
+fn changes_in_order(
+    old: &SortedKeys<'_>,
+    new: &SortedKeys<'_>,
+    is_same: impl Fn(u64) -> bool,
+    most: usize,
+) -> Option<[Vec<u64>; 2]> {
     let (mut begun, mut ended) = (Vec::new(), Vec::new());
     let (mut i, mut j) = (0, 0);
-    while i < old_first.len() && j < first.len() {
-        let pair = [first[j], second[j]];
-        let (old, new) = (key([old_first[i], old_second[i]]), key(pair));
-        // Equal slots are equal bodies, unless a slot was reused in between.
-        if old == new && is_same(pair) {
+    while i < old.len() && j < new.len() {
+        let (was, is) = (old.at(i), new.at(j));
+        if was == is && is_same(is) {
             (i, j) = (i + 1, j + 1);
             continue;
         }
-        if old <= new {
-            ended.push(old);
+        if was <= is {
+            ended.push(was);
             i += 1;
         }
-        if new <= old {
-            begun.push(new);
+        if is <= was {
+            begun.push(is);
             j += 1;
         }
         if begun.len() + ended.len() > most {
             return None;
         }
     }
-    ended.extend((i..old_first.len()).map(|at| key([old_first[at], old_second[at]])));
-    begun.extend((j..first.len()).map(|at| key([first[at], second[at]])));
+    ended.extend((i..old.len()).map(|at| old.at(at)));
+    begun.extend((j..new.len()).map(|at| new.at(at)));
     Some([begun, ended])
 }
 

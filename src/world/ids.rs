@@ -164,6 +164,13 @@ impl Ids {
         }
     }
 
+    /// Whether all these bodies are present.
+    pub fn have(&self, ids: &[BodyId]) -> bool {
+        let is_present = |id: &BodyId| self.present.get(id.slot()) == Some(&true);
+        let is_same = |id: &BodyId| self.generation[id.slot()] == id.generation;
+        ids.iter().all(|id| is_present(id) && is_same(id))
+    }
+
     /// Whether each slot has a body.
     pub fn present(&self) -> &[bool] {
         &self.present

@@ -105,6 +105,12 @@ impl Movers {
         }
     }
 
+    /// Whether it is known already that the next cull finds all pairs anew.
+    #[inline]
+    pub fn are_many(&self) -> bool {
+        self.are_many
+    }
+
     /// Makes the next cull find all pairs anew, without former pairs.
     pub fn forget(&mut self) {
         *self = Self::default();

@@ -1,9 +1,10 @@
 //! The pairs of one cull. They are in the order in which they were found until they or their events
 //! are first read, and sorted from then on.
 
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use crate::pairs::{PairList, PairSorter};
+use crate::pairs::{PairList, PairSorter, out_of_step};
 
 /// The pairs of one cull by slot, with the generations of slots at that time.
 #[derive(Debug, Default)]
@@ -11,9 +12,35 @@ pub(crate) struct ReportedPairs {
     /// The pairs in any order; empty once they have been sorted.
     found: Mutex<PairList>,
     sorted: OnceLock<PairList>,
+    is_read: AtomicBool,
     len: usize,
     pub(super) generation: Arc<Vec<u32>>,
     sorter: Arc<Mutex<PairSorter>>,
+}
+
+/// The keys of a cull's pairs in ascending order.
+pub(super) enum SortedKeys<'a> {
+    OfList(&'a PairList),
+    Copied(Vec<u64>),
+}
+
+impl SortedKeys<'_> {
+    /// Number of keys.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::OfList(list) => list.len(),
+            Self::Copied(keys) => keys.len(),
+        }
+    }
+
+    /// A key by its number in the order.
+    #[inline(always)]
+    pub fn at(&self, at: usize) -> u64 {
+        match self {
+            Self::OfList(list) => list.key_at(at),
+            Self::Copied(keys) => keys[at],
+        }
+    }
 }
 
 impl ReportedPairs {
@@ -26,9 +53,9 @@ impl ReportedPairs {
         Self {
             len: found.len(),
             found: Mutex::new(found),
-            sorted: OnceLock::new(),
             generation,
             sorter,
+            ..Self::default()
         }
     }
 
@@ -52,13 +79,46 @@ impl ReportedPairs {
         self.len == 0
     }
 
-    /// The pairs, sorted.
+    /// The pairs, sorted, for someone who reads them.
     pub fn slots(&self) -> &PairList {
+        self.is_read.store(true, Relaxed);
+        self.sort()
+    }
+
+    fn sort(&self) -> &PairList {
         self.sorted.get_or_init(|| {
             let mut found = std::mem::take(&mut *lock(&self.found));
             found.sort(self.generation.len(), &mut lock(&self.sorter));
             found
         })
+    }
+
+    /// As [`out_of_step`] from this cull to a later one. `None` also if the pairs of only one have
+    /// been sorted.
+    pub fn out_of_step(&self, later: &Self) -> Option<[Vec<u64>; 2]> {
+        // Every thread locks the earlier one first.
+        let [before, now] = [lock(&self.found), lock(&later.found)];
+        match [self.sorted.get(), later.sorted.get()] {
+            [None, None] => out_of_step(&before, &now),
+            [Some(before), Some(now)] => out_of_step(before, now),
+            _ => None,
+        }
+    }
+
+    /// The keys of the pairs, in order. If nobody reads the pairs, they mostly stay in the order in
+    /// which they were found, so that the next ones can be compared with them in step.
+    pub fn keys(&self, are_read: bool) -> SortedKeys<'_> {
+        let copied = || {
+            let found = lock(&self.found);
+            let is_kept = !are_read && self.sorted.get().is_none();
+            is_kept.then(|| found.sorted_keys(self.generation.len(), &mut lock(&self.sorter)))?
+        };
+        copied().map_or_else(|| SortedKeys::OfList(self.sort()), SortedKeys::Copied)
+    }
+
+    /// Whether someone has read the pairs in order.
+    pub fn are_read(&self) -> bool {
+        self.is_read.load(Relaxed)
     }
 
     /// The memory of the list.

@@ -2,6 +2,7 @@
 //! number of threads.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod columns;
 mod excluded;
 mod lives;
 mod misuse;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | an end that is infinite or no number, `min` above `max`, in a frame of a `BoxCuller` | `CullError::Contract`, naming box and ends; the next frame is culled as usual |
 //! | the same in a `BoxWorld` | `WorldError::Contract` where it is inserted or set; the world stays as it was |
+//! | the same in columns of boxes to be moved | the same, naming the box; those before it have moved |
 //! | a column of groups of another length than there are boxes | `CullError::Contract` at the cull |
 //! | an id of a box that was removed | `WorldError::Gone` |
 
@@ -12,7 +13,7 @@ use sdop::{Aabb, BoxCuller, BoxWorld, CullError, Finder, Groups, WorldError};
 use crate::scenes::{Kind, Random, boxes, expected};
 
 /// Invalid boxes.
-fn wrong() -> Vec<Aabb> {
+pub fn wrong() -> Vec<Aabb> {
     let (inf, nan) = (f32::INFINITY, f32::NAN);
     let slabs = [
         [nan, 1.0],

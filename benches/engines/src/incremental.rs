@@ -1,5 +1,7 @@
 //! The interface of an engine that is given what has changed, and keeps the boxes that haven't.
 
+use sdop::Aabb;
+
 use crate::boxes::Slabs;
 use crate::entry::{Setup, Work};
 
@@ -12,6 +14,8 @@ pub struct Moves {
     pub centres: Vec<[f32; 3]>,
     /// Each body's box now.
     pub boxes: Vec<Slabs>,
+    /// The boxes as corners, for engines that take those.
+    pub corners: Vec<Aabb>,
 }
 
 impl Moves {

@@ -6,11 +6,12 @@
 use clap::ValueEnum;
 use serde::Serialize;
 
+use sdop::Aabb;
 use sdop::bodies::Bodies;
 use sdop_bench::random::Stream;
 use sdop_bench::scene::Scene;
 
-use crate::boxes::{Frame, Slabs};
+use crate::boxes::{Frame, Slabs, lower, upper};
 use crate::incremental::Moves;
 use crate::scenes::{Course, Order, Spread};
 
@@ -129,6 +130,7 @@ impl MoverCourse {
             moves.bodies.push(body);
             moves.centres.push(centre);
             moves.boxes.push(slabs);
+            moves.corners.push(Aabb::new(lower(&slabs), upper(&slabs)));
         }
         self.frame += 1;
         moves

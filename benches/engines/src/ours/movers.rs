@@ -9,7 +9,6 @@ use sdop::{Aabb, Motion};
 use sdop_bench::remedy::OrReport as _;
 
 use super::VERSION;
-use crate::boxes::{Slabs, lower, upper};
 use crate::entry::{Setup, Work};
 use crate::incremental::{Change, Extras, Found, Incremental, MoverEntry, Moves, Only};
 
@@ -73,6 +72,8 @@ fn read(events: &Events, body_of: &[u32], changes: &mut Vec<Change>) {
 struct Boxes {
     world: BoxWorld,
     ids: Vec<BodyId>,
+    /// The ids of a frame's bodies.
+    moved: Vec<BodyId>,
     body_of: Vec<u32>,
     changes: Vec<Change>,
     purpose: Use,
@@ -88,6 +89,7 @@ impl Boxes {
             world,
             body_of: (0..ids.len() as u32).collect(),
             ids,
+            moved: Vec::new(),
             changes: Vec::new(),
             purpose,
         };
@@ -124,13 +126,16 @@ impl Boxes {
 
 impl Incremental for Boxes {
     fn frame(&mut self, moves: &Moves) {
-        for (body, slabs) in moves.iter() {
-            if self.purpose == Use::Replacement {
-                self.replace(body, aabb(slabs));
-            } else {
-                let set = self.world.set_bounds(self.ids[body as usize], aabb(slabs));
-                assert!(set.is_ok(), "{set:?}: the body is there");
+        if self.purpose == Use::Replacement {
+            for (&body, &bounds) in moves.bodies.iter().zip(&moves.corners) {
+                self.replace(body, bounds);
             }
+        } else {
+            self.moved.clear();
+            let ids = moves.bodies.iter().map(|&body| self.ids[body as usize]);
+            self.moved.extend(ids);
+            let set = self.world.set_many(&self.moved, &moves.corners);
+            assert!(set.is_ok(), "{set:?}: the bodies are there");
         }
         self.cull();
     }
@@ -138,10 +143,6 @@ impl Incremental for Boxes {
     fn found(&self) -> Found<'_> {
         Found::Changes(&self.changes)
     }
-}
-
-fn aabb(slabs: &Slabs) -> Aabb {
-    Aabb::new(lower(slabs), upper(slabs))
 }
 
 /// A culler of given boxes, which compares nothing with the last frame.
@@ -165,8 +166,8 @@ impl AllBoxes {
 
 impl Incremental for AllBoxes {
     fn frame(&mut self, moves: &Moves) {
-        for (body, slabs) in moves.iter() {
-            self.boxes[body as usize] = aabb(slabs);
+        for (&body, &bounds) in moves.bodies.iter().zip(&moves.corners) {
+            self.boxes[body as usize] = bounds;
         }
         let pairs = self.culler.cull(&self.boxes);
         assert!(pairs.is_ok(), "{pairs:?}: frames have boxes");

@@ -1,0 +1,81 @@
+//! Boxes that are moved by columns, many in one call.
+
+use super::BoxWorld;
+use crate::bodies::Aabb;
+use crate::bodies::contract::check_column;
+use crate::rounding::cube::Cube;
+use crate::simd::{Kernel, LANES, Lanes, MAX_WIDTH, dispatch, in_default_mode, numbers_of};
+use crate::world::{BodyId, WorldError};
+
+/// Boxes that are checked at once, before the first of them moves. Both columns of a block fit into
+/// the first cache.
+const BLOCK: usize = 512;
+
+impl BoxWorld {
+    /// Moves or resizes many boxes: as [`Self::set_bounds`] of one after the other, and several
+    /// times as fast. An id that comes twice has the later bounds.
+    ///
+    /// # Errors
+    /// The columns differ in length, and nothing has changed. Or as [`Self::set`]: then the boxes
+    /// before the refused one have moved, and no others.
+    pub fn set_many(&mut self, ids: &[BodyId], bounds: &[Aabb]) -> Result<(), WorldError> {
+        check_column("bounds", bounds.len(), ids.len())?;
+        for (ids, bounds) in ids.chunks(BLOCK).zip(bounds.chunks(BLOCK)) {
+            let are_sound = || dispatch(self.frames.tier(), AreSound(bounds));
+            if self.ids.have(ids) && in_default_mode(are_sound) {
+                self.move_all(ids, bounds);
+            } else {
+                let mut boxes = ids.iter().zip(bounds);
+                boxes.try_for_each(|(&id, &bounds)| self.set_bounds(id, bounds))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives present boxes valid bounds.
+    fn move_all(&mut self, ids: &[BodyId], bounds: &[Aabb]) {
+        let is_dynamic = |id: &BodyId| self.dynamic[id.slot()];
+        // Whether bounds are equal is of no use if the next cull finds all pairs anyway.
+        if self.movers.are_many() && ids.iter().all(is_dynamic) {
+            let all = self.bounds.as_mut_slice();
+            for (id, &bounds) in ids.iter().zip(bounds) {
+                all[id.slot()] = bounds;
+            }
+        } else {
+            let boxes = ids.iter().zip(bounds);
+            boxes.for_each(|(id, &bounds)| self.move_to(id.slot(), bounds));
+        }
+    }
+
+    /// Gives a present box valid bounds.
+    #[inline(always)]
+    pub(super) fn move_to(&mut self, slot: usize, bounds: Aabb) {
+        if !bounds.has_bits_of(&self.bounds[slot]) {
+            self.replaced |= !self.dynamic[slot];
+            self.movers.note(slot, &self.ids);
+            self.bounds[slot] = bounds;
+        }
+    }
+}
+
+/// Whether all boxes are valid, but for ends that are both zero, of unlike signs.
+struct AreSound<'a>(&'a [Aabb]);
+
+impl Kernel for AreSound<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> bool {
+        let numbers = numbers_of(self.0);
+        let all = l.bits(l.first(L::WIDTH));
+        let mut sound = all;
+        for start in (0..numbers.len()).step_by(MAX_WIDTH) {
+            // A number past the end reads the last box.
+            let pick = LANES.map(|lane| start as u32 + lane);
+            for lane in (0..MAX_WIDTH).step_by(L::WIDTH) {
+                let [x, y, z, to_x, to_y, to_z] = l.gather_sixes(numbers, &pick[lane..]);
+                sound &= Cube::about(l, [x, y, z], [to_x, to_y, to_z]).sound;
+            }
+        }
+        sound == all
+    }
+}
