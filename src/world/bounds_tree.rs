@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::bounds::BodyBounds;
+use crate::simd::prefetch;
 
 /// Slots per leaf.
 const SLOTS_PER_LEAF: usize = 16;
@@ -46,6 +47,16 @@ impl BoundsTree {
             node /= 2;
             bounds = self.nodes[2 * node].union(self.nodes[2 * node + 1]);
         }
+    }
+
+    /// Prefetches what [`Self::update`] of a slot will read; `of_slots` does so for a range.
+    pub fn prefetch(&self, slot: usize, of_slots: impl Fn(Range<usize>)) {
+        let leaf = slot / SLOTS_PER_LEAF;
+        let node = self.nodes.len() / 2 + leaf;
+        for node in [node, node ^ 1, node / 2, node / 2 ^ 1] {
+            self.nodes.get(node).map(prefetch);
+        }
+        of_slots(slots_of(leaf));
     }
 
     /// The bounds of all bodies.

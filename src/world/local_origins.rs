@@ -12,6 +12,10 @@ use super::region::{PlacedBody, Region};
 use super::regions::{Regions, regions};
 use super::{World, WorldError, offset};
 use crate::bodies::contract::is_within_limit;
+use crate::simd::{CACHE_LINE, prefetch};
+
+/// The number of changed bodies by which prefetching is ahead.
+const PREFETCH_DISTANCE: usize = 3;
 
 /// The origins about which bodies are placed.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,7 +92,12 @@ impl World {
         let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(range));
         let bounds = match bounds.filter(|bounds| bounds.has_room_for(slots)) {
             Some(mut bounds) => {
-                for &slot in self.movers.changed() {
+                let changed = self.movers.changed();
+                for (number, &slot) in changed.iter().enumerate() {
+                    if let Some(&ahead) = changed.get(number + PREFETCH_DISTANCE) {
+                        bounds.prefetch(ahead as usize, |range| self.prefetch(range));
+                        self.prefetch_place(ahead as usize);
+                    }
                     bounds.update(slot as usize, of_slots);
                 }
                 bounds
@@ -145,6 +154,25 @@ impl World {
         Ok(is_new || is_moved)
     }
 
+    /// Prefetches what [`Self::placed_in`] reads of these slots.
+    fn prefetch(&self, slots: Range<usize>) {
+        let lines = slots.clone().step_by(CACHE_LINE / size_of::<[f64; 3]>());
+        for slot in lines {
+            self.translation.get(slot).map(prefetch);
+        }
+        let slot = slots.start;
+        self.ids.present().get(slot).map(prefetch);
+        self.shape.get(slot).map(prefetch);
+        self.margin.get(slot).map(prefetch);
+    }
+
+    /// Prefetches what [`Self::place_body`] changes.
+    fn prefetch_place(&self, slot: usize) {
+        self.bodies.translation.get(slot).map(prefetch);
+        self.bodies.shape.get(slot).map(prefetch);
+        self.bodies.dynamic.get(slot).map(prefetch);
+    }
+
     /// Number, translation and reach of the bodies in some slots.
     fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = PlacedBody> + Clone + '_ {
         let slots = slots.start..slots.end.min(self.ids.slots());
@@ -158,6 +186,7 @@ impl World {
     }
 
     /// The translation of the vertices of the body in a slot, and the bound of its error.
+    #[inline]
     fn composed(&self, slot: usize) -> ([f64; 3], f64) {
         let offset = self.shapes[self.shape[slot] as usize].pose_offset;
         offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)

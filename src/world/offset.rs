@@ -7,6 +7,7 @@
 use crate::rounding::pose::{OFFSET_ERROR, rotate_of, rotation};
 
 /// The position of the origin of a body's vertices, and the bound of its error.
+#[inline]
 pub(crate) fn compose(q: [f32; 4], t: [f64; 3], offset: [f64; 3]) -> ([f64; 3], f64) {
     if offset == [0.0; 3] {
         return (t, 0.0);

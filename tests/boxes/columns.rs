@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use sdop::boxes::BoxBody;
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Tier, WorldError};
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Motion, Tier, WorldError};
 
 use crate::lives::{drawn, pairs};
 use crate::misuse::wrong;
@@ -76,6 +76,28 @@ fn columns_move_boxes() {
             }
         }
     }
+}
+
+/// A fixed box is found where it goes, though it comes late in a column of others.
+#[test]
+fn column_moves_a_fixed_box() {
+    let at = |x: usize, y: f32| Aabb::new([2.0 * x as f32, y, 0.0], [2.0 * x as f32 + 1.0, y, 1.0]);
+    let mut world = BoxWorld::new();
+    let mut ids: Vec<_> = (0..COUNT)
+        .map(|x| world.insert(at(x, 0.0)).unwrap())
+        .collect();
+    let motion = Motion::Fixed;
+    let fixed = BoxBody {
+        motion,
+        ..at(0, 99.0).into()
+    };
+    ids.push(world.insert(fixed).unwrap());
+    assert!(world.cull().unwrap().is_empty());
+    let mut bounds: Vec<_> = (0..COUNT).map(|x| at(x, 1.0)).collect();
+    bounds.push(at(7, 1.0));
+    world.set_many(&ids, &bounds).unwrap();
+    world.cull().unwrap();
+    assert!(world.pairs().eq([[ids[7], ids[COUNT]]]));
 }
 
 /// Boxes before a refused one have moved, no others have, and the error tells which it is.
