@@ -252,44 +252,59 @@ impl Search<'_> {
             for body in 0..self.case.frames[frame].bodies.len() {
                 if self.case.claim.is_of_boxes() {
                     for n in 0..6 {
-                        self.shorten(frame, &|frame| &mut frame.boxes[body][n]);
+                        let end = self.case.frames[frame].boxes[body][n];
+                        self.shorten(frame, end, &|frame, x| frame.boxes[body][n] = x);
                     }
-                    continue;
-                }
-                let mut unturned = self.case.clone();
-                unturned.frames[frame].bodies.rotation[body] = [0.0, 0.0, 0.0, 1.0];
-                if refit(&mut unturned, frame).is_none() || !self.try_case(unturned) {
-                    for n in 0..4 {
-                        self.shorten(frame, &|frame| &mut frame.bodies.rotation[body][n]);
-                    }
-                }
-                for n in 0..3 {
-                    self.shorten(frame, &|frame| &mut frame.bodies.translation[body][n]);
-                }
-                // Other frames have the same parts, unless the set changes.
-                let parts = self.case.frames[0].parts.as_ref();
-                let parts = parts.filter(|_| self.case.frames.len() == 1);
-                let count = parts.map_or(0, |parts| parts[body].len());
-                for (part, n) in (0..7 * count).map(|at| (at / 7, at % 7)) {
-                    self.shorten(frame, &|frame| match &mut frame.parts {
-                        Some(parts) => &mut parts[body][part].pose[n],
-                        None => &mut frame.bodies.translation[body][0], // never
-                    });
+                } else {
+                    self.shorten_pose(frame, body);
+                    self.shorten_parts(frame, body);
                 }
             }
         }
     }
 
-    /// The shortest form of one number with which the pair is still missed.
-    fn shorten(&mut self, frame: usize, number: &dyn Fn(&mut Frame) -> &mut f32) {
+    fn shorten_pose(&mut self, frame: usize, body: usize) {
+        let mut unturned = self.case.clone();
+        unturned.frames[frame].bodies.rotation[body] = [0.0, 0.0, 0.0, 1.0];
+        if refit(&mut unturned, frame).is_none() || !self.try_case(unturned) {
+            for n in 0..4 {
+                let turn = self.case.frames[frame].bodies.rotation[body][n];
+                self.shorten(frame, turn, &|frame, x| {
+                    frame.bodies.rotation[body][n] = x;
+                });
+            }
+        }
+        for n in 0..3 {
+            let place = self.case.frames[frame].bodies.translation[body][n];
+            self.shorten(frame, place, &|frame, x| {
+                frame.bodies.translation[body][n] = x;
+            });
+        }
+    }
+
+    /// The poses of a body's parts. Other frames have the same parts, unless the set changes.
+    fn shorten_parts(&mut self, frame: usize, body: usize) {
+        let parts = self.case.frames[0].parts.as_ref();
+        let parts = parts.filter(|_| self.case.frames.len() == 1);
+        let parts = parts.map_or(Vec::new(), |parts| parts[body].clone());
+        for (part, n) in (0..7 * parts.len()).map(|at| (at / 7, at % 7)) {
+            self.shorten(frame, parts[part].pose[n], &|frame, x| {
+                if let Some(parts) = &mut frame.parts {
+                    parts[body][part].pose[n] = x;
+                }
+            });
+        }
+    }
+
+    /// Sets one number of a frame to the shortest form with which the pair is still missed.
+    fn shorten(&mut self, frame: usize, full: f32, set: &dyn Fn(&mut Frame, f32)) {
         let mut case = self.case.clone();
-        let full = *number(&mut case.frames[frame]);
         for digits in [0, 2, 4, 8, 12, 16, 20] {
             let short = rounded(full, digits);
             if short == full {
                 return;
             }
-            *number(&mut case.frames[frame]) = short;
+            set(&mut case.frames[frame], short);
             let ordered = |ends: &[f32; 6]| (0..3).all(|axis| ends[axis] <= ends[axis + 3]);
             let rotations = &case.frames[frame].bodies.rotation;
             let mut sound = rotations.iter().all(|q| *q != [0.0; 4])
