@@ -27,31 +27,8 @@ impl ShownRun {
         if case.frames.is_empty() {
             return Err("it has no frames".to_owned());
         }
-        let truth = Truth::new(case.claim, &case.shapes).map_err(|error| error.to_string())?;
         let asked = reported.is_some();
-        let mut reported = reported.into_iter().flatten();
-        let (mut frames, mut focus) = (Vec::new(), None);
-        for (number, frame) in case.frames.iter().enumerate() {
-            let pairs = reported.next().unwrap_or_default();
-            let meets = truth.pairs(frame).map_err(|error| error.to_string())?;
-            let missed = meets.iter().find(|pair| asked && !pairs.contains(pair));
-            if let (None, Some(&bodies)) = (&focus, missed) {
-                let point = truth.common_point(frame, bodies);
-                focus = Some(Focus {
-                    frame: number,
-                    bodies,
-                    point: point.map(|point| point.decimals()),
-                });
-            }
-            frames.push(FrameLine {
-                frame: number as u32,
-                poses: FrameLine::poses(&frame.bodies),
-                translations: None,
-                pairs,
-                counters: None,
-                meets: Some(meets),
-            });
-        }
+        let (mut frames, focus) = judged(case, reported)?;
         let shown = with_one_set(case, focus.as_ref().map_or(0, |focus| focus.frame));
         let (shapes, bodies) = drawn(case, &case.frames[shown.start])?;
         let mut header = Header::new(&case.name, 0, &shapes, BodyLine::all(&bodies));
@@ -92,6 +69,39 @@ impl ShownRun {
             messages,
         })
     }
+}
+
+/// The frames with the pairs that were reported and those that meet, and the first missed pair.
+fn judged(
+    case: &Case,
+    reported: Option<Vec<Vec<[u32; 2]>>>,
+) -> Result<(Vec<FrameLine>, Option<Focus>), String> {
+    let truth = Truth::new(case.claim, &case.shapes).map_err(|error| error.to_string())?;
+    let asked = reported.is_some();
+    let mut reported = reported.into_iter().flatten();
+    let (mut frames, mut focus) = (Vec::new(), None);
+    for (number, frame) in case.frames.iter().enumerate() {
+        let pairs = reported.next().unwrap_or_default();
+        let meets = truth.pairs(frame).map_err(|error| error.to_string())?;
+        let missed = meets.iter().find(|pair| asked && !pairs.contains(pair));
+        if let (None, Some(&bodies)) = (&focus, missed) {
+            let point = truth.common_point(frame, bodies);
+            focus = Some(Focus {
+                frame: number,
+                bodies,
+                point: point.map(|point| point.decimals()),
+            });
+        }
+        frames.push(FrameLine {
+            frame: number as u32,
+            poses: FrameLine::poses(&frame.bodies),
+            translations: None,
+            pairs,
+            counters: None,
+            meets: Some(meets),
+        });
+    }
+    Ok((frames, focus))
 }
 
 /// The frames around `frame` that have the same set of bodies.
