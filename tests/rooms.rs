@@ -215,7 +215,8 @@ fn module(path: &Path) -> Names {
 /// No files import each other in a circle.
 #[test]
 fn files_form_no_circle() {
-    for (folder, _) in CRATES {
+    let folders = CRATES.map(|(folder, _)| folder);
+    for folder in folders.into_iter().chain(["reference/src"]) {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
         let mut files = Vec::new();
         sources(&root, &mut files);
@@ -225,7 +226,7 @@ fn files_form_no_circle() {
         let all: BTreeMap<Names, String> = all
             .filter(|(module, _)| !module.contains(&"tests".to_owned()))
             .collect();
-        assert!(all.len() > 50, "{folder}: {}", all.len());
+        assert!(all.len() > 20, "{folder}: {}", all.len());
         let circle = circle(&all);
         assert!(circle.is_empty(), "{folder}: {circle:?}");
     }

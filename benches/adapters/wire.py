@@ -106,10 +106,11 @@ def centres_and_halves(boxes: Array, dtype: type = np.float64) -> tuple[Array, A
 
 
 def in_cell(boxes: Array, periods: list[float | None]) -> tuple[Array, Array, float]:
-    """Where space repeats, for libraries that take points and one distance: the centres of boxes in
-    the cell from zero to its sides, the sides, and the distance within which are the centres of all
-    boxes that meet, with room for rounding to float32. Along an axis without a period, the cell is
-    so long that nothing meets across its ends."""
+    """Boxes in space that repeats, for libraries that take points, one cell and one distance.
+    Returns the boxes' centres, wrapped into a cell that starts at zero; the sides of the cell; and
+    a distance that the centres of two boxes never exceed if the boxes meet, even when rounded to
+    float32. Along an axis without a period, the cell is so long that nothing meets across its
+    ends."""
     centres, halves = centres_and_halves(boxes)
     repeats = np.array([period is not None for period in periods])
     lengths = np.array([period or 1.0 for period in periods])

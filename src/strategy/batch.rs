@@ -4,8 +4,9 @@
 //! Lazy updates need the pairs before rows are computed, so with lazy updates every refining
 //! strategy uses this flow. If the output is in portions, so is the list.
 
+use super::hit_names::PairNames;
 use super::interest::InterestFilter;
-use super::listing::{PairNames, list};
+use super::listing::list;
 use super::output::Output;
 use super::refine::Refiner;
 use super::tasks::Tasks;

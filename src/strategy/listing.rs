@@ -3,10 +3,13 @@
 use std::ops::Range;
 
 use super::Totals;
+#[cfg(feature = "shapes")]
+use super::hit_names::PairNames;
+use super::hit_names::{HitNames, HitSlots};
 use super::output::{Output, TaskOutput};
 use super::tasks::{Task, Tasks, split_work};
 #[cfg(feature = "shapes")]
-use super::{Inputs, Scratch, SlotNames};
+use super::{Inputs, Scratch};
 use crate::bodies::PairFilter;
 use crate::broad_phase::{Block, EndSlots, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest};
 use crate::counters::VolumeCounters;
@@ -57,37 +60,13 @@ pub(crate) enum BoxTest<'a> {
     Ends(&'a EndSlots),
 }
 
-/// What is listed for a pair of slots.
-#[cfg(feature = "shapes")]
-#[derive(Clone, Copy)]
-pub(super) enum PairNames {
-    /// Its bodies, the lower first, to be reported.
-    Bodies,
-    /// Its places, that of the lower body first, to be refined.
-    Places,
-}
-
-/// The listed numbers of a pair, that of the lower body first.
-#[inline(always)]
-fn in_order<L: Lanes>(l: L, listed: [L::I; 2], bodies: [L::I; 2]) -> [L::I; 2] {
-    let [one, other] = listed;
-    let swapped = l.gt_u32(bodies[0], bodies[1]);
-    [
-        l.select_u32(swapped, other, one),
-        l.select_u32(swapped, one, other),
-    ]
-}
-
 /// The candidates of a frame, the test that they must pass, and what is listed for those that pass.
 #[derive(Clone, Copy)]
 pub(super) struct Listing<'a> {
     tier: Tier,
     finder: &'a PairFinder,
     first: FirstVolume<'a>,
-    #[cfg(feature = "shapes")]
-    listed: PairNames,
-    #[cfg(feature = "shapes")]
-    names: SlotNames<'a>,
+    names: HitNames<'a>,
     /// Which pairs pass after the first test, where not all do.
     filter: Option<PairFilter<'a>>,
 }
@@ -105,70 +84,9 @@ impl<'a> Listing<'a> {
             tier: inputs.executor.tier,
             finder: arranged.finder,
             first,
-            listed,
-            names: arranged.names,
+            names: HitNames::new(arranged.finder, listed, arranged.names),
             filter: arranged.filter,
         }
-    }
-
-    /// The entry of each slot in which hits are looked up: its name, or its body if slots are their
-    /// own names.
-    #[cfg(feature = "shapes")]
-    fn by_slot(&self) -> &'a [u32] {
-        match self.names {
-            SlotNames::Bodies | SlotNames::Places(_) => self.finder.names(),
-            SlotNames::Slots(body) => body,
-        }
-    }
-
-    #[cfg(not(feature = "shapes"))]
-    fn by_slot(&self) -> &'a [u32] {
-        self.finder.names()
-    }
-
-    /// The listed numbers of hits with these entries, that of the lower body first.
-    #[cfg(feature = "shapes")]
-    #[inline(always)]
-    fn listed<L: Lanes>(&self, l: L, hits: HitSlots, hit: L::I, entries: [L::I; 2]) -> [L::I; 2] {
-        let (mut names, mut bodies) = (entries, entries);
-        match self.names {
-            SlotNames::Bodies => {}
-            // Written out, because a closure would be compiled without the tier's features.
-            SlotNames::Places(body) => {
-                bodies = [
-                    l.gather_u32(body, entries[0]),
-                    l.gather_u32(body, entries[1]),
-                ]
-            }
-            SlotNames::Slots(_) => names = hits.slots(l, hit),
-        }
-        let listed = match self.listed {
-            PairNames::Bodies => bodies,
-            PairNames::Places => names,
-        };
-        in_order(l, listed, bodies)
-    }
-
-    #[cfg(not(feature = "shapes"))]
-    #[inline(always)]
-    fn listed<L: Lanes>(&self, l: L, _: HitSlots, _: L::I, entries: [L::I; 2]) -> [L::I; 2] {
-        in_order(l, entries, entries)
-    }
-
-    /// The body of a listed name.
-    #[cfg(feature = "shapes")]
-    fn body_of(&self, name: u32) -> u32 {
-        match (self.listed, self.names) {
-            (PairNames::Places, SlotNames::Places(body) | SlotNames::Slots(body)) => {
-                body[name as usize]
-            }
-            _ => name,
-        }
-    }
-
-    #[cfg(not(feature = "shapes"))]
-    fn body_of(&self, name: u32) -> u32 {
-        name
     }
 
     /// Lists the pairs that pass the first test, for some parts of the finder's work, and counts
@@ -238,10 +156,7 @@ pub(crate) fn list_boxes(
         tier: inputs.executor.tier,
         finder: inputs.finder,
         first: FirstVolume::Boxes(inputs.test),
-        #[cfg(feature = "shapes")]
-        listed: PairNames::Bodies,
-        #[cfg(feature = "shapes")]
-        names: SlotNames::Bodies,
+        names: HitNames::bodies(inputs.finder),
         filter: inputs.filter,
     };
     list_parts(listing, inputs.executor.pool, tasks, output).first
@@ -294,11 +209,10 @@ impl ListParts<'_> {
     #[inline(always)]
     fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> VolumeCounters {
         let finder = self.listing.finder;
-        let by_slot = self.listing.by_slot();
         let mut lister = Lister {
             test,
-            by_slot,
-            listing: self.listing,
+            names: self.listing.names,
+            filter: self.listing.filter,
             out: self.out,
             flush: self.flush,
             counters: VolumeCounters::default(),
@@ -334,9 +248,8 @@ impl SlotTest for PassAll {
 /// A first test that lists the pairs that pass.
 struct Lister<'a, 'f, T> {
     test: &'a T,
-    /// The name of each slot, or its body if slots are their own names.
-    by_slot: &'a [u32],
-    listing: Listing<'a>,
+    names: HitNames<'a>,
+    filter: Option<PairFilter<'a>>,
     out: &'f mut PairList,
     flush: FlushRule<'f>,
     counters: VolumeCounters,
@@ -369,51 +282,11 @@ impl<T: SlotTest> FirstTest for Lister<'_, '_, T> {
     #[cfg_attr(not(unoptimised), inline(always))]
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>) {
         self.counters.tests += block.codes().len() as u64;
-        if self.by_slot.len() > NAMES_IN_CACHE {
+        if self.names.by_slot.len() > NAMES_IN_CACHE {
             self.prefetch_beyond(block);
         }
         let found = self.test.block(l, block, &mut self.hits.0);
         self.append(l, found, HitSlots::Codes(block.first()));
-    }
-}
-
-/// The meaning of hits.
-#[derive(Clone, Copy)]
-enum HitSlots {
-    /// Slots that this slot meets.
-    With(usize),
-    /// Codes of a block whose lane 0 has this slot.
-    Codes(usize),
-}
-
-impl HitSlots {
-    /// The slots of a vector of pairs.
-    #[cfg(feature = "shapes")]
-    #[inline(always)]
-    fn slots<L: Lanes>(self, l: L, hit: L::I) -> [L::I; 2] {
-        match self {
-            Self::With(slot) => [l.splat_u32(slot as u32), hit],
-            Self::Codes(first) => {
-                let (other, lane) = l.split_u32(hit);
-                [l.add_u32(l.splat_u32(first as u32), lane), other]
-            }
-        }
-    }
-
-    /// Looks up a table by slot for a vector of pairs.
-    #[inline(always)]
-    fn entries<L: Lanes>(self, l: L, hit: L::I, table: &[u32]) -> [L::I; 2] {
-        match self {
-            Self::With(slot) => [l.splat_u32(table[slot]), l.gather_u32(table, hit)],
-            Self::Codes(first) => {
-                let ((other, lane), own) = (l.split_u32(hit), &table[first..]);
-                let own = match own.first_chunk() {
-                    Some(own) => l.lookup_16_u32(own, lane),
-                    None => l.gather_u32(own, lane),
-                };
-                [own, l.gather_u32(table, other)]
-            }
-        }
     }
 }
 
@@ -424,12 +297,12 @@ impl<T> Lister<'_, '_, T> {
     #[inline(never)]
     fn prefetch_beyond(&mut self, block: &Block<'_>) {
         let farthest = block.codes().last().map_or(0, |code| code >> 4) as usize;
-        let end = self.by_slot.len().min(farthest + PREFETCH_DISTANCE);
+        let end = self.names.by_slot.len().min(farthest + PREFETCH_DISTANCE);
         let mut slot = self
             .prefetched
             .max(end.saturating_sub(2 * PREFETCH_DISTANCE));
         while slot < end {
-            prefetch(&self.by_slot[slot]);
+            prefetch(&self.names.by_slot[slot]);
             slot += NAMES_PER_LINE;
         }
         self.prefetched = slot;
@@ -440,7 +313,7 @@ impl<T> Lister<'_, '_, T> {
     fn append<L: Lanes>(&mut self, l: L, found: usize, hits: HitSlots) {
         let listed = self.out.len();
         self.name(l, found, hits);
-        if let Some(filter) = self.listing.filter {
+        if let Some(filter) = self.filter {
             self.keep_passing(listed, filter);
         }
         self.counters.hits += (self.out.len() - listed) as u64;
@@ -457,8 +330,8 @@ impl<T> Lister<'_, '_, T> {
         let mut start = 0;
         while start < found {
             let hit = l.load_u32(&self.hits.0[start..]);
-            let entries = hits.entries(l, hit, self.by_slot);
-            let [lower, higher] = self.listing.listed(l, hits, hit, entries);
+            let entries = hits.entries(l, hit, self.names.by_slot);
+            let [lower, higher] = self.names.listed(l, hits, hit, entries);
             l.store_u32(lower, &mut first[start..]);
             l.store_u32(higher, &mut second[start..]);
             start += L::WIDTH;
@@ -470,7 +343,7 @@ impl<T> Lister<'_, '_, T> {
     /// case stays small.
     #[inline(never)]
     fn keep_passing(&mut self, listed: usize, filter: PairFilter<'_>) {
-        let body_of = |name: u32| self.listing.body_of(name);
+        let body_of = |name: u32| self.names.body_of(name);
         self.out
             .keep_from(listed, |[a, b]| filter.passes(body_of(a), body_of(b)));
     }

@@ -12,6 +12,7 @@ use crate::counters::VolumeCounters;
 mod batch;
 #[cfg(feature = "shapes")]
 mod frame;
+mod hit_names;
 #[cfg(feature = "shapes")]
 mod interest;
 mod listing;

@@ -8,8 +8,9 @@
 
 use std::ops::Range;
 
+use super::hit_names::PairNames;
 use super::interest::InterestFilter;
-use super::listing::{Listing, PairNames};
+use super::listing::Listing;
 use super::output::{Output, TaskOutput};
 use super::refine::Refine;
 use super::tasks::{Task, split_work};

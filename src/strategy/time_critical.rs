@@ -9,7 +9,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use super::listing::{PairNames, list};
+use super::hit_names::PairNames;
+use super::listing::list;
 use super::output::{Output, PAIRS_PER_PORTION};
 use super::refine::Refiner;
 use super::{Inputs, Scratch, Totals};

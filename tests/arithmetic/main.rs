@@ -7,6 +7,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod case;
 mod functions;
 mod inputs;
 #[path = "../support/limit.rs"]
@@ -21,7 +22,8 @@ use std::io::{BufWriter, Write as _};
 use sdop::simd::Tier;
 use sha2::{Digest, Sha256};
 
-use functions::{Case, FUNCTIONS};
+use case::Case;
+use functions::FUNCTIONS;
 use inputs::Inputs;
 
 /// So many cases of each function.

@@ -11,7 +11,7 @@ use sdop::update::RowsByNumber;
 use sdop::update::row::{O, Q, S, SHAPE, T};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 
-use super::functions::Case;
+use super::case::Case;
 use super::inputs::Inputs;
 use super::limit::limit;
 

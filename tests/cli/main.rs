@@ -14,6 +14,7 @@ mod sweep;
 mod sweeps;
 mod terminal;
 mod view;
+mod view_cases;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

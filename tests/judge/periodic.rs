@@ -271,6 +271,10 @@ fn invalid_periods_are_refused() {
             "{read}"
         );
     }
+    // Each names a missing period as it is written there.
+    let [read, given] = with(&|frame| frame.periods = Some([None, Some(0.0), None]));
+    assert!(read.contains("or `null` for an axis"), "{read}");
+    assert!(given.contains("or `None` for an axis"), "{given}");
 }
 
 /// The words of a case have the periods of each frame before it, as the bits of an f64.

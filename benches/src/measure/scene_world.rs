@@ -4,13 +4,14 @@
 use std::time::Instant;
 
 use super::waiting_time::WaitingTime;
+use crate::simulate::world_body;
 use sdop::bodies::Bodies;
 use sdop::counters::Counters;
 use sdop::culler::Culler;
 use sdop::settings::CullSettings;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
-use sdop::world::{Body, BodyId, Motion, World, WorldError};
+use sdop::world::{BodyId, World, WorldError};
 
 /// How far a body moves, to have the world index all bodies before frames are timed.
 const NUDGE: f64 = 1.0;
@@ -49,7 +50,7 @@ impl SceneWorld {
         };
         let builder = Culler::builder().settings(&settings).tier(tier);
         let mut world = World::with(shapes.to_vec(), &builder)?;
-        let posed = (0..bodies.len()).map(|body| body_of(bodies, body));
+        let posed = (0..bodies.len()).map(|body| world_body(bodies, None, body));
         let ids = posed
             .map(|body| world.insert(body))
             .collect::<Result<Vec<_>, _>>()?;
@@ -117,17 +118,5 @@ impl SceneWorld {
     pub fn pairs(&self) -> Vec<[u32; 2]> {
         let pairs = self.world.pairs();
         pairs.map(|pair| pair.map(|id| id.slot() as u32)).collect()
-    }
-}
-
-fn body_of(bodies: &Bodies, body: usize) -> Body {
-    let t = bodies.translation[body].map(f64::from);
-    Body {
-        shape: bodies.shape[body],
-        motion: match bodies.dynamic[body] {
-            true => Motion::Dynamic,
-            false => Motion::Fixed,
-        },
-        ..Body::at(0, bodies.rotation[body], t)
     }
 }

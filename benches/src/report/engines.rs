@@ -1,4 +1,4 @@
-//! The experiments with the filter in physics engines, `examples/rapier` and `examples/bullet`.
+//! The experiments with the filter in physics engines, `benches/engines/rapier` and `bullet`.
 
 use super::step::ExperimentStep;
 

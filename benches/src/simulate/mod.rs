@@ -27,6 +27,7 @@ use sdop::simd::Tier;
 use sdop::world::WorldError;
 
 use scene_culler::SceneCuller;
+pub(crate) use scene_culler::world_body;
 
 /// The poses of a scene, frame after frame: the first is the scene as placed, every other one a
 /// step of its effects.

@@ -49,15 +49,8 @@ impl SceneCuller {
         let builder = builder.settings(&settings);
         let mut world = World::with(scene.shapes.clone(), &builder)?;
         let translations = scene.fine.of(&scene.bodies);
-        let bodies = (0..scene.bodies.len()).map(|body| Body {
-            shape: scene.bodies.shape[body],
-            motion: if scene.bodies.dynamic[body] {
-                Motion::Dynamic
-            } else {
-                Motion::Fixed
-            },
-            ..posed(&scene.bodies, translations.as_deref(), body)
-        });
+        let body = |body| world_body(&scene.bodies, translations.as_deref(), body);
+        let bodies = (0..scene.bodies.len()).map(body);
         let ids = bodies
             .map(|body| world.insert(body))
             .collect::<Result<Vec<_>, _>>()?;
@@ -140,7 +133,7 @@ impl FineCuller {
         for (body, &id) in self.ids.iter().enumerate() {
             // Static bodies stay where they were inserted.
             if bodies.dynamic[body] {
-                let posed = posed(bodies, translations, body);
+                let posed = world_body(bodies, translations, body);
                 self.world.set_pose(id, posed.rotation, posed.translation)?;
             }
         }
@@ -169,7 +162,7 @@ impl FineCuller {
                 rotation,
                 translation,
                 ..
-            } = posed(bodies, translations, body);
+            } = world_body(bodies, translations, body);
             (rotation, translation)
         };
         let cone = PlacedCone::new(cone, cone.body.map(|body| pose(body as usize)));
@@ -193,9 +186,15 @@ fn centre(shape: &Shape) -> [f64; 3] {
     [0, 1, 2].map(|axis| offset[axis] + f64::from(centre[axis]))
 }
 
-/// A body of the first shape at its pose, with its translation in f64.
-fn posed(bodies: &Bodies, translations: Option<&[[f64; 3]]>, body: usize) -> Body {
+/// One of these bodies for a world, at its f64 translation if there are such.
+pub(crate) fn world_body(bodies: &Bodies, translations: Option<&[[f64; 3]]>, body: usize) -> Body {
     let rounded = || bodies.translation[body].map(f64::from);
     let translation = translations.map_or_else(rounded, |all| all[body]);
-    Body::at(0, bodies.rotation[body], translation)
+    Body {
+        motion: match bodies.dynamic[body] {
+            true => Motion::Dynamic,
+            false => Motion::Fixed,
+        },
+        ..Body::at(bodies.shape[body], bodies.rotation[body], translation)
+    }
 }

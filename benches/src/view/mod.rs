@@ -11,6 +11,7 @@ mod detail;
 mod header;
 mod page;
 mod pairs;
+mod shown_case;
 mod shown_run;
 mod terms;
 

@@ -98,16 +98,20 @@ impl Frame {
         posed_parts(&self.bodies, i, parts)
     }
 
+    /// Whether a body moves or is fixed, for a world.
+    pub(crate) fn motion(&self, i: usize) -> Motion {
+        match self.bodies.dynamic[i] {
+            true => Motion::Dynamic,
+            false => Motion::Fixed,
+        }
+    }
+
     /// The box of a body, for a world of periodic boxes.
     #[must_use]
     pub fn periodic_box(&self, i: usize) -> PeriodicBox {
         let [x0, y0, z0, x1, y1, z1] = self.boxes[i].map(f64::from);
         PeriodicBox {
-            motion: if self.bodies.dynamic[i] {
-                Motion::Dynamic
-            } else {
-                Motion::Fixed
-            },
+            motion: self.motion(i),
             ..PeriodicBox::new([x0, y0, z0], [x1, y1, z1])
         }
     }
@@ -237,17 +241,27 @@ pub fn posed_parts(
     i: usize,
     parts: &[BodyPart],
 ) -> Result<Vec<(u32, WidePose)>, InvalidInput> {
-    let (rotation, translation) = (bodies.rotation[i], bodies.translation[i].map(f64::from));
     if parts.is_empty() {
-        let pose = WidePose::new(rotation.map(f64::from), translation)?;
-        return Ok(vec![(bodies.shape[i], pose)]);
+        return Ok(vec![posed_part(bodies, i, None)?]);
     }
-    let posed = |part: &BodyPart| {
-        let local = part.rotation_and_translation();
-        let pose = WidePose::composed((rotation, translation), local);
-        Ok((part.shape, pose.ok_or(InvalidInput::ComposedPose)?))
-    };
+    let posed = |part| posed_part(bodies, i, Some(part));
     parts.iter().map(posed).collect()
+}
+
+/// The shape number of a part of body `i`, or of the body itself, with its exact pose in the world.
+pub(crate) fn posed_part(
+    bodies: &Bodies,
+    i: usize,
+    part: Option<&BodyPart>,
+) -> Result<(u32, WidePose), InvalidInput> {
+    let (rotation, translation) = (bodies.rotation[i], bodies.translation[i].map(f64::from));
+    let Some(part) = part else {
+        let pose = WidePose::new(rotation.map(f64::from), translation)?;
+        return Ok((bodies.shape[i], pose));
+    };
+    let local = part.rotation_and_translation();
+    let pose = WidePose::composed((rotation, translation), local);
+    Ok((part.shape, pose.ok_or(InvalidInput::ComposedPose)?))
 }
 
 /// A case to be judged by.

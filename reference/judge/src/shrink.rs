@@ -1,6 +1,8 @@
 //! The smallest case that a culler still fails: frames, bodies, triangles and digits are removed
 //! for as long as it misses a pair.
 
+mod digits;
+
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
@@ -223,101 +225,6 @@ impl Search<'_> {
             }
         }
     }
-
-    /// No period along an axis, or one of fewer binary digits.
-    fn fewer_periods(&mut self) {
-        for (frame, axis) in (0..3 * self.case.frames.len()).map(|at| (at / 3, at % 3)) {
-            let periods = self.case.frames[frame].periods;
-            let Some(full) = periods.and_then(|periods| periods[axis]) else {
-                continue;
-            };
-            let digits = [2, 4, 8, 12, 16, 20].map(|digits| rounded(full as f32, digits));
-            let shorter = digits.map(|period| Some(f64::from(period)));
-            for period in [None].into_iter().chain(shorter) {
-                let mut case = self.case.clone();
-                if let Some(periods) = &mut case.frames[frame].periods {
-                    periods[axis] = period;
-                }
-                let is_sound = case.frames[frame].check_periods().is_ok();
-                if period == Some(full) || is_sound && self.try_case(case) {
-                    break;
-                }
-            }
-        }
-    }
-
-    /// Poses, or boxes, of fewer binary digits.
-    fn fewer_digits(&mut self) {
-        for frame in 0..self.case.frames.len() {
-            for body in 0..self.case.frames[frame].bodies.len() {
-                if self.case.claim.is_of_boxes() {
-                    for n in 0..6 {
-                        self.shorten(frame, &|frame| &mut frame.boxes[body][n]);
-                    }
-                    continue;
-                }
-                let mut unturned = self.case.clone();
-                unturned.frames[frame].bodies.rotation[body] = [0.0, 0.0, 0.0, 1.0];
-                if refit(&mut unturned, frame).is_none() || !self.try_case(unturned) {
-                    for n in 0..4 {
-                        self.shorten(frame, &|frame| &mut frame.bodies.rotation[body][n]);
-                    }
-                }
-                for n in 0..3 {
-                    self.shorten(frame, &|frame| &mut frame.bodies.translation[body][n]);
-                }
-                // Other frames have the same parts, unless the set changes.
-                let parts = self.case.frames[0].parts.as_ref();
-                let parts = parts.filter(|_| self.case.frames.len() == 1);
-                let count = parts.map_or(0, |parts| parts[body].len());
-                for (part, n) in (0..7 * count).map(|at| (at / 7, at % 7)) {
-                    self.shorten(frame, &|frame| match &mut frame.parts {
-                        Some(parts) => &mut parts[body][part].pose[n],
-                        None => &mut frame.bodies.translation[body][0], // never
-                    });
-                }
-            }
-        }
-    }
-
-    /// The shortest form of one number with which the pair is still missed.
-    fn shorten(&mut self, frame: usize, number: &dyn Fn(&mut Frame) -> &mut f32) {
-        let mut case = self.case.clone();
-        let full = *number(&mut case.frames[frame]);
-        for digits in [0, 2, 4, 8, 12, 16, 20] {
-            let short = rounded(full, digits);
-            if short == full {
-                return;
-            }
-            *number(&mut case.frames[frame]) = short;
-            let ordered = |ends: &[f32; 6]| (0..3).all(|axis| ends[axis] <= ends[axis + 3]);
-            let rotations = &case.frames[frame].bodies.rotation;
-            let mut sound = rotations.iter().all(|q| *q != [0.0; 4])
-                && case.frames[frame].boxes.iter().all(ordered);
-            sound &= case.frames[frame].check_periods().is_ok();
-            if !self.case.claim.is_of_boxes() && sound {
-                sound = refit(&mut case, frame).is_some();
-            }
-            if sound && self.try_case(case.clone()) {
-                return;
-            }
-        }
-    }
-}
-
-/// A number with this number of binary digits; 0 digits give zero.
-fn rounded(x: f32, digits: u32) -> f32 {
-    match digits {
-        0 => 0.0,
-        _ => {
-            // 24 digits in all, the first is implied; a carry goes into the exponent, as it should.
-            let cut = 24 - digits;
-            let half = 1_u32 << (cut - 1);
-            let bits = x.to_bits();
-            let rounded = f32::from_bits((bits.saturating_add(half)) & !((1 << cut) - 1));
-            if rounded.is_finite() { rounded } else { x }
-        }
-    }
 }
 
 /// Fits the boxes of a frame again; `None` if a part's pose is no longer exact.
@@ -382,18 +289,4 @@ fn rebuilt(mesh: &TriangleMesh, like: &Shape) -> Option<Shape> {
         ..ShapeSpec::default()
     };
     Shape::build(mesh, &spec).ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::rounded;
-
-    #[test]
-    fn rounded_numbers_keep_their_size() {
-        assert_eq!(rounded(1.999_999_9, 2), 2.0);
-        assert_eq!(rounded(-0.3, 0), 0.0);
-        assert_eq!(rounded(1.3, 4), 1.25);
-        assert_eq!(rounded(-1.3, 4), -1.25);
-        assert_eq!(rounded(f32::MAX, 4), f32::MAX);
-    }
 }

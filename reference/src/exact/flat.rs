@@ -8,8 +8,7 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 
-use super::orientation::{Known, Side};
-use super::triangle::{Triangle, pierces};
+use super::orientation::{Known, Side, Triangle, pierces};
 use crate::linear::{Vector, cross, dot, sub};
 
 type Point = Vector<IBig>;

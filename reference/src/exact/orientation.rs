@@ -24,6 +24,9 @@ pub trait Side {
     fn side(&self, abc: [&Self::Point; 3], d: &Self::Point) -> Option<Ordering>;
 }
 
+/// Corners of a triangle.
+pub type Triangle<P> = [P; 3];
+
 /// Intervals and integers know by themselves.
 pub struct Known<N>(PhantomData<N>);
 
@@ -80,4 +83,20 @@ impl Side for Bounded {
             _ => None,
         }
     }
+}
+
+/// Three signs, if the stage can tell all of them.
+pub fn known(signs: [Option<Ordering>; 3]) -> Option<[Ordering; 3]> {
+    Some([signs[0]?, signs[1]?, signs[2]?])
+}
+
+/// Does the line pq, which crosses the triangle's plane in one point, cross it inside? It does when
+/// it passes all three edges on the same side, touching included.
+pub fn pierces<S: Side>(sides: &S, [p, q]: [&S::Point; 2], t: &Triangle<S::Point>) -> Option<bool> {
+    let signs = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| sides.side([p, q, &t[i]], &t[j]));
+    let any = |side: Ordering| signs.contains(&Some(side));
+    if any(Ordering::Greater) && any(Ordering::Less) {
+        return Some(false);
+    }
+    known(signs).map(|_| true)
 }

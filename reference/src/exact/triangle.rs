@@ -9,12 +9,9 @@ use std::cmp::Ordering;
 use dashu_int::IBig;
 
 use super::flat;
-use super::orientation::{Bounded, Known, Side};
+use super::orientation::{Bounded, Known, Side, Triangle, known, pierces};
 use super::{Decision, Interval, cascade};
 use crate::linear::Vector;
-
-/// Corners of a triangle.
-pub type Triangle<P> = [P; 3];
 
 /// Whether two triangles meet: `rounded` ones whose second is off by at most `error` in each
 /// coordinate (the first is exact), and the same two in intervals and integers.
@@ -105,21 +102,6 @@ fn one_side(signs: &[Option<Ordering>; 3]) -> bool {
     [Ordering::Greater, Ordering::Less]
         .iter()
         .any(|side| signs.iter().all(|sign| *sign == Some(*side)))
-}
-
-fn known(signs: [Option<Ordering>; 3]) -> Option<[Ordering; 3]> {
-    Some([signs[0]?, signs[1]?, signs[2]?])
-}
-
-/// Does the line pq, which crosses the triangle's plane in one point, cross it inside? It does when
-/// it passes all three edges on the same side, touching included.
-pub fn pierces<S: Side>(sides: &S, [p, q]: [&S::Point; 2], t: &Triangle<S::Point>) -> Option<bool> {
-    let signs = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| sides.side([p, q, &t[i]], &t[j]));
-    let any = |side: Ordering| signs.contains(&Some(side));
-    if any(Ordering::Greater) && any(Ordering::Less) {
-        return Some(false);
-    }
-    known(signs).map(|_| true)
 }
 
 /// Does the segment pq cross the triangle's interior? The inner `None` means that it touches the

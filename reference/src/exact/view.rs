@@ -5,9 +5,9 @@ use std::cell::OnceCell;
 use dashu_int::IBig;
 
 use super::mesh::Mesh;
-use super::orientation::{Bounded, Known};
+use super::orientation::{Bounded, Known, Triangle};
 use super::relative::{Approximate, Relative};
-use super::triangle::{self, Triangle};
+use super::triangle;
 use super::{Decision, Interval, cascade};
 use crate::linear::Vector;
 use crate::number::{Number, unit_of};

@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 
 use super::exact_touches::{TURNS, cuboid};
 use super::{CatalogueError, DrawnCase};
-use crate::case::{Frame, posed_parts};
+use crate::case::{Frame, posed_part};
 use crate::contestant::BodyPart;
 use sdop::bodies::Bodies;
 use sdop::volume::Shape;
@@ -197,12 +197,9 @@ fn reframe(body: &mut RowBody, rng: &mut impl Rng) -> Result<(), CatalogueError>
 fn last_part(body: &RowBody) -> Result<PartBox, CatalogueError> {
     let mut bodies = Bodies::default();
     bodies.push(0, true, body.rotation, body.translation);
-    let posed = posed_parts(&bodies, 0, &body.parts)?;
-    let Some((shape, pose)) = posed.last() else {
-        unreachable!("a body has one part at least")
-    };
+    let (shape, pose) = posed_part(&bodies, 0, body.parts.last())?;
     let centre = pose.translation();
-    let corner = pose.point(&HALVES[*shape as usize].map(f64::from));
+    let corner = pose.point(&HALVES[shape as usize].map(f64::from));
     Ok(PartBox {
         centre: centre.map(|x| x as f32),
         reach: [0, 1, 2].map(|axis| (corner[axis] - centre[axis]).abs() as f32),

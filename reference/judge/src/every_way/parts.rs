@@ -6,7 +6,6 @@ use crate::contestant::BodyPart;
 use crate::ours::configurations::Mode;
 use crate::ours::histories::{CompoundWorld, HistoryError, culler};
 use crate::shrink::Lists;
-use sdop::Motion;
 use sdop::compound::{Compound, Part, PartCuller};
 use sdop::settings::{Budget, CullSettings};
 use sdop::world::{Body, World};
@@ -43,11 +42,7 @@ pub(super) fn lists(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists
     let body = |frame: &Frame, i: usize| {
         let translation = frame.bodies.translation[i].map(f64::from);
         let mut body = Body::at(number(frame, i), frame.bodies.rotation[i], translation);
-        body.motion = if frame.bodies.dynamic[i] {
-            Motion::Dynamic
-        } else {
-            Motion::Fixed
-        };
+        body.motion = frame.motion(i);
         body
     };
     lives::lists(&mut world, case, body, |_, _| Ok(()))

@@ -12,7 +12,7 @@ use sdop_bullet::stage::is_filtered;
 use sdop_bullet::study::judge;
 
 fn forms() -> Vec<TriangleMesh> {
-    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/meshes");
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/meshes");
     sdop_bullet::forms::forms(&meshes, Detail::Coarse).unwrap()
 }
 

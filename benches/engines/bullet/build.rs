@@ -2,7 +2,8 @@
 
 fn main() {
     println!("cargo:rerun-if-changed=native");
-    println!("cargo:rerun-if-changed=../../src/c/sdop.h");
+    println!("cargo:rerun-if-changed=../../../examples/bullet/native/culling.h");
+    println!("cargo:rerun-if-changed=../../../src/c/sdop.h");
     #[cfg(feature = "debian")]
     compile();
 }
@@ -15,7 +16,8 @@ fn compile() {
         .opt_level(3)
         .define("NDEBUG", None)
         .flag("-isystem/usr/include/bullet") // its headers warn
-        .include("../../src/c")
+        .include("../../../src/c")
+        .include("../../../examples/bullet/native")
         .file("native/scene.cpp")
         .compile("sdop_bullet_scene");
     for library in ["BulletDynamics", "BulletCollision", "LinearMath"] {

@@ -2,11 +2,11 @@
 
 pub use rapier3d_f64 as rapier;
 
-#[path = "dispatcher.rs"]
+#[path = "../../../../examples/rapier/src/dispatcher.rs"]
 mod dispatcher;
-#[path = "filter.rs"]
+#[path = "../../../../examples/rapier/src/filter.rs"]
 mod filter;
-#[path = "volumes.rs"]
+#[path = "../../../../examples/rapier/src/volumes.rs"]
 mod volumes;
 
 pub use dispatcher::CullingDispatcher;

@@ -13,7 +13,7 @@ use sdop_rapier::{double, single};
 const FILTERED: [Mode; 3] = [Mode::Hook, Mode::Dispatcher, Mode::DispatcherFull];
 
 fn forms() -> Vec<TriangleMesh> {
-    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/meshes");
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/meshes");
     let forms = sdop_rapier::forms::forms(&meshes, Detail::Coarse).unwrap();
     // Quick to collide: the cow and the knot have hundreds of triangles.
     forms
