@@ -127,7 +127,7 @@ impl Calibration {
                 .map(|variant| PreparedVariant::new(variant, scene))
                 .collect(),
             variants: variants.len(),
-            worlds: WorldCalibration::new(scene, &worlds, tier)?,
+            worlds: WorldCalibration::new(scene, &worlds, &all, tier)?,
             spheres: all
                 .iter()
                 .position(|one| is_same(one, &spheres))

@@ -23,29 +23,39 @@ const TIMED_FRAMES: usize = MOST_TURN_FRAMES;
 
 /// The calibration of some worlds.
 pub(super) struct WorldCalibration {
-    variants: Vec<(Variant, Vec<Shape>)>,
+    /// The worlds, followed by others of which each has its turn as in a run: a world's frame reads
+    /// so little that the next world's data would stay in the caches.
+    contestants: Vec<(Variant, Vec<Shape>)>,
+    worlds: usize,
     subjects: Vec<(Scene, Trajectory)>,
     turns: Turns,
     tier: Tier,
 }
 
 impl WorldCalibration {
-    /// Prepares the calibration scenes; none if there is no variant.
+    /// Prepares the calibration scenes of some worlds, among others that run along; none if there
+    /// is no world.
     ///
     /// # Errors
     /// The effects can't be simulated.
-    pub fn new(scene: &Scene, variants: &[Variant], tier: Tier) -> Result<Self, SimulationError> {
+    pub fn new(
+        scene: &Scene,
+        worlds: &[Variant],
+        others: &[Variant],
+        tier: Tier,
+    ) -> Result<Self, SimulationError> {
         let subject = |scene: Scene| {
             let trajectory = Trajectory::new(&scene)?.with_frames(u32::MAX);
             Ok((scene, trajectory))
         };
         let with_shapes = |variant: &Variant| (variant.clone(), variant.shapes(scene));
-        let scenes = world_design::scenes(scene).take(match variants {
+        let scenes = world_design::scenes(scene).take(match worlds {
             [] => 0,
             _ => SCENES,
         });
         Ok(Self {
-            variants: variants.iter().map(with_shapes).collect(),
+            contestants: worlds.iter().chain(others).map(with_shapes).collect(),
+            worlds: worlds.len(),
             subjects: scenes
                 .map(subject)
                 .collect::<Result<_, SimulationError>>()?,
@@ -60,12 +70,12 @@ impl WorldCalibration {
     /// # Errors
     /// The settings can't be carried out, or a body leaves the contract.
     pub fn round(&mut self, round: Round) -> Result<[Vec<Prices>; 2], SimulationError> {
-        let mut observed = vec![[Vec::new(), Vec::new()]; self.variants.len()];
+        let mut observed = vec![[Vec::new(), Vec::new()]; self.worlds];
         for number in 0..self.subjects.len() {
             self.turn(number * SCENE_STEP % SCENES, &mut observed)?;
         }
         Ok(std::array::from_fn(|regime| {
-            let variants = self.variants.iter().zip(&observed);
+            let variants = self.contestants.iter().zip(&observed);
             let all: Vec<_> = variants
                 .map(|((variant, shapes), observed)| VariantTurns {
                     variant,
@@ -97,14 +107,17 @@ impl WorldCalibration {
             bodies: first.clone(),
             ..scene.clone()
         };
-        let worlds = self.variants.iter();
-        let mut worlds = worlds
+        let all = self.contestants.iter();
+        let mut all = all
             .map(|(variant, shapes)| variant.culling_of(shapes, &begun, self.tier))
             .collect::<Result<Vec<Culling>, _>>()?;
         // In the first frame, a world thaws every body that moves.
-        worlds.iter_mut().for_each(|world| world.frame(second));
-        let mut before: Vec<Counts> = worlds.iter().map(Culling::counts).collect();
-        self.turns.round(&mut worlds, poses, |timed| {
+        all.iter_mut().for_each(|one| one.frame(second));
+        let mut before: Vec<Counts> = all.iter().map(Culling::counts).collect();
+        self.turns.round(&mut all, poses, |timed| {
+            if timed.number >= self.worlds {
+                return;
+            }
             let (world, counts) = (&timed.contestant, timed.contestant.counts());
             observed[timed.number][timed.regime as usize].push(TurnObservation {
                 bodies: first.len(),
@@ -115,8 +128,8 @@ impl WorldCalibration {
             });
             before[timed.number] = counts;
         });
-        for world in &worlds {
-            world.accepted()?;
+        for one in &all {
+            one.accepted()?;
         }
         Ok(())
     }
@@ -141,7 +154,7 @@ mod tests {
         let file = SceneFile::parse(text, "a.toml", Path::new(".")).unwrap();
         let scene = file.build().unwrap();
         let spheres = [Variant::spheres(&scene.cull).in_world()];
-        let mut worlds = WorldCalibration::new(&scene, &spheres, Tier::detect()).unwrap();
+        let mut worlds = WorldCalibration::new(&scene, &spheres, &[], Tier::detect()).unwrap();
         let mut observed = vec![[Vec::new(), Vec::new()]];
         for subject in 0..SCENES {
             worlds.turn(subject, &mut observed).unwrap();
