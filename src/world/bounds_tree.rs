@@ -53,7 +53,7 @@ impl BoundsTree {
     pub fn prefetch(&self, slot: usize, of_slots: impl Fn(Range<usize>)) {
         let leaf = slot / SLOTS_PER_LEAF;
         let node = self.nodes.len() / 2 + leaf;
-        for node in [node, node ^ 1, node / 2, node / 2 ^ 1] {
+        for node in [node, node ^ 1, node / 2, (node / 2) ^ 1] {
             self.nodes.get(node).map(prefetch);
         }
         of_slots(slots_of(leaf));
