@@ -58,7 +58,7 @@ impl BoxWorld {
     }
 }
 
-/// Whether all boxes are valid, but for ends that are both zero, of unlike signs.
+/// Whether all boxes are valid.
 struct AreSound<'a>(&'a [Aabb]);
 
 impl Kernel for AreSound<'_> {
