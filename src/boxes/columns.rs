@@ -7,8 +7,8 @@ use crate::rounding::cube::Cube;
 use crate::simd::{Kernel, LANES, Lanes, MAX_WIDTH, dispatch, in_default_mode, numbers_of};
 use crate::world::{BodyId, WorldError};
 
-/// Boxes that are checked at once, before the first of them moves. Both columns of a block fit into
-/// the first cache.
+/// The number of boxes that are checked before the first of them moves. Their columns fit into the
+/// first cache.
 const BLOCK: usize = 512;
 
 impl BoxWorld {

@@ -1,5 +1,5 @@
-//! The pairs of one cull. They are in the order in which they were found until they or their events
-//! are first read, and sorted from then on.
+//! The pairs of one cull. They are in the order in which they were found until they are first read,
+//! and sorted from then on. Events leave that order as it is, if there are few pairs per body.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -12,6 +12,7 @@ pub(crate) struct ReportedPairs {
     /// The pairs in any order; empty once they have been sorted.
     found: Mutex<PairList>,
     sorted: OnceLock<PairList>,
+    /// Whether someone has read the pairs in order.
     is_read: AtomicBool,
     len: usize,
     pub(super) generation: Arc<Vec<u32>>,
@@ -93,20 +94,18 @@ impl ReportedPairs {
         })
     }
 
-    /// As [`out_of_step`] from this cull to a later one. `None` also if the pairs of only one have
+    /// As [`out_of_step`] from this cull to a later one. `None` also if the pairs of either have
     /// been sorted.
     pub fn out_of_step(&self, later: &Self) -> Option<[Vec<u64>; 2]> {
         // Every thread locks the earlier one first.
         let [before, now] = [lock(&self.found), lock(&later.found)];
-        match [self.sorted.get(), later.sorted.get()] {
-            [None, None] => out_of_step(&before, &now),
-            [Some(before), Some(now)] => out_of_step(before, now),
-            _ => None,
-        }
+        let are_sorted = [self, later].map(|reported| reported.sorted.get().is_some());
+        (are_sorted == [false; 2]).then(|| out_of_step(&before, &now))?
     }
 
-    /// The keys of the pairs, in order. If nobody reads the pairs, they mostly stay in the order in
-    /// which they were found, so that the next ones can be compared with them in step.
+    /// The keys of the pairs, in order. Sorts the pairs themselves if they will be read
+    /// (`are_read`), or if there are many per body. Otherwise they stay in the order in which they
+    /// were found, so that the next ones can be compared with them in step.
     pub fn keys(&self, are_read: bool) -> SortedKeys<'_> {
         let copied = || {
             let found = lock(&self.found);

@@ -10,9 +10,9 @@ use miette::{IntoDiagnostic, miette};
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::cost::design;
 use sdop_bench::cost::level::CacheLevel;
-use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::study::{CostPlan, CostReport, possible, study};
 use sdop_bench::cost::table::{CheckedPrediction, Cost, MOST_RIGHT_RESIDUAL, PriceRow};
+use sdop_bench::cost::terms::Terms;
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::Estimate;
 

@@ -8,7 +8,8 @@
 use super::construct::volume_seconds;
 use super::design::{self, DENSITIES, SCENE_STEP, SCENES};
 use super::expected;
-use super::explain::{self, HitPremium, Round, TurnObservation, VariantTurns};
+use super::explain::{self, Round, TurnObservation, VariantTurns};
+use super::hit_premium::HitPremium;
 use super::level::CacheLevel;
 use super::predict::Prices;
 use super::world_calibration::WorldCalibration;

@@ -89,7 +89,7 @@ fn second(volume: Volume, turns: &[TurnObservation], lanes: usize) -> VolumeCost
 mod tests {
     use super::*;
     use crate::cost::level::CacheLevel;
-    use crate::cost::predict::Terms;
+    use crate::cost::terms::Terms;
     use crate::measure::counts::Counts;
     use crate::measure::culling::StageSeconds;
     use crate::measure::variant::Variant;

@@ -25,11 +25,13 @@ mod expected;
 mod explain;
 mod explain_world;
 mod fit;
+mod hit_premium;
 pub mod level;
 pub mod pass;
 pub mod predict;
 pub mod study;
 pub mod table;
+pub mod terms;
 mod world_calibration;
 mod world_design;
 

@@ -23,8 +23,8 @@ const TIMED_FRAMES: usize = MOST_TURN_FRAMES;
 
 /// The calibration of some worlds.
 pub(super) struct WorldCalibration {
-    /// The worlds, followed by others of which each has its turn as in a run: a world's frame reads
-    /// so little that the next world's data would stay in the caches.
+    /// The worlds, followed by cullers that take turns with them, as in a run. Worlds alone read so
+    /// little that the data of all of them would stay in the caches.
     contestants: Vec<(Variant, Vec<Shape>)>,
     worlds: usize,
     subjects: Vec<(Scene, Trajectory)>,
@@ -33,15 +33,15 @@ pub(super) struct WorldCalibration {
 }
 
 impl WorldCalibration {
-    /// Prepares the calibration scenes of some worlds, among others that run along; none if there
-    /// is no world.
+    /// Prepares the calibration scenes of some worlds, with which `cullers` take turns; none if
+    /// there is no world.
     ///
     /// # Errors
     /// The effects can't be simulated.
     pub fn new(
         scene: &Scene,
         worlds: &[Variant],
-        others: &[Variant],
+        cullers: &[Variant],
         tier: Tier,
     ) -> Result<Self, SimulationError> {
         let subject = |scene: Scene| {
@@ -54,7 +54,7 @@ impl WorldCalibration {
             _ => SCENES,
         });
         Ok(Self {
-            contestants: worlds.iter().chain(others).map(with_shapes).collect(),
+            contestants: worlds.iter().chain(cullers).map(with_shapes).collect(),
             worlds: worlds.len(),
             subjects: scenes
                 .map(subject)

@@ -1,8 +1,8 @@
 //! The formula's numbers as CSV: one number per line, with its meaning, unit and interval.
 
-use sdop_bench::cost::predict::{TermWidths, Terms};
 use sdop_bench::cost::study::CostReport;
 use sdop_bench::cost::table::{CheckedPrediction, Cost, PriceRow};
+use sdop_bench::cost::terms::{TermWidths, Terms};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::Estimate;
 use serde::Serialize;

@@ -2,8 +2,8 @@
 
 use comfy_table::Table;
 use sdop::settings::{Axes, Overlap};
-use sdop_bench::cost::predict::Terms;
 use sdop_bench::cost::table::CheckedPrediction;
+use sdop_bench::cost::terms::Terms;
 use sdop_bench::tradeoff::decide::{CHECKS, Decision};
 use sdop_bench::tradeoff::pays::{Line, Standing};
 use sdop_bench::tradeoff::shapes::ShapeSurvival;

@@ -149,8 +149,8 @@ mod tests {
     use super::*;
     use crate::commands::palette::{TESTS, UPDATES};
     use sdop::settings::Strategy;
-    use sdop_bench::cost::predict::Terms;
     use sdop_bench::cost::table::CheckedPrediction;
+    use sdop_bench::cost::terms::Terms;
     use sdop_bench::measure::counts::Volume;
     use sdop_bench::measure::turns::{Quartiles, Regime};
 

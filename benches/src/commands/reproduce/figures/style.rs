@@ -6,7 +6,7 @@ use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use sdop::settings::Strategy;
-use sdop_bench::cost::predict::Terms;
+use sdop_bench::cost::terms::Terms;
 use sdop_bench::measure::counts::Volume;
 use sdop_bench::reproduce::Estimate;
 
