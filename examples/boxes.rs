@@ -6,10 +6,7 @@ use sdop::{Aabb, BoxCuller, BoxWorld, Motion};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A world: boxes come and go, some are fixed, and events tell what has changed.
     let mut world = BoxWorld::new();
-    let fixed = |bounds: Aabb| BoxBody {
-        motion: Motion::Fixed,
-        ..bounds.into()
-    };
+    let fixed = |bounds: Aabb| BoxBody { motion: Motion::Fixed, ..bounds.into() };
     world.insert(fixed(Aabb::new([-9.0, -9.0, -1.0], [9.0, 9.0, 0.0])))?;
     for z in [2.0, 4.0] {
         world.insert(fixed(Aabb::new([0.5, -3.0, z], [4.0, 3.0, z + 0.125])))?;

@@ -8,12 +8,7 @@ pub fn volumes(mesh: &TriangleMesh) -> Result<Shape, VolumeError> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let ring = ProceduralShape::Torus {
-        radius: 0.8,
-        tube: 0.2,
-        segments: 32,
-        sides: 12,
-    };
+    let ring = ProceduralShape::Torus { radius: 0.8, tube: 0.2, segments: 32, sides: 12 };
     let shapes = [volumes(&ring.build()?)?];
     let mut bodies = Bodies::default();
     for i in 0..4096_u16 {

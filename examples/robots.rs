@@ -13,10 +13,8 @@ fn about_z(angle: f32) -> [f32; 4] {
 
 /// A trunk of 6 links and 4 arms of 6 links each.
 fn links() -> Vec<Part> {
-    let trunk = (0..6).map(|link| Part {
-        translation: [0.0, 0.0, 0.25 * f64::from(link)],
-        ..Part::default()
-    });
+    let trunk = (0..6)
+        .map(|link| Part { translation: [0.0, 0.0, 0.25 * f64::from(link)], ..Part::default() });
     let arm = |number: i32| {
         (1..=6).map(move |link| {
             let angle = std::f32::consts::FRAC_PI_2 * number as f32 + 0.1 * link as f32;
@@ -33,18 +31,8 @@ fn links() -> Vec<Part> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let link = ProceduralShape::Box {
-        x: 0.3,
-        y: 0.1,
-        z: 0.2,
-    }
-    .build()?;
-    let post = ProceduralShape::Box {
-        x: 0.2,
-        y: 0.2,
-        z: 3.0,
-    }
-    .build()?;
+    let link = ProceduralShape::Box { x: 0.3, y: 0.1, z: 0.2 }.build()?;
+    let post = ProceduralShape::Box { x: 0.2, y: 0.2, z: 3.0 }.build()?;
     let shapes = [link, post].map(|mesh| Shape::build(&mesh, &ShapeSpec::default()));
     let [link, post] = shapes;
     let robot = Compound::build("robot", &[link?], &links())?;
@@ -65,18 +53,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let bodies = world.cull()?.len();
         let pairs = parts.cull(&world)?;
-        println!(
-            "step {step}: {bodies} pairs of bodies, {} pairs of parts",
-            pairs.len()
-        );
-        for pair in pairs
-            .iter()
-            .filter(|pair| !robots.contains(&pair.bodies[0]))
-        {
-            println!(
-                "  the post may meet link {} of {}",
-                pair.parts[1], pair.bodies[1]
-            );
+        println!("step {step}: {bodies} pairs of bodies, {} pairs of parts", pairs.len());
+        for pair in pairs.iter().filter(|pair| !robots.contains(&pair.bodies[0])) {
+            println!("  the post may meet link {} of {}", pair.parts[1], pair.bodies[1]);
         }
     }
     Ok(())

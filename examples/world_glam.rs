@@ -13,10 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cube = ProceduralShape::Box { x, y, z }.build()?;
     let mut world = World::new(vec![volumes(&cube)?])?;
     let (radius, subdivisions) = (0.5, 2);
-    let ball = ProceduralShape::Icosphere {
-        radius,
-        subdivisions,
-    };
+    let ball = ProceduralShape::Icosphere { radius, subdivisions };
     let round = world.add_shape(volumes(&ball.build()?)?)?;
     for i in 0..5 {
         let place = DVec3::X * f64::from(2 * i);

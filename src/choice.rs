@@ -25,11 +25,7 @@ impl UnknownChoice {
     /// The error for the name `given`. Its hint is the nearest name in `known`, or all of them.
     #[must_use]
     pub fn new(what: &'static str, given: &str, known: &[&str]) -> Self {
-        Self {
-            what,
-            given: given.to_owned(),
-            hint: suggest(given, known.iter().copied()),
-        }
+        Self { what, given: given.to_owned(), hint: suggest(given, known.iter().copied()) }
     }
 }
 

@@ -27,9 +27,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// As [`read`].
 pub fn read_all(source: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    source
-        .take(most.saturating_add(1))
-        .read_to_end(&mut bytes)?;
+    source.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
         let text = format!("the file is larger than {most} bytes");
         return Err(io::Error::new(ErrorKind::FileTooLarge, text));
@@ -104,10 +102,7 @@ impl WholeFile {
         part.push(format!(".{}.part", std::process::id()));
         let part = target.with_file_name(part);
         let file = BufWriter::new(create_locked(&part)?);
-        let whole = Self {
-            file,
-            part: Some([part, target]),
-        };
+        let whole = Self { file, part: Some([part, target]) };
         if let Some(former) = former {
             whole.file.get_ref().set_permissions(former.permissions())?;
         }
@@ -198,9 +193,8 @@ mod tests {
 
     fn names(directory: &Path) -> Vec<String> {
         let entries = fs::read_dir(directory).unwrap();
-        let mut names: Vec<String> = entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
     }

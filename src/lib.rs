@@ -112,10 +112,7 @@
 
 #![cfg_attr(
     not(feature = "shapes"),
-    allow(
-        rustdoc::broken_intra_doc_links,
-        reason = "this page names what boxes alone lack"
-    )
+    allow(rustdoc::broken_intra_doc_links, reason = "this page names what boxes alone lack")
 )]
 
 pub mod bodies;

@@ -64,10 +64,7 @@ impl PairList {
 
     /// The pairs in list order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
-        self.first()
-            .iter()
-            .zip(self.second())
-            .map(|(&i, &j)| [i, j])
+        self.first().iter().zip(self.second()).map(|(&i, &j)| [i, j])
     }
 
     /// The pairs in ascending order, as in `pairs_sha256` and records.
@@ -123,11 +120,7 @@ impl PairList {
 
     /// Gives back the memory after the last pair.
     pub fn shrink_to_fit(&mut self) {
-        let size = if self.len == 0 {
-            0
-        } else {
-            self.len + MAX_WIDTH
-        };
+        let size = if self.len == 0 { 0 } else { self.len + MAX_WIDTH };
         for column in [&mut self.first, &mut self.second] {
             column.truncate(size);
             column.shrink_to_fit();
@@ -238,10 +231,7 @@ mod tests {
         for pair in 0..100_000 {
             list.push(pair, pair + 1);
             let needed = 8 * (list.len() + MAX_WIDTH);
-            assert!(
-                list.bytes() <= (needed / 8 * 9).max(8 * LEAST_CAPACITY),
-                "{pair}"
-            );
+            assert!(list.bytes() <= (needed / 8 * 9).max(8 * LEAST_CAPACITY), "{pair}");
         }
         let mut joined = PairList::default();
         joined.append_all([&list, &list].into_iter());

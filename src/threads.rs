@@ -73,12 +73,7 @@ impl FrameThreads {
     /// ([`WORTH_WAKING`]), or for all frames if that is 0.
     #[must_use]
     pub fn new(all: Threads, worth_waking: u64) -> Self {
-        Self {
-            all,
-            alone: Threads::default(),
-            worth_waking,
-            wakes: worth_waking == 0,
-        }
+        Self { all, alone: Threads::default(), worth_waking, wakes: worth_waking == 0 }
     }
 
     /// Sets the expected work of the coming frame, estimated from the last one.
@@ -139,10 +134,7 @@ impl Threads {
         let pool = ThreadPoolBuilder::new().num_threads(others).build();
         match pool {
             Ok(pool) => Ok(Self(Some(pool))),
-            Err(error) => Err(ThreadsError {
-                threads,
-                reason: error.to_string(),
-            }),
+            Err(error) => Err(ThreadsError { threads, reason: error.to_string() }),
         }
     }
 
@@ -176,9 +168,7 @@ impl Threads {
     ) {
         let is_worth_waking = column.len() >= FEWEST_PIECES * size;
         let pieces = column.chunks_mut(size).enumerate();
-        self.share_out(is_worth_waking, pieces, |(index, piece)| {
-            work(index * size, piece)
-        });
+        self.share_out(is_worth_waking, pieces, |(index, piece)| work(index * size, piece));
     }
 
     /// Calls `work` for pieces of two columns of one length at once.
@@ -292,11 +282,7 @@ mod tests {
     /// Others are woken for frames that are worth it and always for nothing.
     #[test]
     fn threads_wake_for_enough_work() {
-        let work = |candidates| FrameWork {
-            updates: 100,
-            candidates,
-            refined: 10,
-        };
+        let work = |candidates| FrameWork { updates: 100, candidates, refined: 10 };
         assert_eq!(work(50).nanoseconds(), 1900);
         let mut threads = FrameThreads::new(Threads::new(2).unwrap(), 1900);
         assert_eq!(threads.get().threads(), 1, "before anything is known");

@@ -25,15 +25,8 @@ fn culler(strategy: Strategy, updates: Updates, threads: usize) -> (Culler, Bodi
         let turn = [(body % 8) as f32, 1.0, 2.0, 5.0];
         bodies.push(0, true, turn, [(body % 5) as f32 * 1e-6, 0.0, 0.0]);
     }
-    let settings = CullSettings {
-        strategy,
-        updates,
-        ..CullSettings::default()
-    };
-    let culler = Culler::builder()
-        .settings(&settings)
-        .threads(threads)
-        .worth_waking(0);
+    let settings = CullSettings { strategy, updates, ..CullSettings::default() };
+    let culler = Culler::builder().settings(&settings).threads(threads).worth_waking(0);
     (culler.build(&shapes, &bodies).unwrap(), bodies)
 }
 
@@ -48,12 +41,9 @@ fn timed(culler: &mut Culler, cull: impl FnOnce(&mut Culler)) -> (Seconds, f64) 
 /// Seconds of stages add up to those of frames.
 #[test]
 fn stage_seconds_add_up() {
-    for strategy in [
-        Strategy::Sphere,
-        Strategy::SDopSequential,
-        Strategy::SDopBatch,
-        Strategy::KDop,
-    ] {
+    for strategy in
+        [Strategy::Sphere, Strategy::SDopSequential, Strategy::SDopBatch, Strategy::KDop]
+    {
         for &updates in Updates::ALL {
             for threads in [1, 2] {
                 let (mut culler, bodies) = culler(strategy, updates, threads);
@@ -65,14 +55,8 @@ fn stage_seconds_add_up() {
                         |culler: &mut Culler| assert!(!culler.cull(&bodies).unwrap().is_empty());
                     let (own, wall) = timed(&mut culler, cull);
                     let stages = own.update + own.pair_finding + own.ordop;
-                    assert!(
-                        0.0 < own.total && own.total <= wall,
-                        "{way}: {own:?} of {wall}"
-                    );
-                    assert!(
-                        own.update > 0.0 && own.pair_finding > -SLACK,
-                        "{way}: {own:?}"
-                    );
+                    assert!(0.0 < own.total && own.total <= wall, "{way}: {own:?} of {wall}");
+                    assert!(own.update > 0.0 && own.pair_finding > -SLACK, "{way}: {own:?}");
                     let refines = strategy.scheme().refining.is_some();
                     assert_eq!(own.ordop > 0.0, refines, "{way}: {own:?}");
                     assert!(stages <= own.total + SLACK, "{way}: {own:?}");
@@ -100,10 +84,7 @@ fn caller_time_is_not_counted() {
             culler.cull_in_portions(&bodies, take).unwrap();
         });
         let rested = rested.as_secs_f64();
-        assert!(
-            rested > 0.0 && own.total <= wall - rested + SLACK,
-            "{own:?}: {wall}, {rested}"
-        );
+        assert!(rested > 0.0 && own.total <= wall - rested + SLACK, "{own:?}: {wall}, {rested}");
         let stages = own.update + own.pair_finding + own.ordop;
         assert!(stages <= own.total + SLACK, "{own:?}");
         assert!(threads > 1 || own.pair_finding > -SLACK, "{own:?}");
@@ -137,11 +118,7 @@ fn is_in_order(
 /// Boxes in a row, whose distances are integers: what is refined, and in which order, is known.
 #[test]
 fn budget_follows_the_requested_order() {
-    let mesh = ProceduralShape::Box {
-        x: 2.0,
-        y: 9.0,
-        z: 9.0,
-    };
+    let mesh = ProceduralShape::Box { x: 2.0, y: 9.0, z: 9.0 };
     let shapes = [Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()];
     let mut bodies = Bodies::default();
     for x in [0u8, 14, 3, 30, 7, 1, 20, 9, 12, 40, 33, 26] {
@@ -181,10 +158,7 @@ fn budget_follows_the_requested_order() {
                 wanted.sort_unstable();
                 assert_eq!(found, wanted, "{way}");
                 let own = culler.counters().since(&before);
-                assert_eq!(
-                    (own.ordop.tests, own.untested),
-                    (spent as u64, rest.len() as u64)
-                );
+                assert_eq!((own.ordop.tests, own.untested), (spent as u64, rest.len() as u64));
                 let hits = found.len() - rest.len();
                 assert_eq!(own.ordop.hits, hits as u64, "{way}");
                 assert_eq!(own.sphere.hits, list.len() as u64, "{way}");
@@ -201,16 +175,9 @@ fn oriented_volumes_use_ball_bins() {
     let shapes = [Shape::build(&mesh, &ShapeSpec::default()).unwrap()];
     let mut bodies = Bodies::default();
     for body in 0..300u16 {
-        bodies.push(
-            0,
-            true,
-            [0.0, 0.0, 0.0, 1.0],
-            [f32::from(body) * 10.0, 0.0, 0.0],
-        );
+        bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [f32::from(body) * 10.0, 0.0, 0.0]);
     }
-    let oriented = Strategy::ALL
-        .iter()
-        .filter(|strategy| strategy.scheme().is_oriented_alone());
+    let oriented = Strategy::ALL.iter().filter(|strategy| strategy.scheme().is_oriented_alone());
     for &strategy in oriented {
         let culler = Culler::builder().strategy(strategy).finder(Finder::Grid);
         let mut culler = culler.build(&shapes, &bodies).unwrap();

@@ -66,11 +66,7 @@ fn judge(frame: &Frame, settings: &CullSettings) -> Vec<[u32; 2]> {
         Strategy::Obb => reference::Strategy::Obb,
         Strategy::None => reference::Strategy::None,
     };
-    let pairs = reference::pairs(
-        &bodies,
-        strategy,
-        reference_shapes::overlap(settings.overlap),
-    );
+    let pairs = reference::pairs(&bodies, strategy, reference_shapes::overlap(settings.overlap));
     pairs.into_iter().map(|(i, j)| [i, j]).collect()
 }
 
@@ -86,20 +82,15 @@ fn no_strategy_misses_a_pair() {
                     let settings = settings(strategy, k, overlap);
                     let found = cull(&frame, &settings, Tier::detect()).sorted();
                     let wanted = judge(&frame, &settings);
-                    let missed: Vec<_> = wanted
-                        .iter()
-                        .filter(|pair| found.binary_search(pair).is_err())
-                        .collect();
+                    let missed: Vec<_> =
+                        wanted.iter().filter(|pair| found.binary_search(pair).is_err()).collect();
                     report += &format!(
                         "{strategy} k={k} {axes} {overlap}: {} of {}, missed {}\n",
                         found.len(),
                         wanted.len(),
                         missed.len()
                     );
-                    assert!(
-                        missed.is_empty(),
-                        "{strategy} k={k} {axes} {overlap}: {missed:?}"
-                    );
+                    assert!(missed.is_empty(), "{strategy} k={k} {axes} {overlap}: {missed:?}");
                 }
             }
         }
@@ -158,20 +149,13 @@ fn strategies_relate_as_the_paper_says() {
             cull(&frame, &settings, Tier::detect()).sorted()
         };
         let (sphere, ordop) = (run(Strategy::Sphere), run(Strategy::OrDop));
-        let both: Vec<_> = sphere
-            .iter()
-            .filter(|pair| ordop.binary_search(pair).is_ok())
-            .copied()
-            .collect();
+        let both: Vec<_> =
+            sphere.iter().filter(|pair| ordop.binary_search(pair).is_ok()).copied().collect();
         let sequential = run(Strategy::SDopSequential);
         assert_eq!(sequential, both, "S-DOP is sphere and or-DOP");
         assert_eq!(run(Strategy::SDopBatch), sequential);
         let looked_at = run(Strategy::SDopObjectOfInterest);
-        assert!(
-            sequential
-                .iter()
-                .all(|pair| looked_at.binary_search(pair).is_ok())
-        );
+        assert!(sequential.iter().all(|pair| looked_at.binary_search(pair).is_ok()));
         assert!(looked_at.len() > sequential.len() && looked_at.len() < sphere.len());
         assert_eq!(run(Strategy::None), Vec::<[u32; 2]>::new());
     }
@@ -181,26 +165,16 @@ fn strategies_relate_as_the_paper_says() {
 #[test]
 fn lazy_updates_only_change_counts() {
     let frame = frame(3, DirectionSet::K18, Axes::Principal);
-    for &strategy in Strategy::ALL
-        .iter()
-        .filter(|strategy| strategy.scheme().has_overlap_test())
-    {
+    for &strategy in Strategy::ALL.iter().filter(|strategy| strategy.scheme().has_overlap_test()) {
         let eager = settings(strategy, DirectionSet::K18, Overlap::TwoSided);
-        let lazy = CullSettings {
-            updates: Updates::Lazy,
-            ..eager.clone()
-        };
+        let lazy = CullSettings { updates: Updates::Lazy, ..eager.clone() };
         let mut cullers = [eager, lazy].map(|settings| {
-            Culler::builder()
-                .settings(&settings)
-                .build(&frame.shapes.built, &frame.bodies)
-                .unwrap()
+            Culler::builder().settings(&settings).build(&frame.shapes.built, &frame.bodies).unwrap()
         });
         let mut tested = 0;
         for _ in 0..2 {
-            let [eager, lazy] = cullers
-                .each_mut()
-                .map(|culler| culler.cull(&frame.bodies).unwrap().sorted());
+            let [eager, lazy] =
+                cullers.each_mut().map(|culler| culler.cull(&frame.bodies).unwrap().sorted());
             assert_eq!(eager, lazy);
             let bodies = cullers[1].potentially_colliding().flatten();
             let moving = bodies.filter(|&body| frame.bodies.dynamic[body as usize]);
@@ -210,10 +184,7 @@ fn lazy_updates_only_change_counts() {
         assert_eq!(eager.updates, 2 * 108);
         assert!(lazy.updates <= eager.updates);
         if matches!(strategy.scheme().flow, Flow::Sequential | Flow::Batch) {
-            assert_eq!(
-                lazy.updates, tested,
-                "{strategy}: once for each moving body of a pair"
-            );
+            assert_eq!(lazy.updates, tested, "{strategy}: once for each moving body of a pair");
         }
         assert_eq!((eager.tests, eager.hits), (lazy.tests, lazy.hits));
     }

@@ -25,8 +25,7 @@ use sdop_judge::contestant::Contestant;
 /// All but the time-critical one, which tests as much as its budget says.
 static STRATEGIES: LazyLock<Vec<Strategy>> = LazyLock::new(|| {
     let all = Strategy::ALL.iter().copied();
-    all.filter(|&strategy| strategy != Strategy::SDopTimeCritical)
-        .collect()
+    all.filter(|&strategy| strategy != Strategy::SDopTimeCritical).collect()
 });
 const FRAMES: u32 = 4;
 
@@ -52,13 +51,7 @@ fn counters(scene: &Scene, tier: Tier) -> Vec<Counts> {
     let pass = pass(scene, &variants, tier, &mut frames, None, &mut reported).unwrap();
     let counted: Vec<Counts> = pass.culled.iter().map(|culled| culled.counts).collect();
     assert!(pass.culled.iter().all(|culled| culled.frames == FRAMES));
-    assert_eq!(
-        reported.0,
-        counted
-            .iter()
-            .map(|c| c.culler.reported)
-            .collect::<Vec<_>>()
-    );
+    assert_eq!(reported.0, counted.iter().map(|c| c.culler.reported).collect::<Vec<_>>());
     counted
 }
 
@@ -66,12 +59,7 @@ fn counters(scene: &Scene, tier: Tier) -> Vec<Counts> {
 #[test]
 fn counts_equal_in_tiers() {
     let scene = scene();
-    let moving = scene
-        .bodies
-        .dynamic
-        .iter()
-        .filter(|&&dynamic| dynamic)
-        .count() as u64;
+    let moving = scene.bodies.dynamic.iter().filter(|&&dynamic| dynamic).count() as u64;
     let all = scene.bodies.len() as u64;
     let pairs = u64::from(FRAMES) * pair_count(all, all - moving);
     let counted = counters(&scene, Tier::SCALAR);
@@ -79,11 +67,7 @@ fn counts_equal_in_tiers() {
         for &volume in Volume::ALL {
             let (volumes, own) = (Volume::of(*strategy), run.of(volume));
             if volumes.contains(&volume) {
-                assert_eq!(
-                    own.updates,
-                    u64::from(FRAMES) * moving,
-                    "{strategy} {volume}"
-                );
+                assert_eq!(own.updates, u64::from(FRAMES) * moving, "{strategy} {volume}");
             } else {
                 assert_eq!(own, Default::default(), "{strategy} {volume}");
             }
@@ -124,12 +108,8 @@ fn worlds_query_or_keep_each_body() {
     }
     let (scene, frames) = (file.build().unwrap(), 40);
     for tier in Tier::available() {
-        for strategy in [
-            Strategy::Sphere,
-            Strategy::Aabb,
-            Strategy::KDop,
-            Strategy::SDopSequential,
-        ] {
+        for strategy in [Strategy::Sphere, Strategy::Aabb, Strategy::KDop, Strategy::SDopSequential]
+        {
             let culler = Variant::strategy(&scene.cull, strategy);
             assert!(culler.may_be_in_world());
             let variants = [culler.clone(), culler.in_world()];
@@ -139,11 +119,7 @@ fn worlds_query_or_keep_each_body() {
             assert_eq!(pairs.0[0], pairs.0[1], "{strategy}, {tier}");
             let [culler, world] = [0, 1].map(|at| pass.culled[at].counts.culler);
             assert_eq!(culler.rest, RestCounters::default());
-            let RestCounters {
-                queried,
-                thawed,
-                kept,
-            } = world.rest;
+            let RestCounters { queried, thawed, kept } = world.rest;
             assert_eq!(queried + kept, u64::from(frames) * 600);
             // Twelve bodies move, and wake some others.
             assert!((39 * 12..39 * 37).contains(&queried), "{queried}");
@@ -176,11 +152,7 @@ fn equal_kinds_share_calibration() {
     let mut other = scene();
     other.seed += 1;
     other.side = other.side.map(|side| 3.0 * side);
-    other
-        .bodies
-        .translation
-        .iter_mut()
-        .for_each(|t| t[0] += 1.0);
+    other.bodies.translation.iter_mut().for_each(|t| t[0] += 1.0);
     for (one, other) in scenes(&scene()).zip(scenes(&other)) {
         assert_eq!(one.bodies.translation, other.bodies.translation);
         assert_eq!((one.seed, one.side), (other.seed, other.side));
@@ -198,9 +170,7 @@ fn calibration_varies_one_count() {
         let mut frames = SceneFrames::new(&calibration, FRAMES).unwrap();
         let passed = pass(&calibration, &spheres, tier, &mut frames, None, &mut ()).unwrap();
         let sphere = passed.culled[0].counts.culler.sphere;
-        let all = by_size
-            .entry(calibration.bodies.len())
-            .or_insert_with(Vec::new);
+        let all = by_size.entry(calibration.bodies.len()).or_insert_with(Vec::new);
         all.push(sphere);
     }
     assert!(by_size.len() >= 4);
@@ -225,29 +195,19 @@ fn calibration_varies_one_count() {
 #[test]
 fn prices_and_terms_add_up() {
     let scene = scene();
-    let effort = Effort {
-        turns: 1,
-        builds: 1,
-    };
+    let effort = Effort { turns: 1, builds: 1 };
     let strategies = STRATEGIES.iter().filter(|&&s| s != Strategy::None);
-    let mut variants: Vec<Variant> = strategies
-        .map(|&strategy| Variant::strategy(&scene.cull, strategy))
-        .collect();
+    let mut variants: Vec<Variant> =
+        strategies.map(|&strategy| Variant::strategy(&scene.cull, strategy)).collect();
     variants.push(Variant::hulls(&scene.cull));
     variants.push(Variant::spheres(&scene.cull).in_world());
     variants.push(Variant::strategy(&scene.cull, Strategy::SDopSequential).in_world());
     let tier = Tier::detect();
     let mut calibration = Calibration::new(&scene, &variants, tier, effort).unwrap();
     let mut frames = SceneFrames::new(&scene, 17).unwrap();
-    let passed = pass(
-        &scene,
-        &variants,
-        tier,
-        &mut frames,
-        Some(calibration.round().unwrap()),
-        &mut (),
-    )
-    .unwrap();
+    let passed =
+        pass(&scene, &variants, tier, &mut frames, Some(calibration.round().unwrap()), &mut ())
+            .unwrap();
     for (regime, prices) in Regime::ALL.iter().zip(&passed.prices) {
         assert_eq!(prices.len(), variants.len());
         for (at, (variant, prices)) in variants.iter().zip(prices).enumerate() {
@@ -282,13 +242,9 @@ fn prices_and_terms_add_up() {
             }
         }
         for of in variants.iter().enumerate() {
-            let cost = cost(
-                (&scene.name, scene.bodies.len()),
-                of,
-                (&[&passed], &[&passed]),
-                *regime,
-            )
-            .unwrap();
+            let cost =
+                cost((&scene.name, scene.bodies.len()), of, (&[&passed], &[&passed]), *regime)
+                    .unwrap();
             let sum = cost.sum(Terms::recurring);
             let parts = cost.sum(|t| t.update) + cost.sum(|t| t.finding) + cost.sum(|t| t.test);
             assert!((sum / cost.frame.predicted.mean - 1.0).abs() < 1e-12);

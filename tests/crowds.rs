@@ -17,11 +17,7 @@ use sdop::volume::{Shape, ShapeSpec};
 const BOUND: usize = 8 * 9 * (1 << 16) + (1 << 20);
 
 fn shapes() -> Vec<Shape> {
-    let mesh = ProceduralShape::Box {
-        x: 1.0,
-        y: 1.5,
-        z: 2.0,
-    };
+    let mesh = ProceduralShape::Box { x: 1.0, y: 1.5, z: 2.0 };
     vec![Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()]
 }
 
@@ -55,21 +51,14 @@ fn ways() -> impl Iterator<Item = CullSettings> {
         let orders = if timed { Order::ALL } else { &Order::ALL[..1] };
         let with = move |updates| {
             let settings = settings.clone();
-            orders.iter().map(move |&order| CullSettings {
-                updates,
-                order,
-                ..settings.clone()
-            })
+            orders.iter().map(move |&order| CullSettings { updates, order, ..settings.clone() })
         };
         Updates::ALL.iter().copied().flat_map(with)
     })
 }
 
 fn culler(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings, threads: usize) -> Culler {
-    let culler = Culler::builder()
-        .settings(settings)
-        .threads(threads)
-        .worth_waking(0);
+    let culler = Culler::builder().settings(settings).threads(threads).worth_waking(0);
     culler.build(shapes, bodies).unwrap()
 }
 
@@ -175,10 +164,7 @@ fn memory_of_portions_is_bounded() {
         if sorts || (refines && settings.strategy != Strategy::SDopBatch) {
             continue;
         }
-        let settings = CullSettings {
-            overlap: Overlap::OneSided,
-            ..settings
-        };
+        let settings = CullSettings { overlap: Overlap::OneSided, ..settings };
         let mut culler = culler(&shapes, &bodies, &settings, 2);
         let pairs = culler.cull_in_portions(&bodies, |_| {}).unwrap();
         let reports = settings.strategy != Strategy::None;
@@ -233,10 +219,7 @@ fn pair_limit_reports_the_count() {
     culler.shrink_to_fit();
     culler.cull_up_to(&bodies, 10).unwrap_err();
     let bytes = culler.pair_bytes();
-    assert!(
-        bytes < 8 * 9 * (1 << 16),
-        "nothing is kept of a crowd: {bytes}"
-    );
+    assert!(bytes < 8 * 9 * (1 << 16), "nothing is kept of a crowd: {bytes}");
 }
 
 #[test]

@@ -122,10 +122,7 @@ fn truth_is_of_exact_places() {
     assert_eq!(meets(translations.as_deref()), [[0, 1]]);
     assert_eq!(meets(None), [[1, 2]]);
     // The nearest translations at which they touch, and at which they don't.
-    for (x, pairs) in [
-        (1_000_000_032.5, &[[0, 1]][..]),
-        (1_000_000_032.5_f64.next_up(), &[]),
-    ] {
+    for (x, pairs) in [(1_000_000_032.5, &[[0, 1]][..]), (1_000_000_032.5_f64.next_up(), &[])] {
         let mut places = translations.clone().unwrap();
         (places[1][0], places[2][0]) = (x, 0.0);
         assert_eq!(meets(Some(&places)), pairs, "{x}");
@@ -151,9 +148,7 @@ fn studies_in_f32_refuse_coarse_rounding() {
     let (_directory, file) = scene_file(&FAR, "");
     let error = file.build().unwrap_err();
     assert!(
-        error
-            .to_string()
-            .starts_with("far.toml:6:10: body 0: rounding its translation"),
+        error.to_string().starts_with("far.toml:6:10: body 0: rounding its translation"),
         "{error}"
     );
     let help = error.help().unwrap().to_string();
@@ -170,10 +165,7 @@ fn translations_beyond_the_limit_are_refused() {
     // 2^60 + 256, which f32 rounds to 2^60.
     let (_directory, file) = scene_file(&["0", "1152921504606847232"], "");
     let error = file.build_exact().unwrap_err().to_string();
-    assert!(
-        error.starts_with("far.toml:9:10: body 1: translation"),
-        "{error}"
-    );
+    assert!(error.starts_with("far.toml:9:10: body 1: translation"), "{error}");
 }
 
 /// The second body moves by a half per frame, which f32 doesn't notice there, and the third by 64,
@@ -207,26 +199,15 @@ fn records_hold_exact_translations() {
     .unwrap();
     recorder.finish().unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
-    assert!(
-        text.contains("\"translations\":[[1000000031.5,0.25,0.0],[1000000032.2,"),
-        "{text}"
-    );
+    assert!(text.contains("\"translations\":[[1000000031.5,0.25,0.0],[1000000032.2,"), "{text}");
     let frame = Reader::open(&path).unwrap().next_frame().unwrap().unwrap();
     assert_eq!(frame.translations, scene.fine.of(&scene.bodies));
     assert_eq!(frame.poses, FrameLine::poses(&scene.bodies));
     assert_eq!(frame.pairs, [[0, 1]]);
 
     for (from, to, problem) in [
-        (
-            "[1000000031.5,0.25,0.0],",
-            "",
-            "2 translations for 3 bodies",
-        ),
-        (
-            "[1000000032.2,",
-            "[1000000132.2,",
-            "body 1 has the translation",
-        ),
+        ("[1000000031.5,0.25,0.0],", "", "2 translations for 3 bodies"),
+        ("[1000000032.2,", "[1000000132.2,", "body 1 has the translation"),
         ("[1000000033.3,", "[1e300,", "body 2: translation"),
     ] {
         std::fs::write(&path, text.replace(from, to)).unwrap();

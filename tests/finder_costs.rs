@@ -62,11 +62,8 @@ impl Scene {
     ) -> Self {
         let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
         let shape = |&radius: &f32| {
-            let spec = ShapeSpec {
-                origin: Origin::Ball,
-                radius: Some(radius),
-                ..ShapeSpec::default()
-            };
+            let spec =
+                ShapeSpec { origin: Origin::Ball, radius: Some(radius), ..ShapeSpec::default() };
             Shape::build(&mesh, &spec).unwrap()
         };
         let (mut rng, mut bodies) = (ChaCha8Rng::seed_from_u64(8), Bodies::default());
@@ -74,26 +71,15 @@ impl Scene {
             let (shape, at) = place(i, &mut rng);
             bodies.push(shape as u32, i % 5 != 0, [0.0, 0.0, 0.0, 1.0], at);
         }
-        Self {
-            name,
-            shapes: radii.iter().map(shape).collect(),
-            bodies,
-        }
+        Self { name, shapes: radii.iter().map(shape).collect(), bodies }
     }
 
     fn culler(&self, finder: Finder, strategy: Strategy) -> Culler {
-        self.set(&CullSettings {
-            strategy,
-            pairs: finder,
-            ..CullSettings::all_pairs()
-        })
+        self.set(&CullSettings { strategy, pairs: finder, ..CullSettings::all_pairs() })
     }
 
     fn set(&self, settings: &CullSettings) -> Culler {
-        Culler::builder()
-            .settings(settings)
-            .build(&self.shapes, &self.bodies)
-            .unwrap()
+        Culler::builder().settings(settings).build(&self.shapes, &self.bodies).unwrap()
     }
 
     /// Moves every body to and fro by a tenth of the smallest radius.
@@ -104,12 +90,7 @@ impl Scene {
             let by = ((i + frame) % 16) as f32 - 8.0;
             for (axis, x) in t.iter_mut().enumerate() {
                 let sign = if i >> axis & 1 == 0 { step } else { -step };
-                *x = home[axis]
-                    + if bodies.dynamic[i] {
-                        sign * by.abs()
-                    } else {
-                        0.0
-                    };
+                *x = home[axis] + if bodies.dynamic[i] { sign * by.abs() } else { 0.0 };
             }
         }
     }
@@ -135,12 +116,8 @@ fn scenes() -> Vec<Scene> {
             let [x, y, _] = cube(rng, (n * 6.0).sqrt());
             (0, [x, y, x + 0.3 * y])
         }),
-        Scene::new("line", &[1.0], N, |_, rng| {
-            (0, [1.0, rng.random_range(0.0..n * 2.7), 2.0])
-        }),
-        Scene::new("diagonal", &[1.0], N, |_, rng| {
-            (0, [rng.random_range(0.0..n * 1.5); 3])
-        }),
+        Scene::new("line", &[1.0], N, |_, rng| (0, [1.0, rng.random_range(0.0..n * 2.7), 2.0])),
+        Scene::new("diagonal", &[1.0], N, |_, rng| (0, [rng.random_range(0.0..n * 1.5); 3])),
         Scene::new("clusters far apart", &[1.0], N, |i, rng| {
             let by = cube(rng, 21.0);
             let centre = [3e4, -1e4, 7e4].map(|x: f32| x * (i % 10) as f32);
@@ -207,10 +184,7 @@ fn finders_use_under_100_bytes() {
             let bytes = culler.finder_bytes();
             let each = bytes.saturating_sub(8192) / bodies.len();
             assert!(each <= 100, "{}, {finder}: {each} bytes a body", scene.name);
-            assert!(
-                bytes >= 16 * bodies.len(),
-                "{finder} holds its bodies' balls"
-            );
+            assert!(bytes >= 16 * bodies.len(), "{finder} holds its bodies' balls");
         }
     }
 }

@@ -18,10 +18,7 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(0x5851_f42d_4c95_7f2d)
-            .wrapping_add(0x1405_7b7e_f767_814f);
+        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -55,10 +52,7 @@ fn given<R>(numbers: impl FnOnce() -> R) -> R {
 fn shape(size: f64) -> Shape {
     let (mesh, spec) = given(|| {
         let torus = ProceduralShape::default_of("torus").unwrap();
-        let spec = ShapeSpec {
-            radius: Some(size as f32),
-            ..ShapeSpec::default()
-        };
+        let spec = ShapeSpec { radius: Some(size as f32), ..ShapeSpec::default() };
         (torus.build().unwrap(), spec)
     });
     Shape::build(&mesh, &spec).unwrap()

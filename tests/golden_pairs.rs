@@ -66,11 +66,7 @@ fn every_ordop_test_matches_record() {
                 let summary = summary(&scene, tier);
                 let hash = summary.pairs_sha256.as_deref().unwrap();
                 let seen = (summary.counters.reported, &hash[..16]);
-                assert_eq!(
-                    seen,
-                    (reported, golden),
-                    "{k} {overlap} {updates} in {tier}"
-                );
+                assert_eq!(seen, (reported, golden), "{k} {overlap} {updates} in {tier}");
             }
         }
     }
@@ -80,9 +76,7 @@ fn every_ordop_test_matches_record() {
 #[test]
 fn every_choice_has_golden_pairs() {
     let culling = Strategy::ALL.iter().copied();
-    let culling: Vec<_> = culling
-        .filter(|strategy| strategy.scheme().culls())
-        .collect();
+    let culling: Vec<_> = culling.filter(|strategy| strategy.scheme().culls()).collect();
     assert_eq!(STRATEGIES.map(|(strategy, ..)| strategy)[..], culling);
     for k in DirectionSet::ALL {
         assert!(OVERLAPS.iter().any(|row| row.0 == *k), "{k}");
@@ -105,35 +99,10 @@ const STRATEGIES: [(Strategy, u64, &str); 9] = [
 ];
 
 const OVERLAPS: [(DirectionSet, Overlap, u64, &str); 6] = [
-    (
-        DirectionSet::K6,
-        Overlap::TwoSided,
-        9343,
-        "d92b73219a646484",
-    ),
-    (
-        DirectionSet::K14,
-        Overlap::TwoSided,
-        6683,
-        "6f75b5c98b07fb7e",
-    ),
-    (
-        DirectionSet::K18,
-        Overlap::OneSided,
-        6406,
-        "49f468aed7c60fd9",
-    ),
-    (
-        DirectionSet::K18,
-        Overlap::TwoSided,
-        5874,
-        "d97f9551bfb7fc31",
-    ),
+    (DirectionSet::K6, Overlap::TwoSided, 9343, "d92b73219a646484"),
+    (DirectionSet::K14, Overlap::TwoSided, 6683, "6f75b5c98b07fb7e"),
+    (DirectionSet::K18, Overlap::OneSided, 6406, "49f468aed7c60fd9"),
+    (DirectionSet::K18, Overlap::TwoSided, 5874, "d97f9551bfb7fc31"),
     (DirectionSet::K18, Overlap::Full, 5721, "67db780da2b14ab0"),
-    (
-        DirectionSet::K26,
-        Overlap::TwoSided,
-        5402,
-        "4b9db0b9168cb392",
-    ),
+    (DirectionSet::K26, Overlap::TwoSided, 5402, "4b9db0b9168cb392"),
 ];

@@ -15,8 +15,7 @@ fn described(heading: &str) -> BTreeSet<String> {
     let (_, section) = guide.split_once(&format!("### {heading}\n")).unwrap();
     let section = section.split("\n#").next().unwrap();
     let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
-    rows.map(|row| row.split('`').next().unwrap().to_owned())
-        .collect()
+    rows.map(|row| row.split('`').next().unwrap().to_owned()).collect()
 }
 
 /// The keys that the error for a wrong key lists.
@@ -24,11 +23,7 @@ fn accepted(scene: &str) -> BTreeSet<String> {
     let error = SceneFile::parse(scene, "scene.toml", Path::new("."));
     let said = error.unwrap_err().to_string();
     let (_, list) = said.split_once(", expected ").unwrap();
-    list.split('`')
-        .skip(1)
-        .step_by(2)
-        .map(str::to_owned)
-        .collect()
+    list.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
 const WRONG: &str = "zzzzzzzzzzzz = 1\n";
@@ -126,14 +121,8 @@ fn guide_explains_every_column() {
         for column in table.lines().next().unwrap().split(',') {
             let first = column.split('.').next().unwrap();
             let stem = first.trim_end_matches("_low").trim_end_matches("_high");
-            let known = [column, first, stem]
-                .iter()
-                .any(|name| explained.contains(*name));
-            assert!(
-                known,
-                "{}: the guide doesn't explain {column}",
-                path.display()
-            );
+            let known = [column, first, stem].iter().any(|name| explained.contains(*name));
+            assert!(known, "{}: the guide doesn't explain {column}", path.display());
         }
     }
 }

@@ -24,10 +24,8 @@ type OrDopChoice = (DirectionSet, Axes);
 
 /// Every group for every or-DOP, with its exact answers.
 fn for_all(test: impl Fn(&str, &HardCaseGroup, OrDopChoice, &HardCases, &[Vec<Answers>]) + Sync) {
-    let jobs: Vec<_> = FILES
-        .iter()
-        .flat_map(|file| variants().map(move |variant| (file, variant)))
-        .collect();
+    let jobs: Vec<_> =
+        FILES.iter().flat_map(|file| variants().map(move |variant| (file, variant))).collect();
     jobs.par_iter().for_each(|((name, text), variant)| {
         let group = HardCaseGroup::parse(text).unwrap();
         let cases = group.cases(variant.0, variant.1).unwrap();
@@ -39,30 +37,19 @@ fn for_all(test: impl Fn(&str, &HardCaseGroup, OrDopChoice, &HardCases, &[Vec<An
 /// No way to cull misses a pair on the scalar tier and kernels agree on all.
 #[test]
 fn hard_cases_are_never_missed() {
-    let faster = Tier::available()
-        .into_iter()
-        .filter(|tier| *tier != Tier::SCALAR);
+    let faster = Tier::available().into_iter().filter(|tier| *tier != Tier::SCALAR);
     let faster: Vec<Tier> = faster.collect();
     for_all(|name, group, (k, axes), cases, answers| {
         let recorded = group.answers.get(&variant_name(k, axes));
-        assert_eq!(
-            recorded,
-            Some(&spell(answers)),
-            "{name}: the recorded answers"
-        );
+        assert_eq!(recorded, Some(&spell(answers)), "{name}: the recorded answers");
         known_by_construction(name, group, cases, answers);
         for (frames, answers) in cases.runs.iter().zip(answers) {
             let shapes = &cases.shapes;
-            let run = Run {
-                shapes,
-                frames,
-                answers,
-            };
+            let run = Run { shapes, frames, answers };
             let mut ledger = Ledger::default();
             // Flush-to-zero decides otherwise here and there, but never misses.
             for tier in [Tier::SCALAR, Tier::SCALAR_FLUSH] {
-                run.check((k, axes), &[Mode::plain(tier)], &mut ledger)
-                    .unwrap();
+                run.check((k, axes), &[Mode::plain(tier)], &mut ledger).unwrap();
             }
             let failure = ledger.failures.first();
             let failure = failure.map(|f| (&f.settings, f.mode, f.pair, f.missed));
@@ -90,10 +77,7 @@ fn lists(
 ) -> (Vec<Vec<[u32; 2]>>, sdop::counters::Counters) {
     let settings = settings(way.strategy, way, frames[0].len());
     let mut culler = culler(&cases.shapes.built, &frames[0], &settings, mode).unwrap();
-    let lists = frames
-        .iter()
-        .map(|frame| culler.cull(frame).unwrap().iter().collect())
-        .collect();
+    let lists = frames.iter().map(|frame| culler.cull(frame).unwrap().iter().collect()).collect();
     (lists, *culler.counters())
 }
 
@@ -108,10 +92,7 @@ fn more_threads_report_the_same_lists() {
         for way in ways(k, axes) {
             for frames in &cases.runs {
                 let alone = Mode::plain(Tier::detect());
-                let shared = Mode {
-                    threads: 3,
-                    ..alone
-                };
+                let shared = Mode { threads: 3, ..alone };
                 assert_eq!(
                     lists(&cases, frames, &way, shared),
                     lists(&cases, frames, &way, alone),
@@ -156,20 +137,11 @@ fn every_group_defeats_naive_tests() {
     let naive: Vec<_> = FILES
         .par_iter()
         .map(|(name, text)| {
-            (
-                name,
-                naive_misses(&HardCaseGroup::parse(text).unwrap())
-                    .unwrap()
-                    .0
-                    .total(),
-            )
+            (name, naive_misses(&HardCaseGroup::parse(text).unwrap()).unwrap().0.total())
         })
         .collect();
     let toothless: Vec<_> = naive.iter().filter(|(_, misses)| *misses == 0).collect();
-    assert!(
-        toothless.is_empty(),
-        "naive f32 misses nothing in {toothless:?}"
-    );
+    assert!(toothless.is_empty(), "naive f32 misses nothing in {toothless:?}");
     let recorded = std::fs::read_to_string("data/hard_cases/README.md").unwrap();
     assert_eq!(recorded, page(FILES.iter().copied()).unwrap());
 }
@@ -191,11 +163,7 @@ fn every_group_has_its_answers() {
         let group = HardCaseGroup::parse(text).unwrap();
         let expected: BTreeSet<String> =
             variants().map(|(k, axes)| variant_name(k, axes)).collect();
-        assert_eq!(
-            group.answers.keys().cloned().collect::<BTreeSet<_>>(),
-            expected,
-            "{name}"
-        );
+        assert_eq!(group.answers.keys().cloned().collect::<BTreeSet<_>>(), expected, "{name}");
         assert!(!group.why.is_empty(), "{name}");
     }
 }
@@ -213,13 +181,9 @@ fn hard_cases_fill_the_matrix() {
     let tiers = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
     for tiers in [tiers, vec![Tier::SCALAR]] {
         let rotation = Rotation::new(&tiers);
-        assert!(
-            FILES.len() >= rotation.modes().len(),
-            "more groups are needed"
-        );
-        let turns: Vec<_> = (0..FILES.len())
-            .flat_map(|n| variants().map(move |variant| (n, variant)))
-            .collect();
+        assert!(FILES.len() >= rotation.modes().len(), "more groups are needed");
+        let turns: Vec<_> =
+            (0..FILES.len()).flat_map(|n| variants().map(move |variant| (n, variant))).collect();
         let judge = |(n, variant)| group(n, &any, variant, &rotation).unwrap();
         let ledgers: Vec<Ledger> = turns.into_par_iter().map(judge).collect();
         let mut all = Ledger::default();
@@ -300,12 +264,8 @@ fn what_must_be_refused_is_refused() {
     }
     for case in refused.mesh {
         let obj = sdop::mesh::MeshFormat::Obj;
-        let read = sdop::mesh::read_bytes(
-            "refused",
-            obj,
-            case.text.as_bytes(),
-            &ReadOptions::default(),
-        );
+        let read =
+            sdop::mesh::read_bytes("refused", obj, case.text.as_bytes(), &ReadOptions::default());
         case.assert_refused(read);
     }
 }
@@ -313,8 +273,5 @@ fn what_must_be_refused_is_refused() {
 /// An invalid group is rejected.
 #[test]
 fn invalid_group_is_rejected() {
-    assert!(matches!(
-        HardCaseGroup::parse("why = 3"),
-        Err(HardCaseError::File(_))
-    ));
+    assert!(matches!(HardCaseGroup::parse("why = 3"), Err(HardCaseError::File(_))));
 }

@@ -1,10 +1,7 @@
 //! The estimators of `sdop tradeoff` compared with known answers from integral geometry and from
 //! the literature.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot build its input has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot build its input has failed")]
 
 use std::f64::consts::PI;
 
@@ -25,16 +22,11 @@ fn cuboid([x, y, z]: [f32; 3]) -> Shape {
 }
 
 fn crowds(shapes: &[Shape], stretch: f32, pairs: u32) -> Vec<Crowd> {
-    (0..BATCHES)
-        .map(|batch| Crowd::new(shapes, stretch, pairs / BATCHES as u32, batch))
-        .collect()
+    (0..BATCHES).map(|batch| Crowd::new(shapes, stretch, pairs / BATCHES as u32, batch)).collect()
 }
 
 fn ordops(shapes: &[Shape], k: DirectionSet) -> Vec<OrDop> {
-    shapes
-        .iter()
-        .map(|s| s.ordop_along(Axes::Principal, k))
-        .collect()
+    shapes.iter().map(|s| s.ordop_along(Axes::Principal, k)).collect()
 }
 
 /// (2V + SM/2π)/(32πR³/3) of a box: its mean width integral is M = π(x + y + z).
@@ -72,9 +64,8 @@ fn boxes_match_minkowski_volume() {
 #[test]
 fn six_axes_keep_seven_percent() {
     let mut draws = Stream::new(7, 0);
-    let shapes: Vec<Shape> = (0..200)
-        .map(|_| cuboid([(); 3].map(|()| draws.between(0.05, 1.0))))
-        .collect();
+    let shapes: Vec<Shape> =
+        (0..200).map(|_| cuboid([(); 3].map(|()| draws.between(0.05, 1.0)))).collect();
     let boxes = ordops(&shapes, DirectionSet::K6);
     let tier = Tier::detect();
     let kept: Vec<f64> = crowds(&shapes, 1.0, 2 * PAIRS)
@@ -96,12 +87,8 @@ fn six_axes_keep_seven_percent() {
 /// that shows the count can be large.
 #[test]
 fn ordops_rarely_meet_outside_spheres() {
-    for (shape, limit) in [
-        ("cube", 3e-4),
-        ("box 1:1:2", 3e-4),
-        ("l-shape", 3e-4),
-        ("plate", 3e-4),
-    ] {
+    for (shape, limit) in [("cube", 3e-4), ("box 1:1:2", 3e-4), ("l-shape", 3e-4), ("plate", 3e-4)]
+    {
         let share = outside(shape);
         assert!(share <= limit, "{shape}: {share}");
     }

@@ -34,12 +34,8 @@ fn bracket() -> Shape {
 /// Small whole numbers as a quaternion, and eighths as a translation: exact in every language.
 fn pose(i: u32) -> ([f32; 4], [f32; 3]) {
     let whole = |n: u32, less: i16| f32::from(n as i16 - less);
-    let rotation = [
-        whole(7 * i % 13, 6),
-        whole(5 * i % 11, 5),
-        whole(3 * i % 7, 3),
-        whole(i % 4, -1),
-    ];
+    let rotation =
+        [whole(7 * i % 13, 6), whole(5 * i % 11, 5), whole(3 * i % 7, 3), whole(i % 4, -1)];
     let translation = [131 * i % 509, 577 * i % 521, 29 * i % 503];
     (rotation, translation.map(|n| whole(n, 0) / 8.0))
 }
@@ -59,11 +55,7 @@ fn world(shape: Shape) -> (World, HashMap<BodyId, u32>) {
     let mut insert = |i: u32| {
         let (rotation, translation) = pose(i);
         let body = Body::at(0, rotation, translation.map(f64::from));
-        let body = if i.is_multiple_of(5) {
-            body.fixed()
-        } else {
-            body
-        };
+        let body = if i.is_multiple_of(5) { body.fixed() } else { body };
         (world.insert(body).unwrap(), i)
     };
     let numbers = (0..BODIES).map(&mut insert).collect();
@@ -104,10 +96,7 @@ fn queries_have_pythons_hash() {
 #[test]
 fn parts_have_pythons_hash() {
     let shapes = [bracket()];
-    let parts = [0.0, 1.5, 3.0].map(|z| Part {
-        translation: [0.0, z, z],
-        ..Part::default()
-    });
+    let parts = [0.0, 1.5, 3.0].map(|z| Part { translation: [0.0, z, z], ..Part::default() });
     let compound = Compound::build("three", &shapes, &parts).unwrap();
     let (mut world, numbers) = world(compound.shape().clone());
     let mut culler = PartCuller::new();
@@ -115,8 +104,7 @@ fn parts_have_pythons_hash() {
     world.cull().unwrap();
     let pairs = culler.cull(&world).unwrap();
     assert!(pairs.len() > 1000);
-    let rows = pairs
-        .iter()
-        .flat_map(|pair| [pair.bodies.map(|id| numbers[&id]), pair.parts].concat());
+    let rows =
+        pairs.iter().flat_map(|pair| [pair.bodies.map(|id| numbers[&id]), pair.parts].concat());
     assert_eq!(hash(rows.collect::<Vec<_>>()), PARTS);
 }

@@ -89,7 +89,8 @@ fn starts<'a>(source: &'a str, word: &str, name: &str) -> impl Iterator<Item = &
         .into_iter()
 }
 
-/// A function or constant, `name` or `Type::name`, without comments and white space.
+/// A function or constant, `name` or `Type::name`, without comments, and without what formatting
+/// adds or removes.
 fn item(source: &str, name: &str) -> Option<String> {
     let source = bare(source);
     let found = match name.split_once("::") {
@@ -98,7 +99,40 @@ fn item(source: &str, name: &str) -> Option<String> {
             .find_map(|block| declared(block, name)),
         None => declared(&source, name),
     };
-    found.map(|text| text.split_whitespace().collect())
+    found.map(|text| without_layout(text.split_whitespace().collect()))
+}
+
+/// `text` has no white space. Formatting also sets a comma after the last of a list, and braces
+/// around the single expression of a closure or of an arm of `match`.
+fn without_layout(mut text: String) -> String {
+    let mut from = 0;
+    while let Some(at) = text[from..].find("=>{").map(|at| from + at + 2) {
+        from = at;
+        if let Some(inner) = single_expression(&text[at..]) {
+            let end = at + inner.len() + 2;
+            let comma = if text[end..].starts_with(',') { "" } else { "," };
+            text.replace_range(at..end, &format!("{inner}{comma}"));
+        }
+    }
+    from = 0;
+    while let Some(at) = text[from..].find("|{").map(|at| from + at + 1) {
+        from = at;
+        if let Some(inner) = single_expression(&text[at..]) {
+            text.replace_range(at..at + inner.len() + 2, &inner);
+        }
+    }
+    let closed = |(letter, next): (char, Option<char>)| {
+        letter != ',' || !matches!(next, Some(')' | ']' | '}'))
+    };
+    let next = text.chars().skip(1).map(Some).chain([None]);
+    text.chars().zip(next).filter(|&pair| closed(pair)).map(|(letter, _)| letter).collect()
+}
+
+/// What is in the block at the start of `text`, if it has no statement.
+fn single_expression(text: &str) -> Option<String> {
+    let block = whole(text, true)?;
+    let inner = &block[1..block.len() - 1];
+    (!inner.is_empty() && !inner.contains(';')).then(|| inner.to_owned())
 }
 
 fn declared<'a>(text: &'a str, name: &str) -> Option<&'a str> {
@@ -119,12 +153,7 @@ fn digest(file: &str, name: &str) -> String {
 fn lemmas_were_read_with_this_code() {
     let mut changed = Vec::new();
     let mut renewed = fs::read_to_string(TABLE).unwrap();
-    for LemmaSources {
-        lemma,
-        scripts,
-        code,
-    } in table().about
-    {
+    for LemmaSources { lemma, scripts, code } in table().about {
         for line in code {
             let words: Vec<&str> = line.split(' ').collect();
             let [file, name, read] = words[..] else {
@@ -226,14 +255,16 @@ fn digest_ignores_layout() {
     let near = item(source, "Cells::near").unwrap();
     assert_eq!(near, "fnnear(x:f64)->f64{ifx>0.0{x+1.0}else{0.0}}");
     assert_eq!(item(source, "near").unwrap(), "fnnear(x:f64)->f64{x}");
-    assert_eq!(
-        item(source, "SIZES").unwrap(),
-        "constSIZES:[f64;2]=[1.0,2.0];"
-    );
+    assert_eq!(item(source, "SIZES").unwrap(), "constSIZES:[f64;2]=[1.0,2.0];");
     assert_eq!(item(source, "Cells::STEP").unwrap(), "constSTEP:f64=3.0;");
     assert_eq!(item(source, "Cells::far"), None);
     let other = source.replace("x + 1.0", "x // one\n + 1.0");
     assert_eq!(item(&other, "Cells::near"), Some(near.clone()));
+    let arms = |text: &str| without_layout(text.split_whitespace().collect());
+    let one_line = arms("match x { Some(y) => f(y), None => g(|z| z + 1, 2) }");
+    let many = "match x {\n Some(y) => {\n f(\n y,\n )\n }\n None => g(\n |z| {\n z + 1\n },\n 2,\n ),\n }";
+    assert_eq!(one_line, arms(many));
+    assert_ne!(one_line, arms(&many.replace("f(", "f(y);\n f(")));
     let other = source.replace("x + 1.0", "x + 2.0");
     assert_ne!(item(&other, "Cells::near"), Some(near));
 }

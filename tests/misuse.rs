@@ -22,22 +22,12 @@ const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
 /// A cube about its body's origin, and one next to it, whose ball's centre turns with the body.
 fn shapes() -> Vec<Shape> {
-    let cube = ProceduralShape::Box {
-        x: 1.0,
-        y: 1.0,
-        z: 1.0,
-    };
+    let cube = ProceduralShape::Box { x: 1.0, y: 1.0, z: 1.0 };
     let cube = cube.build().unwrap();
     let beside = cube.vertices.iter().map(|&[x, y, z]| [x + 3.0, y, z]);
     let beside = TriangleMesh::new("beside", beside, cube.triangles.clone()).unwrap();
-    let file = ShapeSpec {
-        origin: Origin::File,
-        ..ShapeSpec::default()
-    };
-    vec![
-        Shape::build(&cube, &ShapeSpec::default()).unwrap(),
-        Shape::build(&beside, &file).unwrap(),
-    ]
+    let file = ShapeSpec { origin: Origin::File, ..ShapeSpec::default() };
+    vec![Shape::build(&cube, &ShapeSpec::default()).unwrap(), Shape::build(&beside, &file).unwrap()]
 }
 
 /// Cubes in a row, each touching the next; every tenth is static.
@@ -63,8 +53,7 @@ fn cullers(bodies: &Bodies) -> Vec<Culler> {
         };
         Finder::ALL.iter().map(of)
     });
-    ways.map(|way| way.build(&shapes, bodies).unwrap())
-        .collect()
+    ways.map(|way| way.build(&shapes, bodies).unwrap()).collect()
 }
 
 /// What is wrong with a body, as an error states it.
@@ -80,18 +69,12 @@ fn construction_names_what_is_wrong() {
         Culler::new(&shapes(), &bodies).unwrap_err().to_string()
     };
     assert_eq!(refusal(|b| b.shape[7] = 2), "body 7: shape 2 of 2");
-    assert_eq!(
-        refusal(|b| b.rotation[7] = [0.0; 4]),
-        "body 7: rotation [0.0, 0.0, 0.0, 0.0]"
-    );
+    assert_eq!(refusal(|b| b.rotation[7] = [0.0; 4]), "body 7: rotation [0.0, 0.0, 0.0, 0.0]");
     assert_eq!(
         refusal(|b| b.translation[7] = [0.0, f32::INFINITY, 0.0]),
         "body 7: translation [0.0, inf, 0.0]"
     );
-    assert_eq!(
-        refusal(|b| b.dynamic.truncate(3)),
-        "body 3: dynamic has 3 entries for 200 bodies"
-    );
+    assert_eq!(refusal(|b| b.dynamic.truncate(3)), "body 3: dynamic has 3 entries for 200 bodies");
 }
 
 /// A shape of no sound size is refused by name.
@@ -198,23 +181,13 @@ fn invalid_translation_is_an_error() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {
         let wanted = culler.cull(&bodies).unwrap().sorted();
-        for far in [
-            f32::INFINITY,
-            f32::NEG_INFINITY,
-            f32::NAN,
-            f32::MAX,
-            -1.2e18,
-        ] {
+        for far in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MAX, -1.2e18] {
             let mut lost = bodies.clone();
             lost.translation[44][1] = far;
             let told = refused(culler.cull(&lost));
             assert!(told.starts_with("body 44: translation ["), "{told}");
             assert_eq!(culler.pairs().len(), 0);
-            assert_eq!(
-                culler.cull(&bodies).unwrap().sorted(),
-                wanted,
-                "after {far}"
-            );
+            assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted, "after {far}");
         }
         // All of them, apart by as much as f32 can say.
         let mut apart = bodies.clone();
@@ -239,9 +212,8 @@ fn refused_frame_has_no_effect() {
     let set = |frame: usize| if frame < 2 { &apart } else { &together };
     for culler in cullers(&apart) {
         let mut undisturbed = culler.clone();
-        let wanted: Vec<_> = (0..FRAMES)
-            .map(|frame| undisturbed.cull(set(frame)).unwrap().sorted())
-            .collect();
+        let wanted: Vec<_> =
+            (0..FRAMES).map(|frame| undisturbed.cull(set(frame)).unwrap().sorted()).collect();
         for at in 0..FRAMES {
             for far in [f32::INFINITY, f32::NAN, f32::MAX, -1.2e18] {
                 let mut culler = culler.clone();
@@ -301,11 +273,7 @@ fn static_poses_wait_for_refresh() {
         moved.translation[50] = [1000.0, 0.0, 0.0];
         // Long enough for the grid to put its bodies into another order.
         for frame in 0..40 {
-            assert_eq!(
-                culler.cull(&moved).unwrap().sorted(),
-                wanted,
-                "frame {frame}"
-            );
+            assert_eq!(culler.cull(&moved).unwrap().sorted(), wanted, "frame {frame}");
         }
         let told = culler.refresh(&moved).unwrap_err().to_string();
         assert_eq!(told, "body 44: shape 7 of 2");
@@ -360,10 +328,7 @@ fn mixed_directions_are_rejected() {
     let mut unlike = shapes();
     unlike[1] = unlike[1].clone().with_directions(sdop::DirectionSet::K26);
     let told = Culler::new(&unlike, &row(3)).unwrap_err().to_string();
-    assert_eq!(
-        told,
-        "shape `beside` has an or-DOP of k = 26, shapes before it have k = 18"
-    );
+    assert_eq!(told, "shape `beside` has an or-DOP of k = 26, shapes before it have k = 18");
     let boxes = Culler::builder().strategy(Strategy::Obb);
     boxes.build(&unlike, &row(3)).unwrap();
 }

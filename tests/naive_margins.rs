@@ -30,18 +30,10 @@ fn touches(bits: u32, count: usize) -> Vec<Touch> {
         if length >> (bits - 1) != 1 {
             continue;
         }
-        let way = [
-            m * m + n * n - p * p - q * q,
-            2 * (m * q + n * p),
-            2 * (n * q - m * p),
-        ];
+        let way = [m * m + n * n - p * p - q * q, 2 * (m * q + n * p), 2 * (n * q - m * p)];
         let least = (length - (1 << 24)).max(0);
         let radius = least + below(length + 1 - 2 * least);
-        let first = if bits > 24 {
-            way.map(|x| -x / 2)
-        } else {
-            [0; 3]
-        };
+        let first = if bits > 24 { way.map(|x| -x / 2) } else { [0; 3] };
         touches.push(Touch {
             centres: [first, [0, 1, 2].map(|i| first[i] + way[i])],
             radii: [radius, length - radius],
@@ -60,11 +52,7 @@ fn misses(touches: &[Touch], exponent: i32, stored: impl Fn(f32) -> f32) -> usiz
     let culled = |touch: &&Touch| {
         let way = [0, 1, 2].map(|i| i128::from(touch.centres[1][i] - touch.centres[0][i]));
         let sum = i128::from(touch.radii[0] + touch.radii[1]);
-        assert_eq!(
-            way.iter().map(|x| x * x).sum::<i128>(),
-            sum * sum,
-            "an exact touch"
-        );
+        assert_eq!(way.iter().map(|x| x * x).sum::<i128>(), sum * sum, "an exact touch");
         let [a, b] = touch.centres.map(|centre| centre.map(number));
         let [x, y, z] = [0, 1, 2].map(|i| b[i] - a[i]);
         let s = stored(number(touch.radii[0])) + stored(number(touch.radii[1]));
@@ -97,11 +85,7 @@ fn subnormal_sizes_miss_nothing() {
     let touches = touches(25, 20_000);
     // Squares underflow below 2⁻⁷⁵, at numbers of some 2⁻⁹⁹·2²⁴.
     for exponent in [-149, -120, -105, -100, -95, -90, -60, 0, 36] {
-        assert_eq!(
-            misses(&touches, exponent, inflate_radius),
-            0,
-            "scale 2^{exponent}"
-        );
+        assert_eq!(misses(&touches, exponent, inflate_radius), 0, "scale 2^{exponent}");
     }
     let floorless = |r: f32| r * RADIUS_FACTOR;
     let found = [-95, -60].map(|exponent| misses(&touches, exponent, floorless));

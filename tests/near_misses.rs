@@ -60,11 +60,7 @@ fn frame(shapes: &Shapes, (probe, partners): &DrawnContacts) -> Bodies {
             add(&mut bodies, probe, true);
         }
         if let Some(translation) = contact.place(shapes, probe, *shape, *rotation) {
-            let partner = PlacedShape {
-                shape: *shape,
-                rotation: *rotation,
-                translation,
-            };
+            let partner = PlacedShape { shape: *shape, rotation: *rotation, translation };
             add(&mut bodies, &partner, false);
         }
     }
@@ -93,11 +89,7 @@ fn never_misses(tier: Tier) -> Ledger {
             let mut ledger = ledger.borrow_mut();
             ledger.note(&answers[0]);
             let frames = [bodies];
-            let run = Run {
-                shapes,
-                frames: &frames,
-                answers: &answers,
-            };
+            let run = Run { shapes, frames: &frames, answers: &answers };
             let modes = rotation.turn(turn.replace(turn.get() + 1));
             run.check(*variant, &modes, &mut ledger).unwrap();
             if let Some(failure) = ledger.failures.pop() {

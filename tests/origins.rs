@@ -30,17 +30,9 @@ type Pose = ([f32; 4], [f32; 3]);
 
 /// Two arms of a corner that is the origin.
 fn bracket() -> TriangleMesh {
-    let form = ProceduralShape::LShape {
-        x: 2.0,
-        y: 1.5,
-        arm: 0.25,
-        thickness: 0.25,
-    };
+    let form = ProceduralShape::LShape { x: 2.0, y: 1.5, arm: 0.25, thickness: 0.25 };
     let mut mesh = form.build().unwrap();
-    let least = mesh
-        .vertices
-        .iter()
-        .fold(glam::Vec3::INFINITY, |m, v| m.min(glam::Vec3::from(*v)));
+    let least = mesh.vertices.iter().fold(glam::Vec3::INFINITY, |m, v| m.min(glam::Vec3::from(*v)));
     for vertex in &mut mesh.vertices {
         *vertex = (glam::Vec3::from(*vertex) - least).to_array();
     }
@@ -51,9 +43,7 @@ fn bracket() -> TriangleMesh {
 fn poses() -> Vec<Pose> {
     let mut random = ChaCha8Rng::seed_from_u64(40);
     let mut unit = move || (random.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0;
-    (0..POSES)
-        .map(|_| ([(); 4].map(|()| unit()), [(); 3].map(|()| 0.8 * unit())))
-        .collect()
+    (0..POSES).map(|_| ([(); 4].map(|()| unit()), [(); 3].map(|()| 0.8 * unit()))).collect()
 }
 
 /// Which poses let the brackets meet, exactly, the vertices being the file's.
@@ -77,18 +67,11 @@ fn assert_nothing_missed(what: &str, may_touch: impl FnMut(&Pose) -> bool) {
     let poses = poses();
     let meets = meeting(&bracket(), &poses);
     let reported: Vec<bool> = poses.iter().map(may_touch).collect();
-    let missed = meets
-        .iter()
-        .zip(&reported)
-        .filter(|&(m, r)| *m && !r)
-        .count();
+    let missed = meets.iter().zip(&reported).filter(|&(m, r)| *m && !r).count();
     let meet = meets.iter().filter(|meets| **meets).count();
     assert_eq!(missed, 0, "{what}: missed of {meet} pairs that meet");
     let spared = reported.iter().filter(|reported| !**reported).count();
-    assert!(
-        meet > 100 && spared > 20,
-        "{what}: {meet} meet, {spared} spared"
-    );
+    assert!(meet > 100 && spared > 20, "{what}: {meet} meet, {spared} spared");
 }
 
 fn bodies(pose: &Pose) -> Bodies {
@@ -134,11 +117,7 @@ fn the_pages_use_the_default() {
     for page in ["README.md", "src/lib.rs", "src/world/mod.rs"] {
         let text = std::fs::read_to_string(page).unwrap();
         let built = text.matches("Shape::build(").count();
-        assert_eq!(
-            built,
-            text.matches("&ShapeSpec::default())").count(),
-            "{page}"
-        );
+        assert_eq!(built, text.matches("&ShapeSpec::default())").count(), "{page}");
         assert!(built > 0, "{page}");
     }
 }
@@ -147,10 +126,7 @@ fn the_pages_use_the_default() {
 fn the_examples_keep_the_origin() {
     let mesh = bracket();
     assert_nothing_missed("cull.rs", by_culler(cull::volumes(&mesh).unwrap()));
-    assert_nothing_missed(
-        "world_glam.rs",
-        by_world(world_glam::volumes(&mesh).unwrap()),
-    );
+    assert_nothing_missed("world_glam.rs", by_world(world_glam::volumes(&mesh).unwrap()));
 }
 
 #[test]

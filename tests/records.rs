@@ -76,14 +76,8 @@ fn a_written_record_reads_back() {
     let reader = Reader::new(text.as_bytes(), "r.ndjson").unwrap();
     let header = reader.header();
     assert_eq!((header.scene.as_str(), header.side), ("small", Some(4.0)));
-    let lists = |name: &str| {
-        header
-            .effects
-            .as_ref()
-            .unwrap()
-            .iter()
-            .any(|e| e.name == name && e.on)
-    };
+    let lists =
+        |name: &str| header.effects.as_ref().unwrap().iter().any(|e| e.name == name && e.on);
     assert!(lists("motion") && lists("walls") && !lists("gravity"));
     let written = json::to_string(header).unwrap();
     assert_eq!(text.lines().next(), Some(written.as_str()));
@@ -143,25 +137,16 @@ fn other_files_are_told_from_records() {
         ("", "the first line is empty"),
         ("\n\n", "the first line is empty"),
         ("name = \"scene\"\n", "expected ident"),
-        (
-            "{\"format\":\"glTF\",\"version\":2}\n",
-            "its format is \"glTF\"",
-        ),
+        ("{\"format\":\"glTF\",\"version\":2}\n", "its format is \"glTF\""),
         ("{}\n", "missing field `format`"),
     ] {
         let (message, help) = refusal(text);
-        assert!(
-            message.starts_with("r.ndjson:1: not a record: "),
-            "{message}"
-        );
+        assert!(message.starts_with("r.ndjson:1: not a record: "), "{message}");
         assert!(message.contains(problem), "{message}");
         assert!(help.contains("sdop run SCENE --record FILE"), "{help}");
     }
     let (message, help) = refusal(&altered("\"version\":1", "\"version\":7"));
-    assert_eq!(
-        message,
-        "r.ndjson:1: the record has version 7; this program reads version 1"
-    );
+    assert_eq!(message, "r.ndjson:1: the record has version 7; this program reads version 1");
     assert!(help.contains("write it again"), "{help}");
 }
 
@@ -170,32 +155,20 @@ fn other_files_are_told_from_records() {
 fn contradictory_header_is_rejected() {
     let record = record();
     let body = record.find("{\"shape\":0").unwrap();
-    let seven = format!(
-        "{}{}",
-        &record[..body],
-        record[body..].replacen("\"shape\":0", "\"shape\":7", 1)
-    );
+    let seven =
+        format!("{}{}", &record[..body], record[body..].replacen("\"shape\":0", "\"shape\":7", 1));
     let needle = record.find("\"triangles\":[[").unwrap() + "\"triangles\":[[".len();
-    let outside = format!(
-        "{}99,{}",
-        &record[..needle],
-        record[needle..].split_once(',').unwrap().1
-    );
+    let outside =
+        format!("{}99,{}", &record[..needle], record[needle..].split_once(',').unwrap().1);
     for (text, problem) in [
         (seven, "r.ndjson:1: body 0: shape 7 of"),
         (outside, "shape box: triangle 0 is [99, "),
-        (
-            altered("\"ordop\":{\"k\":18", "\"ordop\":{\"k\":17"),
-            "no or-DOP has k = 17",
-        ),
+        (altered("\"ordop\":{\"k\":18", "\"ordop\":{\"k\":17"), "no or-DOP has k = 17"),
         (
             altered("\"ordop\":{\"k\":18", "\"ordop\":{\"k\":26"),
             "k = 26 takes 13 slabs; it has 9 lower and 9 upper ends",
         ),
-        (
-            altered("\"ball\":[0.0,", "\"ball\":[1e39,"),
-            "r.ndjson:1: column ",
-        ),
+        (altered("\"ball\":[0.0,", "\"ball\":[1e39,"), "r.ndjson:1: column "),
         (altered("\"seed\":", "\"sEed\":"), "r.ndjson:1: column "),
     ] {
         let (message, help) = refusal(&text);
@@ -216,52 +189,19 @@ fn invalid_frame_names_its_line() {
         serde_json::to_string(&frame).unwrap()
     };
     for (line, problem) in [
-        (
-            with(&|f| f.frame = 1),
-            "r.ndjson:4: frame 1 follows frame 1",
-        ),
-        (
-            with(&|f| f.poses.truncate(6)),
-            "r.ndjson:4: frame 2 has 6 poses for 7 bodies",
-        ),
-        (
-            with(&|f| f.poses[3][..4].fill(0.0)),
-            "r.ndjson:4: frame 2: body 3: rotation",
-        ),
-        (
-            with(&|f| f.poses[3][5] = 1e30),
-            "r.ndjson:4: frame 2: body 3: translation",
-        ),
-        (
-            with(&|f| f.pairs = vec![[1, 1]]),
-            "frame 2, pairs: [1,1] doesn't have the smaller",
-        ),
-        (
-            with(&|f| f.pairs = vec![[1, 7]]),
-            "frame 2, pairs: [1,7] of 7 bodies",
-        ),
-        (
-            with(&|f| f.pairs = vec![[5, 6]]),
-            "frame 2, pairs: [5,6] are both static",
-        ),
-        (
-            with(&|f| f.pairs = vec![[0, 1], [0, 1]]),
-            "frame 2, pairs: [0,1] follows [0,1]",
-        ),
-        (
-            with(&|f| f.meets = Some(vec![[0, 3], [0, 2]])),
-            "frame 2, meets: [0,2] follows [0,3]",
-        ),
-        (
-            "{\"frame\":2}".to_owned(),
-            "r.ndjson:4: column 11: missing field `poses`",
-        ),
+        (with(&|f| f.frame = 1), "r.ndjson:4: frame 1 follows frame 1"),
+        (with(&|f| f.poses.truncate(6)), "r.ndjson:4: frame 2 has 6 poses for 7 bodies"),
+        (with(&|f| f.poses[3][..4].fill(0.0)), "r.ndjson:4: frame 2: body 3: rotation"),
+        (with(&|f| f.poses[3][5] = 1e30), "r.ndjson:4: frame 2: body 3: translation"),
+        (with(&|f| f.pairs = vec![[1, 1]]), "frame 2, pairs: [1,1] doesn't have the smaller"),
+        (with(&|f| f.pairs = vec![[1, 7]]), "frame 2, pairs: [1,7] of 7 bodies"),
+        (with(&|f| f.pairs = vec![[5, 6]]), "frame 2, pairs: [5,6] are both static"),
+        (with(&|f| f.pairs = vec![[0, 1], [0, 1]]), "frame 2, pairs: [0,1] follows [0,1]"),
+        (with(&|f| f.meets = Some(vec![[0, 3], [0, 2]])), "frame 2, meets: [0,2] follows [0,3]"),
+        ("{\"frame\":2}".to_owned(), "r.ndjson:4: column 11: missing field `poses`"),
         (lines[3].replacen("[[", "[[null,", 1), "r.ndjson:4: column "),
         (lines[3].replacen("[[", "[[1e39,", 1), "r.ndjson:4: column "),
-        (
-            "\u{fffd}".to_owned(),
-            "r.ndjson:4: column 1: expected value",
-        ),
+        ("\u{fffd}".to_owned(), "r.ndjson:4: column 1: expected value"),
     ] {
         let text = [&lines[..3], &[line.as_str()]].concat().join("\n");
         let (message, help) = refusal(&text);
@@ -288,13 +228,7 @@ fn truncated_record_keeps_whole_frames() {
             let error = reader.next_frame().unwrap_err();
             let message = format!("r.ndjson:{}: the file ends inside this line", whole + 2);
             assert_eq!(error.to_string(), message);
-            assert!(
-                error
-                    .help()
-                    .unwrap()
-                    .to_string()
-                    .contains("cut the line off")
-            );
+            assert!(error.help().unwrap().to_string().contains("cut the line off"));
         }
     }
     for end in (0..header).step_by(997) {

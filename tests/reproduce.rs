@@ -29,10 +29,7 @@ fn scenes() -> PathBuf {
 
 /// A few frames of the smallest scene and of the crowded one.
 fn plan(seeds: u64, tier: Tier) -> ExperimentPlan {
-    let effort = Effort {
-        turns: 1,
-        builds: 1,
-    };
+    let effort = Effort { turns: 1, builds: 1 };
     let mut plan = ExperimentPlan::new(&scenes(), seeds, 5, effort, tier);
     plan.names = vec![PaperScene::Paper50, PaperScene::Crowded500];
     plan
@@ -64,10 +61,7 @@ fn counts_and_hashes_are_golden() {
 
 #[test]
 fn every_tier_counts_the_same() {
-    let scene = SceneFile::read(&scenes().join("paper-150.toml"))
-        .unwrap()
-        .build()
-        .unwrap();
+    let scene = SceneFile::read(&scenes().join("paper-150.toml")).unwrap().build().unwrap();
     let of = |tier| {
         let runs = run_scene(&scene, Strategy::ALL.split_at(6).0, 6, tier).unwrap();
         runs.into_iter()
@@ -100,11 +94,7 @@ fn units_joined_have_the_golden_counts() {
     let counts = |results: &Results| {
         let of = |run: &StrategyRun| (run.scene.clone(), run.seed, run.strategy, run.counters);
         let counts: Vec<_> = results.runs.iter().map(of).collect();
-        (
-            counts,
-            results.survival.clone(),
-            results.volumes_sha256.clone(),
-        )
+        (counts, results.survival.clone(), results.volumes_sha256.clone())
     };
     assert_eq!(counts(&joined), counts(&whole));
     let hashes = |results: &Results| -> Vec<_> {
@@ -120,10 +110,7 @@ fn units_joined_have_the_golden_counts() {
 /// whatever they wait for.
 #[test]
 fn pair_loops_match_the_culler() {
-    let scene = SceneFile::read(&scenes().join("crowded-500.toml"))
-        .unwrap()
-        .build()
-        .unwrap();
+    let scene = SceneFile::read(&scenes().join("crowded-500.toml")).unwrap().build().unwrap();
     let variant = Variant::strategy(&scene.cull, Strategy::SDopSequential);
     let mut culling = variant.culling(&scene, Tier::detect()).unwrap();
     culling.frame(&scene.bodies);
@@ -152,9 +139,8 @@ fn interpretations_are_swept_from_the_scenes() {
     assert_eq!(found.len(), 3 * 2 * 2 * 4 * 2 * 3);
     assert!(found.is_sorted_by(|a, b| a.likelihood >= b.likelihood));
     let file = SceneFile::read(&scenes().join("paper-300.toml")).unwrap();
-    let run = run_scene(&file.build().unwrap(), &[Strategy::SDopBatch], 2, plan.tier)
-        .unwrap()
-        .remove(0);
+    let run =
+        run_scene(&file.build().unwrap(), &[Strategy::SDopBatch], 2, plan.tier).unwrap().remove(0);
     let percent = |reading: Reading, strategy| reading.percentage(strategy, &run.counters, 2, 300);
     let as_run = [
         percent(Reading::OwnTests, Strategy::Sphere),
@@ -185,14 +171,9 @@ fn sphere_percentage_matches_closed_form() {
         let mut expected = 0.0;
         for seed in 1..=24 {
             file.spec.seed = seed;
-            let run = run_scene(
-                &file.build().unwrap(),
-                &[Strategy::Sphere],
-                240,
-                Tier::detect(),
-            )
-            .unwrap()
-            .remove(0);
+            let run = run_scene(&file.build().unwrap(), &[Strategy::Sphere], 240, Tier::detect())
+                .unwrap()
+                .remove(0);
             percentages.push(Reading::OwnTests.percentage(
                 run.strategy,
                 &run.counters,
@@ -202,14 +183,8 @@ fn sphere_percentage_matches_closed_form() {
             expected = 100.0 * probability(relative_reach(run.side, run.radius));
         }
         let measured = Estimate::of(&percentages);
-        assert!(
-            measured.covers(expected),
-            "{name}: {measured:?} for {expected}"
-        );
-        assert!(
-            measured.half_width < 0.05 * expected,
-            "{name}: {measured:?} decides nothing"
-        );
+        assert!(measured.covers(expected), "{name}: {measured:?} for {expected}");
+        assert!(measured.half_width < 0.05 * expected, "{name}: {measured:?} decides nothing");
     }
 }
 
@@ -223,41 +198,21 @@ fn tables_follow_from_runs() {
         assert_eq!(results.costs(regime).len(), 2 * 5);
     }
     let crowded = cell(&results, "crowded-500", Strategy::Sphere, Reading::OwnTests);
-    assert_eq!(
-        (crowded.bodies, crowded.paper),
-        (500, None),
-        "the paper's box is another"
-    );
-    let small = cell(
-        &results,
-        "paper-50",
-        Strategy::SDopBatch,
-        Reading::TestsAndList,
-    );
+    assert_eq!((crowded.bodies, crowded.paper), (500, None), "the paper's box is another");
+    let small = cell(&results, "paper-50", Strategy::SDopBatch, Reading::TestsAndList);
     let whole = cell(&results, "paper-50", Strategy::SDopBatch, Reading::OwnTests);
-    assert_eq!(
-        (small.paper, whole.measured.mean),
-        (Some(16.88), 2.0 * small.measured.mean)
-    );
+    assert_eq!((small.paper, whole.measured.mean), (Some(16.88), 2.0 * small.measured.mean));
     for claim in claims::all(&results).iter().chain(&study::all(&results)) {
         assert!(!claim.checks.is_empty(), "{}", claim.claim);
     }
     // What counts alone decide.
     let verdict = |text: &str| {
-        let all = claims::all(&results)
-            .into_iter()
-            .chain(study::all(&results));
+        let all = claims::all(&results).into_iter().chain(study::all(&results));
         let mut found = all.filter(|claim| claim.claim.contains(text));
         found.next().map(|claim| claim.verdict())
     };
-    assert_eq!(
-        verdict("highest percentage in all experiments"),
-        Some(Verdict::InPart)
-    );
+    assert_eq!(verdict("highest percentage in all experiments"), Some(Verdict::InPart));
     assert_eq!(verdict("or-DOP row contradicts"), Some(Verdict::Supported));
     assert_eq!(verdict("2r/L from .128 to .144"), Some(Verdict::Supported));
-    assert_eq!(
-        verdict("can't exceed the sphere row."),
-        Some(Verdict::Supported)
-    );
+    assert_eq!(verdict("can't exceed the sphere row."), Some(Verdict::Supported));
 }

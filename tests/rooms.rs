@@ -67,11 +67,8 @@ const BENCH: &[&str] = &[
 const REST: &str = "(the rest)";
 
 /// Where the crates are.
-const CRATES: [(&str, &[&str]); 3] = [
-    ("src", LIBRARY),
-    ("reference/judge/src", JUDGE),
-    ("benches/src", BENCH),
-];
+const CRATES: [(&str, &[&str]); 3] =
+    [("src", LIBRARY), ("reference/judge/src", JUDGE), ("benches/src", BENCH)];
 
 /// A path's names.
 type Names = Vec<String>;
@@ -223,9 +220,8 @@ fn files_form_no_circle() {
         let module = |file: &PathBuf| module(file.strip_prefix(&root).unwrap());
         let read = |file: &PathBuf| (module(file), fs::read_to_string(file).unwrap());
         let all = files.iter().map(read);
-        let all: BTreeMap<Names, String> = all
-            .filter(|(module, _)| !module.contains(&"tests".to_owned()))
-            .collect();
+        let all: BTreeMap<Names, String> =
+            all.filter(|(module, _)| !module.contains(&"tests".to_owned())).collect();
         assert!(all.len() > 20, "{folder}: {}", all.len());
         let circle = circle(&all);
         assert!(circle.is_empty(), "{folder}: {circle:?}");
@@ -311,14 +307,7 @@ fn upward_imports_are_found() {
     assert!(wrong(JUDGE, "case", "use crate::{ours::Shapes, claim::Claim};").is_empty());
     let below = "// see crate::world\nuse crate::volume::Shape;";
     assert!(wrong(LIBRARY, "bodies", below).is_empty());
-    assert_eq!(
-        wrong(LIBRARY, "update", "use crate::tools::trick;").len(),
-        1
-    );
-    assert_eq!(
-        wrong(LIBRARY, "update", "use crate::Culler;").len(),
-        1,
-        "the face is above all"
-    );
+    assert_eq!(wrong(LIBRARY, "update", "use crate::tools::trick;").len(), 1);
+    assert_eq!(wrong(LIBRARY, "update", "use crate::Culler;").len(), 1, "the face is above all");
     assert_eq!(wrong(LIBRARY, "helpers", "").len(), 1);
 }

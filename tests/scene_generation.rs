@@ -29,18 +29,12 @@ fn overlaps(scene: &Scene) -> usize {
     let t = &scene.bodies.translation;
     let mut order: Vec<usize> = (0..t.len()).collect();
     order.sort_by(|&a, &b| t[a][0].total_cmp(&t[b][0]));
-    let widest = (0..t.len())
-        .map(|body| radius(scene, body))
-        .fold(0.0, f32::max);
+    let widest = (0..t.len()).map(|body| radius(scene, body)).fold(0.0, f32::max);
     let mut count = 0;
     for (place, &i) in order.iter().enumerate() {
-        for &j in order[place + 1..]
-            .iter()
-            .take_while(|&&j| t[j][0] - t[i][0] <= 2.0 * widest)
-        {
-            let square: f64 = (0..3)
-                .map(|k| (f64::from(t[i][k]) - f64::from(t[j][k])).powi(2))
-                .sum();
+        for &j in order[place + 1..].iter().take_while(|&&j| t[j][0] - t[i][0] <= 2.0 * widest) {
+            let square: f64 =
+                (0..3).map(|k| (f64::from(t[i][k]) - f64::from(t[j][k])).powi(2)).sum();
             let reach = f64::from(radius(scene, i)) + f64::from(radius(scene, j));
             count += usize::from(square <= reach * reach);
         }
@@ -63,12 +57,7 @@ fn seeds_determine_scenes() {
     assert_eq!(a.bodies, again.bodies);
     assert_eq!(a.velocities, again.velocities);
     let b = cubes("side = 40", 8, group);
-    let Bodies {
-        shape,
-        rotation,
-        translation,
-        ..
-    } = &a.bodies;
+    let Bodies { shape, rotation, translation, .. } = &a.bodies;
     assert!(*shape != b.bodies.shape);
     for body in 0..100 {
         assert!(
@@ -92,32 +81,14 @@ fn draws_are_independent() {
 /// Spheres start inside of the box and speeds in their range.
 #[test]
 fn placed_spheres_are_inside() {
-    let scene = cubes(
-        "side = 10",
-        3,
-        "count = 5000\nradius = [0.5, 4]\nspeed = [0.5, 2]",
-    );
+    let scene = cubes("side = 10", 3, "count = 5000\nradius = [0.5, 4]\nspeed = [0.5, 2]");
     for body in 0..5000 {
         let room = 5.0 - radius(&scene, body);
-        assert!(
-            scene.bodies.translation[body]
-                .iter()
-                .all(|x| x.abs() <= room),
-            "body {body}"
-        );
-        let speed = scene.velocities.linear[body]
-            .iter()
-            .map(|v| f64::from(*v).powi(2))
-            .sum::<f64>()
-            .sqrt();
-        assert!(
-            (0.499_999..2.000_001).contains(&speed),
-            "body {body}: {speed}"
-        );
-        let norm: f64 = scene.bodies.rotation[body]
-            .iter()
-            .map(|q| f64::from(*q).powi(2))
-            .sum();
+        assert!(scene.bodies.translation[body].iter().all(|x| x.abs() <= room), "body {body}");
+        let speed =
+            scene.velocities.linear[body].iter().map(|v| f64::from(*v).powi(2)).sum::<f64>().sqrt();
+        assert!((0.499_999..2.000_001).contains(&speed), "body {body}: {speed}");
+        let norm: f64 = scene.bodies.rotation[body].iter().map(|q| f64::from(*q).powi(2)).sum();
         assert!((norm - 1.0).abs() < 1e-6, "body {body}: {norm}");
     }
 }
@@ -136,12 +107,7 @@ fn radii_snap_to_eight_steps() {
     }
     // Binomial with p about ¼: five standard deviations are 194, and the steps move the octaves'
     // ends a little.
-    assert!(
-        octaves
-            .iter()
-            .all(|count: &i32| (1700..2300).contains(count)),
-        "{octaves:?}"
-    );
+    assert!(octaves.iter().all(|count: &i32| (1700..2300).contains(count)), "{octaves:?}");
 }
 
 #[test]
@@ -161,17 +127,10 @@ fn directions_and_rotations_are_uniform() {
         );
     }
     for component in 0..4 {
-        let square: f64 = scene
-            .bodies
-            .rotation
-            .iter()
-            .map(|q| f64::from(q[component]).powi(2) / n)
-            .sum();
+        let square: f64 =
+            scene.bodies.rotation.iter().map(|q| f64::from(q[component]).powi(2) / n).sum();
         // On the 3-sphere the mean square is ¼ with deviation √(1/16n).
-        assert!(
-            (square - 0.25).abs() < 0.0089,
-            "component {component}: {square}"
-        );
+        assert!((square - 0.25).abs() < 0.0089, "component {component}: {square}");
     }
 }
 
@@ -183,10 +142,7 @@ fn overlaps_match_closed_form() {
     let expected = 0.5 * n * (n - 1.0) * closed_form(2.0 / 38.0);
     let found = overlaps(&scene) as f64;
     // Pairs of one body are nearly independent: Poisson, five deviations.
-    assert!(
-        (found - expected).abs() < 5.0 * expected.sqrt(),
-        "{found} of {expected}"
-    );
+    assert!((found - expected).abs() < 5.0 * expected.sqrt(), "{found} of {expected}");
 }
 
 #[test]
@@ -199,20 +155,14 @@ fn partners_set_the_density() {
         let found = 2.0 * overlaps(&scene) as f64 / n;
         // Walls keep centres off by r, which gains a few percent; five Poisson deviations are
         // 0.036.
-        assert!(
-            (1.5 - 0.036..1.5 * edges + 0.036).contains(&found),
-            "{group}: {found}"
-        );
+        assert!((1.5 - 0.036..1.5 * edges + 0.036).contains(&found), "{group}: {found}");
     }
 }
 
 #[test]
 fn placements_keep_to_their_form() {
-    let plane = cubes(
-        "side = 50",
-        1,
-        "count = 400\nradius = 1\nplacement = { plane = { thickness = 3 } }",
-    );
+    let plane =
+        cubes("side = 50", 1, "count = 400\nradius = 1\nplacement = { plane = { thickness = 3 } }");
     assert!(plane.bodies.translation.iter().all(|t| t[2].abs() <= 1.5));
     assert!(plane.bodies.translation.iter().any(|t| t[0].abs() > 20.0));
     let group = "count = 400\nradius = 1\nplacement = { clusters = { number = 4, radius = 6 } }";
@@ -254,12 +204,7 @@ fn poses_keep_the_file_origin() {
 #[test]
 fn alike_groups_share_their_shapes() {
     let group = "[[bodies]]\nshape = \"box\"\ncount = 2\nradius = 1\n";
-    let scene = build(&format!(
-        "name = \"p\"\nframes = 1\n[box]\nside = 20\n{group}{group}"
-    ));
+    let scene = build(&format!("name = \"p\"\nframes = 1\n[box]\nside = 20\n{group}{group}"));
     assert_eq!((scene.bodies.len(), scene.shapes.len()), (4, 1));
-    assert!(
-        scene.bodies.translation[0] != scene.bodies.translation[2],
-        "groups draw apart"
-    );
+    assert!(scene.bodies.translation[0] != scene.bodies.translation[2], "groups draw apart");
 }

@@ -27,18 +27,12 @@ fn an_unknown_name_suggests_the_nearest() {
     let error = "s-dop-sequentail".parse::<Strategy>().unwrap_err();
     assert_eq!(error.to_string(), "unknown strategy `s-dop-sequentail`");
     assert_eq!(error.hint, "did you mean `s-dop-sequential`?");
-    assert_eq!(
-        "two_sided".parse::<Overlap>().unwrap_err().hint,
-        "did you mean `two-sided`?"
-    );
+    assert_eq!("two_sided".parse::<Overlap>().unwrap_err().hint, "did you mean `two-sided`?");
     assert_eq!(
         "octree".parse::<Finder>().unwrap_err().hint,
         "one of: all-pairs, grid, sweep, neighbours, auto"
     );
-    assert_eq!(
-        "16".parse::<DirectionSet>().unwrap_err().hint,
-        "one of: 6, 14, 18, 26"
-    );
+    assert_eq!("16".parse::<DirectionSet>().unwrap_err().hint, "one of: 6, 14, 18, 26");
 }
 
 /// Scene files default to the librarys settings.
@@ -82,10 +76,7 @@ fn invalid_settings_are_rejected() {
         let settings: CullSettings = toml::from_str(&text).unwrap();
         settings.check(10).unwrap_err().to_string()
     };
-    assert_eq!(
-        cone("{ direction = [0, 0, 1], half_angle = 30 }"),
-        "interest: a cone has one apex"
-    );
+    assert_eq!(cone("{ direction = [0, 0, 1], half_angle = 30 }"), "interest: a cone has one apex");
     assert_eq!(
         cone("{ body = 1, direction = [0, 0, 0], half_angle = 30 }"),
         "interest: direction [0.0, 0.0, 0.0]"

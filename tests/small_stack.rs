@@ -21,24 +21,14 @@ fn on_a_small_stack(run: impl FnOnce() + Send + 'static) {
 
 /// Needles on a grid, turned in different ways, so that balls meet whose or-DOPs don't.
 fn needles(k: DirectionSet) -> ([Shape; 1], Bodies) {
-    let needle = ProceduralShape::Needle {
-        length: 4.0,
-        radius: 0.25,
-        sides: 8,
-    };
-    let spec = ShapeSpec {
-        directions: k,
-        ..ShapeSpec::default()
-    };
+    let needle = ProceduralShape::Needle { length: 4.0, radius: 0.25, sides: 8 };
+    let spec = ShapeSpec { directions: k, ..ShapeSpec::default() };
     let mut bodies = Bodies::default();
     for i in 0..64_u8 {
         let [x, y, z] = [i % 4, i / 4 % 4, i / 16].map(f32::from);
         bodies.push(0, i % 7 > 0, [x - y, y + 0.5, z - x, 1.0], [x, y, z]);
     }
-    (
-        [Shape::build(&needle.build().unwrap(), &spec).unwrap()],
-        bodies,
-    )
+    ([Shape::build(&needle.build().unwrap(), &spec).unwrap()], bodies)
 }
 
 /// Every strategy with each of its overlap tests.
@@ -46,11 +36,7 @@ fn strategies(k: DirectionSet) -> Vec<CullSettings> {
     let mut all = Vec::new();
     for &strategy in Strategy::ALL {
         let overlaps = Overlap::ALL.iter();
-        let tests = if strategy.scheme().has_overlap_test() {
-            3
-        } else {
-            1
-        };
+        let tests = if strategy.scheme().has_overlap_test() { 3 } else { 1 };
         for &overlap in overlaps.take(tests) {
             all.push(CullSettings {
                 strategy,
@@ -83,11 +69,7 @@ fn strategies_fit_the_stack() {
                     }
                 }
                 let strategy = settings.strategy;
-                assert_eq!(
-                    lists[0].is_empty(),
-                    strategy == Strategy::None,
-                    "{strategy}"
-                );
+                assert_eq!(lists[0].is_empty(), strategy == Strategy::None, "{strategy}");
                 assert!(lists.iter().all(|list| *list == lists[0]), "{strategy}");
             }
         }
@@ -120,15 +102,11 @@ fn world_fits_the_stack() {
         let (shapes, bodies) = needles(DirectionSet::K18);
         let mut world = World::new(shapes.into()).unwrap();
         let at = |i: usize| Body::at(0, bodies.rotation[i], bodies.translation[i].map(f64::from));
-        let ids: Vec<_> = (0..bodies.len())
-            .map(|i| world.insert(at(i)).unwrap())
-            .collect();
+        let ids: Vec<_> = (0..bodies.len()).map(|i| world.insert(at(i)).unwrap()).collect();
         world.cull().unwrap();
         let before = world.pairs().len();
         world.remove(ids[21]).unwrap();
-        world
-            .set_pose(ids[0], bodies.rotation[1], [100.0; 3])
-            .unwrap();
+        world.set_pose(ids[0], bodies.rotation[1], [100.0; 3]).unwrap();
         world.cull().unwrap();
         assert!(world.pairs().len() < before);
     });

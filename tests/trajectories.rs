@@ -26,29 +26,18 @@ fn trajectory(scene: &Scene, steps: usize) -> String {
             }
         }
     }
-    hash.finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn shipped(name: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("data/scenes")
-        .join(name);
-    SceneFile::read(&path)
-        .and_then(|file| file.build())
-        .unwrap()
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes").join(name);
+    SceneFile::read(&path).and_then(|file| file.build()).unwrap()
 }
 
 #[test]
 fn shipped_scenes_move_as_recorded() {
     let golden = [
-        (
-            "paper-150.toml",
-            600,
-            "454db76da8ca17a87b644ccff5e2a2a2477d238aed429695b598aef7fc7b5f88",
-        ),
+        ("paper-150.toml", 600, "454db76da8ca17a87b644ccff5e2a2a2477d238aed429695b598aef7fc7b5f88"),
         (
             "mixed-radii-10k.toml",
             10,
@@ -59,11 +48,7 @@ fn shipped_scenes_move_as_recorded() {
             5,
             "e9db574301c1f2319f050260c02ccf5ec0bf6325cdbde70789434344c7fdf0ca",
         ),
-        (
-            "plane-10k.toml",
-            5,
-            "6663b650c1021d4a638e3cbc6d8f6398a4487e698c7cd5bf880ce3bcce4fbb38",
-        ),
+        ("plane-10k.toml", 5, "6663b650c1021d4a638e3cbc6d8f6398a4487e698c7cd5bf880ce3bcce4fbb38"),
         (
             "brownian-1k.toml",
             100,
@@ -79,11 +64,7 @@ fn shipped_scenes_move_as_recorded() {
             100,
             "0fe4718d762e27401017829b759822bde95a6361b84ddf263f2f184e3ec63018",
         ),
-        (
-            "sleep-10k.toml",
-            20,
-            "7925fff5bfeddd1c78ee4b5aab5a372faa4fded82f892429453db89e74be387c",
-        ),
+        ("sleep-10k.toml", 20, "7925fff5bfeddd1c78ee4b5aab5a372faa4fded82f892429453db89e74be387c"),
         (
             "scenery-10k.toml",
             20,
@@ -91,12 +72,7 @@ fn shipped_scenes_move_as_recorded() {
         ),
     ];
     let found = golden.map(|(name, steps, _)| (name, steps, trajectory(&shipped(name), steps)));
-    assert_eq!(
-        found
-            .each_ref()
-            .map(|(name, steps, hash)| (*name, *steps, hash.as_str())),
-        golden
-    );
+    assert_eq!(found.each_ref().map(|(name, steps, hash)| (*name, *steps, hash.as_str())), golden);
 }
 
 #[test]
@@ -129,9 +105,8 @@ brownian = { share = 0.05, speed = [1, 8] }
 response = "elastic"
 "#;
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
-    let scene = SceneFile::parse(text, "all.toml", &directory)
-        .and_then(|file| file.build())
-        .unwrap();
+    let scene =
+        SceneFile::parse(text, "all.toml", &directory).and_then(|file| file.build()).unwrap();
     assert_eq!(
         trajectory(&scene, 300),
         "f6df11fd47e2d893b796a8c78b764c3a3332007bba5b94ecc08fdabf897e4c34"

@@ -68,19 +68,12 @@ fn most_taken(call: impl FnOnce()) -> i64 {
 
 fn form(number: u16) -> Shape {
     let side = |n: u16| 1.0 + f32::from(n % 4) / 4.0;
-    let mesh = ProceduralShape::Box {
-        x: side(number),
-        y: side(number / 4),
-        z: side(number / 2),
-    };
+    let mesh = ProceduralShape::Box { x: side(number), y: side(number / 4), z: side(number / 2) };
     Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()
 }
 
 fn world(strategy: Strategy) -> World {
-    let settings = CullSettings {
-        strategy,
-        ..CullSettings::default()
-    };
+    let settings = CullSettings { strategy, ..CullSettings::default() };
     World::with(Vec::new(), &Culler::builder().settings(&settings)).unwrap()
 }
 
@@ -93,10 +86,7 @@ fn lay(world: &mut World, forms: &[Shape], step: usize) -> (u32, [BodyId; 3]) {
     let ids = [0, 1, 2].map(|i| {
         let margin = (i / 2) as f32 * 1.0e-3 * (step % 4096) as f32;
         let x = (3 * (step % 1024) + i) as f64;
-        let body = Body {
-            margin,
-            ..Body::at(shape, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0])
-        };
+        let body = Body { margin, ..Body::at(shape, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]) };
         let body = if i == 1 { body.fixed() } else { body };
         world.insert(body).unwrap()
     });
@@ -153,21 +143,16 @@ fn bodies(world: &World) -> Vec<String> {
 fn shape_stream_keeps_memory() {
     let forms: Vec<Shape> = (0..48).map(form).collect();
     // World-aligned slabs take a hull of each shape, which takes time: fewer of them.
-    for (strategy, steps) in [
-        (Strategy::SDopSequential, 100_000),
-        (Strategy::KDop, 3_000),
-        (Strategy::Obb, 1_000),
-    ] {
+    for (strategy, steps) in
+        [(Strategy::SDopSequential, 100_000), (Strategy::KDop, 3_000), (Strategy::Obb, 1_000)]
+    {
         let ((mut long, last), bytes) = held(|| streamed(strategy, &forms, steps));
         let (mut new, wanted) = held(|| fresh(strategy, &forms, last));
         assert_eq!(bodies(&long), bodies(&new));
         assert!(10 * bytes <= 11 * wanted, "{strategy}: {bytes} of {wanted}");
         let shrunk = [&mut long, &mut new].map(|world| held(|| world.shrink_to_fit()).1);
         let [bytes, wanted] = [bytes + shrunk[0], wanted + shrunk[1]];
-        assert!(
-            10 * bytes <= 11 * wanted,
-            "{strategy}: {bytes} of {wanted}, shrunk"
-        );
+        assert!(10 * bytes <= 11 * wanted, "{strategy}: {bytes} of {wanted}, shrunk");
         assert!(long.cull().unwrap().len() > TERRAIN);
     }
 }
@@ -183,23 +168,16 @@ const CROWD: usize = 1500;
 /// A crowd of bodies that disperses gives its memory back.
 #[test]
 fn body_crowd_memory_is_freed() {
-    for strategy in [
-        Strategy::Sphere,
-        Strategy::SDopSequential,
-        Strategy::SDopBatch,
-        Strategy::Aabb,
-    ] {
+    for strategy in
+        [Strategy::Sphere, Strategy::SDopSequential, Strategy::SDopBatch, Strategy::Aabb]
+    {
         let make = |has_met: bool| {
             let mut world = world(strategy);
             let shape = world.add_shape(form(0)).unwrap();
             let at = |body: usize| dispersed(body).map(|x| f64::from(x) * 2.0);
             let ids: Vec<BodyId> = (0..CROWD)
                 .map(|body| if has_met { [0.0; 3] } else { at(body) })
-                .map(|place| {
-                    world
-                        .insert(Body::at(shape, [0.0, 0.0, 0.0, 1.0], place))
-                        .unwrap()
-                })
+                .map(|place| world.insert(Body::at(shape, [0.0, 0.0, 0.0, 1.0], place)).unwrap())
                 .collect();
             for _ in 0..3 {
                 let pairs = world.cull().unwrap().len();
@@ -259,9 +237,8 @@ fn box_crowd_memory_is_freed() {
 fn emptied_world_is_small() {
     let few = |many: usize| {
         let mut world = BoxWorld::new();
-        let ids: Vec<BodyId> = (0..many)
-            .map(|body| world.insert(box_at(dispersed(body))).unwrap())
-            .collect();
+        let ids: Vec<BodyId> =
+            (0..many).map(|body| world.insert(box_at(dispersed(body))).unwrap()).collect();
         world.cull().unwrap();
         for &id in &ids[100..] {
             world.remove(id).unwrap();
@@ -271,10 +248,7 @@ fn emptied_world_is_small() {
         world.cull().unwrap();
         assert_eq!((world.len(), world.slots()), (100, 100));
         let again = world.insert(box_at([0.0; 3])).unwrap();
-        assert!(
-            ids.iter().all(|&id| id != again),
-            "ids are never given again"
-        );
+        assert!(ids.iter().all(|&id| id != again), "ids are never given again");
         world.remove(again).unwrap();
         world.cull().unwrap();
         world.shrink_to_fit();
@@ -309,19 +283,9 @@ fn crowd_events_need_no_list() {
     let mut world = BoxWorld::new();
     for body in 0..CROWD {
         let bounds = box_at([0.0; 3]);
-        let motion = if body == 7 {
-            Motion::Fixed
-        } else {
-            Motion::Dynamic
-        };
+        let motion = if body == 7 { Motion::Fixed } else { Motion::Dynamic };
         let groups = sdop::Groups::ALL;
-        world
-            .insert(BoxBody {
-                bounds,
-                motion,
-                groups,
-            })
-            .unwrap();
+        world.insert(BoxBody { bounds, motion, groups }).unwrap();
     }
     let pairs = CROWD * (CROWD - 1) / 2;
     assert_eq!(world.cull().unwrap().iter().count(), pairs); // sorted when they are first read

@@ -47,11 +47,7 @@ impl Swarm {
         // Some two sphere overlaps per body.
         let half = 0.5 * (16.0 * (BODIES / places) as f64).cbrt();
         let near = (0..BODIES).map(|_| [(); 3].map(|()| random.random_range(-half..half)));
-        Self {
-            places,
-            near: near.collect(),
-            random,
-        }
+        Self { places, near: near.collect(), random }
     }
 
     fn sway(&mut self) {
@@ -86,17 +82,12 @@ fn run(places: usize, mut frame: impl FnMut(&Swarm) -> Vec<[u32; 2]>) -> Run {
         swarm.sway();
     }
     let median = Percentiles::of(seconds.split_off(WARM)).p50;
-    Run {
-        pairs,
-        nanoseconds: median * 1e9 / BODIES as f64,
-    }
+    Run { pairs, nanoseconds: median * 1e9 / BODIES as f64 }
 }
 
 fn builder() -> CullerBuilder {
-    Culler::builder().settings(&CullSettings {
-        strategy: Strategy::SDopBatch,
-        ..CullSettings::default()
-    })
+    Culler::builder()
+        .settings(&CullSettings { strategy: Strategy::SDopBatch, ..CullSettings::default() })
 }
 
 fn in_f32(shape: &Shape, places: usize, distance: f64) -> Run {
@@ -123,9 +114,7 @@ fn in_f64(shape: &Shape, places: usize, distance: f64) -> Run {
             let place = swarm.at(body, distance);
             match ids.get(body) {
                 Some(&id) => world.set_pose(id, UNTURNED, place),
-                None => world
-                    .insert(Body::at(0, UNTURNED, place))
-                    .map(|id| ids.push(id)),
+                None => world.insert(Body::at(0, UNTURNED, place)).map(|id| ids.push(id)),
             }
             .expect("a body within the contract");
         }
@@ -139,24 +128,14 @@ type Series = (&'static str, usize, fn(&Shape, usize, f64) -> Run);
 
 fn main() {
     let ball = ProceduralShape::default_of("icosphere").and_then(|shape| shape.build().ok());
-    let spec = ShapeSpec {
-        radius: Some(1.0),
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { radius: Some(1.0), ..ShapeSpec::default() };
     let shape = Shape::build(&ball.expect("a known shape"), &spec).expect("a sound mesh");
     println!("series,distance,pairs,lost,extra,ns_per_body");
-    let series: [Series; 3] = [
-        ("f32", 1, in_f32),
-        ("f64", 1, in_f64),
-        ("f64, many places", PLACES, in_f64),
-    ];
+    let series: [Series; 3] =
+        [("f32", 1, in_f32), ("f64", 1, in_f64), ("f64, many places", PLACES, in_f64)];
     for (name, places, run) in series {
         // Next to the origin, each place by itself.
-        let wanted = if places == 1 {
-            in_f64(&shape, 1, 0.0)
-        } else {
-            in_f64(&shape, places, 1e6)
-        };
+        let wanted = if places == 1 { in_f64(&shape, 1, 0.0) } else { in_f64(&shape, places, 1e6) };
         let is_shown = |&distance: &f64| match name {
             "f32" => distance <= FARTHEST_F32,
             _ => places == 1 || distance >= 1e5,
@@ -165,10 +144,7 @@ fn main() {
             let Run { pairs, nanoseconds } = run(&shape, places, distance);
             let lost = wanted.pairs.difference(&pairs).count();
             let extra = pairs.difference(&wanted.pairs).count();
-            println!(
-                "\"{name}\",{distance:e},{},{lost},{extra},{nanoseconds:.1}",
-                pairs.len()
-            );
+            println!("\"{name}\",{distance:e},{},{lost},{extra},{nanoseconds:.1}", pairs.len());
         }
     }
 }

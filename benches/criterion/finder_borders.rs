@@ -59,9 +59,8 @@ fn main() -> ExitCode {
     let each = scenes.unwrap_or(SCENES).div_ceil(threads);
     std::panic::set_hook(Box::new(|_| {}));
     let sum = std::thread::scope(|scope| {
-        let searches: Vec<_> = (1..=threads)
-            .map(|seed| scope.spawn(move || search(seed, each)))
-            .collect();
+        let searches: Vec<_> =
+            (1..=threads).map(|seed| scope.spawn(move || search(seed, each))).collect();
         let tallies = searches.into_iter().map(|search| search.join());
         tallies.fold(Tally::default(), |sum, tally| {
             let tally = tally.expect("panics are caught");

@@ -65,10 +65,7 @@ impl Contestant for TimedFinder {
 
 fn compare(bodies: usize, most: f32, strategy: Strategy) {
     let mut swarm = Swarm::moving(Kind::Uniform, bodies, most);
-    let finders = Finder::ALL
-        .iter()
-        .copied()
-        .filter(|&finder| takes_part(finder));
+    let finders = Finder::ALL.iter().copied().filter(|&finder| takes_part(finder));
     let mut entrants: Vec<TimedFinder> = finders
         .map(|finder| TimedFinder {
             finder,
@@ -76,10 +73,8 @@ fn compare(bodies: usize, most: f32, strategy: Strategy) {
             seconds: Vec::new(),
         })
         .collect();
-    let tests: Vec<u64> = entrants
-        .iter()
-        .map(|entrant| entrant.culler.counters().sphere.tests)
-        .collect();
+    let tests: Vec<u64> =
+        entrants.iter().map(|entrant| entrant.culler.counters().sphere.tests).collect();
     let mut turns = Turns::default();
     for _ in 0..TURNS.min(WORK / bodies / FRAMES) {
         let frames: [Bodies; FRAMES] = std::array::from_fn(|_| {
@@ -98,9 +93,7 @@ fn compare(bodies: usize, most: f32, strategy: Strategy) {
         [mean, p50, p99, most].map(|seconds| seconds * 1e9 / bodies as f64)
     };
     let times: Vec<[f64; 4]> = entrants.iter().map(statistics).collect();
-    let grid = entrants
-        .iter()
-        .position(|entrant| entrant.finder == Finder::Grid);
+    let grid = entrants.iter().position(|entrant| entrant.finder == Finder::Grid);
     let of_grids = grid.map_or(f64::NAN, |at| times[at][1]);
     for ((entrant, [mean, half, late, last]), before) in entrants.iter().zip(times).zip(tests) {
         let finder = entrant.finder;

@@ -36,9 +36,7 @@ fn main() {
     );
     println!("|--:|--:|--:|--:|--:|--:|--:|--:|");
     for (number, bodies) in frames.iter().enumerate().step_by(8) {
-        let bodies = shapes
-            .bodies(bodies)
-            .unwrap_or_else(|error| panic!("{error}"));
+        let bodies = shapes.bodies(bodies).unwrap_or_else(|error| panic!("{error}"));
         let start = Instant::now();
         let (pairs, tally) = judge::meeting_pairs(&bodies);
         let elapsed = start.elapsed().as_secs_f64();
@@ -58,18 +56,9 @@ fn main() {
 
 /// Triangles about the origin, in planes of their own.
 fn fan() -> Mesh {
-    let rim = [
-        [3, 1, 1],
-        [1, 3, 1],
-        [1, 1, 3],
-        [-3, 1, 2],
-        [2, -3, 1],
-        [1, 2, -3],
-    ];
-    let vertices: Vec<[f32; 3]> = std::iter::once([0; 3])
-        .chain(rim)
-        .map(|p| p.map(|x: i8| f32::from(x)))
-        .collect();
+    let rim = [[3, 1, 1], [1, 3, 1], [1, 1, 3], [-3, 1, 2], [2, -3, 1], [1, 2, -3]];
+    let vertices: Vec<[f32; 3]> =
+        std::iter::once([0; 3]).chain(rim).map(|p| p.map(|x: i8| f32::from(x))).collect();
     let triangles: Vec<[u32; 3]> = (1..6).map(|i| [0, i, i + 1]).collect();
     Mesh::new(&vertices, &triangles).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -16,20 +16,10 @@ use sdop::volume::DirectionSet;
 use sdop_bench::scene::Scene;
 
 fn pairs(scene: &Scene, strategy: Strategy) -> PairList {
-    let settings = CullSettings {
-        strategy,
-        ..scene.cull.clone()
-    };
-    let culler = Culler::builder()
-        .settings(&settings)
-        .build(&scene.shapes, &scene.bodies);
+    let settings = CullSettings { strategy, ..scene.cull.clone() };
+    let culler = Culler::builder().settings(&settings).build(&scene.shapes, &scene.bodies);
     culler
-        .map(|mut culler| {
-            culler
-                .cull(&scene.bodies)
-                .expect("bodies within the contract")
-                .clone()
-        })
+        .map(|mut culler| culler.cull(&scene.bodies).expect("bodies within the contract").clone())
         .unwrap_or_default()
 }
 
@@ -38,21 +28,13 @@ fn ordop(criterion: &mut Criterion) {
     for &k in DirectionSet::ALL {
         for &overlap in Overlap::ALL {
             let mut scene = common::scene("crowded-500");
-            scene.shapes = scene
-                .shapes
-                .into_iter()
-                .map(|shape| shape.with_directions(k))
-                .collect();
+            scene.shapes = scene.shapes.into_iter().map(|shape| shape.with_directions(k)).collect();
             (scene.cull.k, scene.cull.overlap) = (k, overlap);
-            let (listed, hits) = (
-                pairs(&scene, Strategy::Sphere),
-                pairs(&scene, Strategy::SDopBatch),
-            );
+            let (listed, hits) =
+                (pairs(&scene, Strategy::Sphere), pairs(&scene, Strategy::SDopBatch));
             let sorted = hits.sorted();
-            let misses: PairList = listed
-                .iter()
-                .filter(|pair| sorted.binary_search(pair).is_err())
-                .collect();
+            let misses: PairList =
+                listed.iter().filter(|pair| sorted.binary_search(pair).is_err()).collect();
             let shapes = scene.shapes.iter().map(|shape| (shape, &shape.ordop));
             let posed = PosedOrDops::new(shapes, &scene.bodies, Tier::detect());
             let columns = posed.columns(overlap);

@@ -14,11 +14,8 @@ use sdop_bench::measure::turns::median;
 /// Turns of each contestant.
 const ROUNDS: usize = 15;
 
-const KINDS: [(&str, Kind); 3] = [
-    ("one size", Kind::Uniform),
-    ("1 : 16", Kind::Mixed),
-    ("1 : 1000", Kind::Wild),
-];
+const KINDS: [(&str, Kind); 3] =
+    [("one size", Kind::Uniform), ("1 : 16", Kind::Mixed), ("1 : 1000", Kind::Wild)];
 
 fn main() {
     println!("| bodies | radii | pairs a body | ns a pair | of one size |");
@@ -58,9 +55,7 @@ fn nanoseconds_a_pair(swarm: &mut Swarm, culler: &mut Culler, frames: usize) -> 
     let before = read(culler);
     for _ in 0..frames {
         swarm.sway();
-        culler
-            .cull(&swarm.bodies)
-            .expect("bodies within the contract");
+        culler.cull(&swarm.bodies).expect("bodies within the contract");
     }
     let after = read(culler);
     1e9 * (after.0 - before.0) / (after.1 - before.1) as f64

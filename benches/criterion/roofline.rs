@@ -51,10 +51,7 @@ impl Stage {
         match self {
             Self::Spheres => (seconds.pair_finding, counters.sphere.tests),
             Self::OrDops => (seconds.ordop, counters.ordop.tests),
-            Self::Finding => (
-                seconds.update + seconds.pair_finding,
-                counters.sphere.updates,
-            ),
+            Self::Finding => (seconds.update + seconds.pair_finding, counters.sphere.updates),
         }
     }
 }
@@ -128,11 +125,7 @@ fn main() {
 /// The median over samples of a stage's time an element.
 fn nanoseconds(work: &Work, scene: &Scene, tier: Tier) -> f64 {
     let (strategy, pairs) = work.culling;
-    let settings = CullSettings {
-        strategy,
-        pairs,
-        ..scene.cull.clone()
-    };
+    let settings = CullSettings { strategy, pairs, ..scene.cull.clone() };
     let mut culler = match Culler::builder()
         .settings(&settings)
         .tier(tier)
@@ -146,11 +139,7 @@ fn nanoseconds(work: &Work, scene: &Scene, tier: Tier) -> f64 {
     let mut sample = || {
         let before = read(&culler);
         for _ in 0..frames {
-            black_box(
-                culler
-                    .cull(&scene.bodies)
-                    .expect("bodies within the contract"),
-            );
+            black_box(culler.cull(&scene.bodies).expect("bodies within the contract"));
         }
         let after = read(&culler);
         1e9 * (after.0 - before.0) / (after.1 - before.1) as f64

@@ -23,10 +23,7 @@ fn main() {
     println!("| strategy | tier | µs a frame with margins | without | ratio | quartiles |");
     println!("|---|---|--:|--:|--:|---|");
     for strategy in STRATEGIES {
-        let settings = CullSettings {
-            strategy,
-            ..scene.cull.clone()
-        };
+        let settings = CullSettings { strategy, ..scene.cull.clone() };
         for tier in Tier::available() {
             let cullers = [&scene.shapes, &bare].map(|shapes| {
                 Culling::new(shapes, &scene.bodies, &settings, tier)

@@ -28,9 +28,7 @@ fn measure(criterion: &mut Criterion, name: &str, mut frame: impl FnMut(usize)) 
             let start = Instant::now();
             (0..iterations as usize).for_each(&mut frame);
             let elapsed: Duration = start.elapsed();
-            samples
-                .borrow_mut()
-                .push(elapsed.as_secs_f64() / iterations as f64);
+            samples.borrow_mut().push(elapsed.as_secs_f64() / iterations as f64);
             elapsed
         });
     });
@@ -43,17 +41,12 @@ fn main() {
     let frames = common::frames(&scene);
     let mut rows = Vec::new();
     for tier in Tier::available() {
-        let culler = Culler::builder()
-            .settings(&scene.cull)
-            .tier(tier)
-            .build(&scene.shapes, &scene.bodies);
+        let culler =
+            Culler::builder().settings(&scene.cull).tier(tier).build(&scene.shapes, &scene.bodies);
         let mut culler = culler.unwrap_or_else(|error| panic!("{error}"));
         let seconds = measure(&mut criterion, &format!("s-dop, {tier}"), |i| {
             black_box(
-                culler
-                    .cull(&frames[i % frames.len()])
-                    .expect("bodies within the contract")
-                    .len(),
+                culler.cull(&frames[i % frames.len()]).expect("bodies within the contract").len(),
             );
         });
         rows.push((tier.name(), seconds));

@@ -24,10 +24,7 @@ use sdop_bench::scene::SceneFile;
 const SCENES: [&str; 3] = ["paper-300", "paper-500", "crowded-500"];
 /// Frames per pass.
 const FRAMES: u32 = 96;
-const EFFORT: Effort = Effort {
-    turns: 1,
-    builds: 5,
-};
+const EFFORT: Effort = Effort { turns: 1, builds: 5 };
 
 fn total_cost(criterion: &mut Criterion) {
     let mut scenes = Vec::new();
@@ -35,9 +32,8 @@ fn total_cost(criterion: &mut Criterion) {
         let mut file = common::scene_file(name);
         let scene = file.build().unwrap_or_else(|error| panic!("{error}"));
         let strategies = possible(&scene).into_iter();
-        let variants: Vec<Variant> = strategies
-            .map(|strategy| Variant::strategy(&scene.cull, strategy))
-            .collect();
+        let variants: Vec<Variant> =
+            strategies.map(|strategy| Variant::strategy(&scene.cull, strategy)).collect();
         let mut calibration = Calibration::new(&scene, &variants, Tier::detect(), EFFORT)
             .unwrap_or_else(|error| panic!("{error}"));
         let mut passes: Vec<Pass> = Vec::new();
@@ -92,14 +88,7 @@ fn another_pass(file: &SceneFile, variants: &[Variant], calibration: &mut Calibr
         let scene = file.build()?;
         let mut frames = SceneFrames::new(&scene, FRAMES)?;
         let calibration = Some(calibration.round()?);
-        Ok(pass(
-            &scene,
-            variants,
-            Tier::detect(),
-            &mut frames,
-            calibration,
-            &mut (),
-        )?)
+        Ok(pass(&scene, variants, Tier::detect(), &mut frames, calibration, &mut ())?)
     };
     made().unwrap_or_else(|error| panic!("{error}"))
 }
@@ -123,10 +112,7 @@ fn price_line(price: &PriceRow) -> String {
     .map(|estimate| number(estimate, 1e9));
     let (variant, volume) = (&price.variant, price.volume);
     let construct = number(&price.construct, 1e3);
-    format!(
-        "| {variant} | {volume} | {level} | {construct} | {} |",
-        ns.join(" | ")
-    )
+    format!("| {variant} | {volume} | {level} | {construct} | {} |", ns.join(" | "))
 }
 
 fn line(cost: &Cost) -> String {

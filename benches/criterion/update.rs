@@ -13,10 +13,9 @@ use sdop_bench::scene::Scene;
 fn updates(criterion: &mut Criterion) {
     let scene = common::scene("paper-500");
     of_each_volume(criterion, "update", &scene);
-    for (name, origin) in [
-        ("update, mesh origin", Origin::File),
-        ("update, ball origin", Origin::Ball),
-    ] {
+    for (name, origin) in
+        [("update, mesh origin", Origin::File), ("update, ball origin", Origin::Ball)]
+    {
         of_each_volume(criterion, name, &off_centre(&scene, origin));
     }
 }
@@ -25,13 +24,7 @@ fn of_each_volume(criterion: &mut Criterion, name: &str, scene: &Scene) {
     let mut group = criterion.benchmark_group(name);
     for (strategy, volume) in common::one_volume() {
         let id = BenchmarkId::from_parameter(strategy);
-        common::stage(
-            &mut group,
-            id,
-            (scene, strategy),
-            |s| s.update,
-            |c| c.of(volume).updates,
-        );
+        common::stage(&mut group, id, (scene, strategy), |s| s.update, |c| c.of(volume).updates);
     }
 }
 

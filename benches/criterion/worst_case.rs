@@ -28,9 +28,7 @@ use std::process::ExitCode;
 const EVALUATIONS: u64 = 10_000_000;
 
 fn main() -> ExitCode {
-    let evaluations = std::env::args()
-        .find_map(|arg| arg.parse().ok())
-        .unwrap_or(EVALUATIONS);
+    let evaluations = std::env::args().find_map(|arg| arg.parse().ok()).unwrap_or(EVALUATIONS);
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
     let mut passed = true;
     println!("{evaluations} evaluations each, seeds 1 to {threads}\n");
@@ -39,20 +37,10 @@ fn main() -> ExitCode {
         let found = std::thread::scope(|scope| {
             let search = |seed| scope.spawn(move || (bound.search)(seed, evaluations / threads));
             let searches: Vec<_> = (1..=threads).map(search).collect();
-            searches
-                .into_iter()
-                .filter_map(|s| s.join().ok())
-                .fold(f64::NEG_INFINITY, f64::max)
+            searches.into_iter().filter_map(|s| s.join().ok()).fold(f64::NEG_INFINITY, f64::max)
         });
-        println!(
-            "| {} | {found:.6} | {} | {} |",
-            bound.name, bound.constant, bound.unit
-        );
+        println!("| {} | {found:.6} | {} | {} |", bound.name, bound.constant, bound.unit);
         passed &= bound.teeth <= found && found <= bound.constant;
     }
-    if passed {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

@@ -110,10 +110,7 @@ mod tests {
     #[test]
     fn digest_ignores_order_alone() {
         let whole = digest(&[(0, &[[1, 2], [1, 3]]), (1, &[[1, 2]])]);
-        assert_eq!(
-            whole,
-            digest(&[(1, &[[1, 2]]), (0, &[[1, 3]]), (0, &[[1, 2]])])
-        );
+        assert_eq!(whole, digest(&[(1, &[[1, 2]]), (0, &[[1, 3]]), (0, &[[1, 2]])]));
         for other in [
             digest(&[(0, &[[1, 2], [1, 3]]), (1, &[[1, 3]])]),
             digest(&[(0, &[[1, 2], [1, 3]]), (2, &[[1, 2]])]),

@@ -59,10 +59,7 @@ impl NumberKind for Share {
 impl NumberKind for Interval {
     const EXPECTED: &'static str = "a number or [min, max], from 0 to 2^60";
     fn accept(value: f32) -> Option<Self> {
-        (0.0..=LIMIT).contains(&value).then_some(Self {
-            min: value,
-            max: value,
-        })
+        (0.0..=LIMIT).contains(&value).then_some(Self { min: value, max: value })
     }
 }
 

@@ -24,11 +24,7 @@ impl Percentiles {
             let rank = (values.len() * hundredths).div_ceil(100);
             values.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
         };
-        Self {
-            p50: at(50),
-            p99: at(99),
-            most: at(100),
-        }
+        Self { p50: at(50), p99: at(99), most: at(100) }
     }
 }
 

@@ -12,22 +12,14 @@ use crate::simulate::SimulatedFrame;
 #[must_use]
 pub fn header(scene: &Scene) -> Header {
     let effects = scene.effects.lists().into_iter();
-    let effects = effects.map(|(name, on)| EffectLine {
-        name: name.to_owned(),
-        on,
-    });
+    let effects = effects.map(|(name, on)| EffectLine { name: name.to_owned(), on });
     Header {
         frames: Some(scene.frames),
         dt: Some(scene.dt),
         side: scene.side,
         effects: Some(effects.collect()),
         cull: Some(scene.cull.clone()),
-        ..Header::new(
-            &scene.name,
-            scene.seed,
-            &scene.shapes,
-            BodyLine::all(&scene.bodies),
-        )
+        ..Header::new(&scene.name, scene.seed, &scene.shapes, BodyLine::all(&scene.bodies))
     }
 }
 
@@ -47,13 +39,8 @@ pub fn frame_line(frame: &SimulatedFrame<'_>, strategy: Strategy) -> FrameLine {
 /// A strategy's counters, in the order of its tests.
 #[must_use]
 pub fn volume_lines(strategy: Strategy, counters: &Counters) -> Vec<VolumeLine> {
-    let counts = Counts {
-        culler: *counters,
-        ..Counts::default()
-    };
-    let line = |volume: Volume| VolumeLine {
-        volume: volume.to_string(),
-        counters: counts.of(volume),
-    };
+    let counts = Counts { culler: *counters, ..Counts::default() };
+    let line =
+        |volume: Volume| VolumeLine { volume: volume.to_string(), counters: counts.of(volume) };
     Volume::of(strategy).into_iter().map(line).collect()
 }

@@ -22,11 +22,7 @@ impl Grid {
     /// The culler of a case's bodies; with `tight`, cells are as large as the largest ball.
     pub fn new(scene: &Scene<'_>, tight: bool) -> Self {
         let ball = |shape: &sdop::Shape| (shape.ball.centre, f64::from(shape.ball.radius));
-        Self {
-            balls: scene.shapes.iter().map(ball).collect(),
-            tight,
-            pairs: Vec::new(),
-        }
+        Self { balls: scene.shapes.iter().map(ball).collect(), tight, pairs: Vec::new() }
     }
 
     /// The cell of a point; indices beyond 2³⁰ would round, and such frames have one cell.
@@ -46,20 +42,11 @@ impl Contestant for Grid {
         self.pairs.clear();
         let ball = |i: usize| {
             let (centre, radius) = self.balls[bodies.shape[i] as usize];
-            (
-                transform(&rotation(bodies.rotation[i]), centre, bodies.translation[i]),
-                radius,
-            )
+            (transform(&rotation(bodies.rotation[i]), centre, bodies.translation[i]), radius)
         };
         let balls: Vec<([f64; 3], f64)> = (0..bodies.len()).map(ball).collect();
-        let diameter = 2.0
-            * balls
-                .iter()
-                .fold(f64::MIN_POSITIVE, |most, ball| most.max(ball.1));
-        let size = balls
-            .iter()
-            .flat_map(|ball| ball.0)
-            .fold(0.0, |most: f64, x| most.max(x.abs()));
+        let diameter = 2.0 * balls.iter().fold(f64::MIN_POSITIVE, |most, ball| most.max(ball.1));
+        let size = balls.iter().flat_map(|ball| ball.0).fold(0.0, |most: f64, x| most.max(x.abs()));
         let least = [0, 1, 2].map(|axis| {
             let all = balls.iter().map(|ball| ball.0[axis]);
             all.fold(f64::INFINITY, f64::min)
@@ -93,13 +80,7 @@ impl Contestant for Grid {
 
 fn main() -> Result<ExitCode, JudgeError> {
     let tight = std::env::args().any(|argument| argument == "--tight-cells");
-    let verdict = judge(|scene: &Scene<'_>| Grid::new(scene, tight))
-        .claims(Claim::Mesh)
-        .run()?;
+    let verdict = judge(|scene: &Scene<'_>| Grid::new(scene, tight)).claims(Claim::Mesh).run()?;
     print!("{verdict}");
-    Ok(if verdict.passed() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    Ok(if verdict.passed() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -10,9 +10,7 @@ use sdop_judge::ours::configurations::Rotation;
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {
     let length = (n - 1).max(1).ilog2() / 8 + 1;
-    let number = (0..length).fold(0, |sum: u32, _| {
-        sum << 8 | u32::from(bytes.next().unwrap_or(0))
-    });
+    let number = (0..length).fold(0, |sum: u32, _| sum << 8 | u32::from(bytes.next().unwrap_or(0)));
     number % n
 }
 

@@ -10,9 +10,7 @@ use sdop_judge::ours::borders::{Borders, bar};
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {
     let length = (n - 1).max(1).ilog2() / 8 + 1;
-    let number = (0..length).fold(0, |sum: u32, _| {
-        sum << 8 | u32::from(bytes.next().unwrap_or(0))
-    });
+    let number = (0..length).fold(0, |sum: u32, _| sum << 8 | u32::from(bytes.next().unwrap_or(0)));
     number % n
 }
 
@@ -22,9 +20,7 @@ fuzz_target!(|data: &[u8]| {
     let tier = tiers[below(tiers.len() as u32, &mut bytes) as usize];
     let frames = [1, 1, 1, 6][below(4, &mut bytes) as usize];
     let scene = Borders::draw(&mut |n| below(n, &mut bytes));
-    let shapes = scene
-        .radii
-        .map(|radius| bar(radius).expect("within the contract"));
+    let shapes = scene.radii.map(|radius| bar(radius).expect("within the contract"));
     let judged = scene.judge(&shapes, &Borders::settings(), tier, frames);
     let (_, difference) = judged.expect("the strategy needs nothing");
     assert_eq!(difference, None, "{tier}, {:?}", scene.radii);

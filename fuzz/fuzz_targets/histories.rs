@@ -19,9 +19,7 @@ use sdop_judge::ours::histories::{
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {
     let length = (n - 1).max(1).ilog2() / 8 + 1;
-    let number = (0..length).fold(0, |sum: u32, _| {
-        sum << 8 | u32::from(bytes.next().unwrap_or(0))
-    });
+    let number = (0..length).fold(0, |sum: u32, _| sum << 8 | u32::from(bytes.next().unwrap_or(0)));
     number % n
 }
 
@@ -58,10 +56,7 @@ fuzz_target!(|data: &[u8]| {
             let is_judged = |other: &CullSettings| {
                 other.strategy == rows[row].strategy && other.overlap == Overlap::TwoSided
             };
-            let row = rows
-                .iter()
-                .position(is_judged)
-                .expect("a row of each strategy");
+            let row = rows.iter().position(is_judged).expect("a row of each strategy");
             let judged = judge_compounds(&robots, &history, variant, modes(row));
             assert_eq!(judged.expect("histories are valid").failure, None);
             return;

@@ -88,23 +88,13 @@ fuzz_target!(|data: &[u8]| {
     if check_bodies(&bodies, &shapes.built).is_err() {
         return;
     }
-    let answers = [
-        Answers::judge(shapes, &bodies, DirectionSet::ALL[set], &Predicate::ALL)
-            .expect("within the contract"),
-    ];
+    let answers = [Answers::judge(shapes, &bodies, DirectionSet::ALL[set], &Predicate::ALL)
+        .expect("within the contract")];
     let mut ledger = Ledger::default();
     let modes = Rotation::new(&Tier::available()).turn(u64::from(head[1] / 16));
-    let run = Run {
-        shapes,
-        frames: &[bodies],
-        answers: &answers,
-    };
-    run.check(
-        (DirectionSet::ALL[set], Axes::Principal),
-        &modes,
-        &mut ledger,
-    )
-    .expect("settings fit");
+    let run = Run { shapes, frames: &[bodies], answers: &answers };
+    run.check((DirectionSet::ALL[set], Axes::Principal), &modes, &mut ledger)
+        .expect("settings fit");
     assert_eq!(
         (ledger.missed(), ledger.differing()),
         (0, 0),

@@ -53,9 +53,7 @@ pub fn rows<'py, const N: usize>(
     let numbers = array.into_iter().enumerate().map(|(at, wide)| {
         let narrow = wide as f32;
         let is_same = f64::from(narrow) == wide || wide.is_nan();
-        is_same
-            .then_some(narrow)
-            .ok_or_else(|| with_help(inexact(what, at, N, wide), remedy))
+        is_same.then_some(narrow).ok_or_else(|| with_help(inexact(what, at, N, wide), remedy))
     });
     Ok(Rows::Copied(numbers.collect::<PyResult<_>>()?))
 }
@@ -170,9 +168,7 @@ fn as_array<'py>(
     };
     if !fits {
         let text = format!("{what} has dtype {}", array.getattr("dtype")?);
-        return Err(PyTypeError::new_err(format!(
-            "{text}, and must be of {dtype}"
-        )));
+        return Err(PyTypeError::new_err(format!("{text}, and must be of {dtype}")));
     }
     let options = PyDict::new(given.py());
     options.set_item("copy", false)?;
@@ -190,11 +186,8 @@ fn check_shape<const N: usize>(shape: &[usize], what: &str) -> PyResult<()> {
         [_, 2, 3] if N == 6 => Ok(()),
         [0] => Ok(()),
         _ => {
-            let wanted = if N == 6 {
-                "(n, 6) or (n, 2, 3)".to_owned()
-            } else {
-                format!("(n, {N})")
-            };
+            let wanted =
+                if N == 6 { "(n, 6) or (n, 2, 3)".to_owned() } else { format!("(n, {N})") };
             Err(with_help(
                 format!("{what} has shape {shape:?}"),
                 format!("its shape must be {wanted}"),
@@ -206,10 +199,7 @@ fn check_shape<const N: usize>(shape: &[usize], what: &str) -> PyResult<()> {
 fn check_column(shape: &[usize], what: &str) -> PyResult<()> {
     match shape {
         [_] => Ok(()),
-        _ => Err(with_help(
-            format!("{what} has shape {shape:?}"),
-            "its shape must be (n,)",
-        )),
+        _ => Err(with_help(format!("{what} has shape {shape:?}"), "its shape must be (n,)")),
     }
 }
 

@@ -21,11 +21,7 @@ fn boxes<'py>(given: &Bound<'py, PyAny>) -> PyResult<Rows<'py, 6>> {
 
 /// Pairs as rows, sorted if `sort` is true.
 pub(super) fn list(found: &PairList, sort: bool) -> Vec<[u32; 2]> {
-    if sort {
-        found.sorted()
-    } else {
-        found.iter().collect()
-    }
+    if sort { found.sorted() } else { found.iter().collect() }
 }
 
 /// Groups as two numbers: those that a body is in, and those that it collides with.
@@ -36,9 +32,7 @@ pub(super) fn groups(
     let Some(given) = given else { return Ok(None) };
     let given = whole_rows::<2>(given, "groups")?;
     check_length("groups", given.len(), bodies)?;
-    let groups = given
-        .into_iter()
-        .map(|[member, mask]| Groups { member, mask });
+    let groups = given.into_iter().map(|[member, mask]| Groups { member, mask });
     Ok(Some(groups.collect()))
 }
 
@@ -142,9 +136,7 @@ impl BoxWorld {
     fn new(finder: &str, threads: usize) -> PyResult<Self> {
         let finder: Finder = finder.parse().map_err(refused)?;
         let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
-        Ok(Self(Mutex::new(
-            sdop::BoxWorld::with(&builder).map_err(refused)?,
-        )))
+        Ok(Self(Mutex::new(sdop::BoxWorld::with(&builder).map_err(refused)?)))
     }
 
     /// Adds a box (lower corner x, y, z, then the upper one) and returns its id, which stays until
@@ -163,9 +155,7 @@ impl BoxWorld {
             motion: super::world::motion(motion)?,
             groups: Groups { member, mask },
         };
-        locked(py, &self.0, |world| world.insert(body))
-            .map(BodyId::to_bits)
-            .map_err(refused)
+        locked(py, &self.0, |world| world.insert(body)).map(BodyId::to_bits).map_err(refused)
     }
 
     /// Removes a box.
@@ -176,20 +166,16 @@ impl BoxWorld {
     /// Moves or resizes a box.
     fn set_bounds(&self, py: Python<'_>, id: u64, bounds: &Bound<'_, PyAny>) -> PyResult<()> {
         let bounds = one(bounds)?;
-        locked(py, &self.0, |world| {
-            world.set_bounds(BodyId::from_bits(id), bounds)
-        })
-        .map_err(refused)
+        locked(py, &self.0, |world| world.set_bounds(BodyId::from_bits(id), bounds))
+            .map_err(refused)
     }
 
     /// Puts a box to rest, wakes it, or fixes it: "resting", "dynamic" or "fixed". Putting a box
     /// to rest begins and ends no pair.
     fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
         let motion = super::world::motion(motion)?;
-        locked(py, &self.0, |world| {
-            world.set_motion(BodyId::from_bits(id), motion)
-        })
-        .map_err(refused)
+        locked(py, &self.0, |world| world.set_motion(BodyId::from_bits(id), motion))
+            .map_err(refused)
     }
 
     /// Never reports the pair of two boxes again until `include` or until one of them is removed.
@@ -222,9 +208,7 @@ impl BoxWorld {
 
     /// Finds the pairs that meet now: ids of shape (m, 2), sorted.
     fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let found = locked(py, &self.0, |world| {
-            world.cull().map(|found| bits_of(found.iter()))
-        });
+        let found = locked(py, &self.0, |world| world.cull().map(|found| bits_of(found.iter())));
         pairs(py, found.map_err(refused)?)
     }
 

@@ -50,11 +50,7 @@ impl Compound {
         let poses = rotations.rows().iter().zip(translations);
         let parts = part_shapes.into_iter().zip(poses);
         let parts: Vec<Part> = parts
-            .map(|(shape, (&rotation, translation))| Part {
-                shape,
-                rotation,
-                translation,
-            })
+            .map(|(shape, (&rotation, translation))| Part { shape, rotation, translation })
             .collect();
         let compound = sdop::compound::Compound::build(name, &built(&shapes), &parts);
         Ok(Self(compound.map_err(refused)?))

@@ -69,34 +69,18 @@ impl Culler {
             None => vec![true; n],
         };
         check_length("dynamic", dynamic.len(), n)?;
-        let (strategy, finder): (Strategy, Finder) = (
-            strategy.parse().map_err(refused)?,
-            finder.parse().map_err(refused)?,
-        );
-        let mut builder = sdop::Culler::builder()
-            .strategy(strategy)
-            .finder(finder)
-            .threads(threads);
+        let (strategy, finder): (Strategy, Finder) =
+            (strategy.parse().map_err(refused)?, finder.parse().map_err(refused)?);
+        let mut builder =
+            sdop::Culler::builder().strategy(strategy).finder(finder).threads(threads);
         if let Some(bodies) = interest {
             builder = builder.interest(Interest::Bodies(bodies));
         }
         let (rotation, translation) = (vec![[0.0, 0.0, 0.0, 1.0]; n], vec![[0.0; 3]; n]);
-        let bodies = Bodies {
-            shape,
-            dynamic,
-            rotation,
-            translation,
-        };
+        let bodies = Bodies { shape, dynamic, rotation, translation };
         let mut culler = builder.build(&built(&shapes), &bodies).map_err(refused)?;
-        culler
-            .set_groups(self::groups(groups, n)?)
-            .map_err(refused)?;
-        Ok(Self(Mutex::new(State {
-            culler,
-            bodies,
-            is_new: true,
-            seconds: 0.0,
-        })))
+        culler.set_groups(self::groups(groups, n)?).map_err(refused)?;
+        Ok(Self(Mutex::new(State { culler, bodies, is_new: true, seconds: 0.0 })))
     }
 
     /// The pairs of this frame that might touch.
@@ -125,9 +109,7 @@ impl Culler {
         let rotations = rows::<4>(rotations, "rotations", ROUND)?;
         let translations = rows::<3>(translations, "translations", ROUND)?;
         let (rotations, translations) = (rotations.rows(), translations.rows());
-        let found = locked(py, &self.0, |state| {
-            state.cull(rotations, translations, sort)
-        });
+        let found = locked(py, &self.0, |state| state.cull(rotations, translations, sort));
         pairs(py, found?)
     }
 

@@ -43,10 +43,7 @@ fn pose(
     let rotation = row::<4>(rotation, &format!("{what}'s rotation"), QUATERNION)?;
     let translation = row::<3>(translation, &format!("{what}'s translation"), POSITION)?;
     WidePose::new(rotation, translation).map_err(|error| {
-        with_help(
-            format!("{what}: {error}"),
-            "a non-zero quaternion and finite numbers",
-        )
+        with_help(format!("{what}: {error}"), "a non-zero quaternion and finite numbers")
     })
 }
 

@@ -40,14 +40,8 @@ pub fn judge(
     fail_fast: bool,
 ) -> PyResult<(bool, String, String, Option<Missed>)> {
     let claim: Claim = claims.parse().map_err(refused)?;
-    let options = Options {
-        claim,
-        pattern: cases,
-        seed,
-        extra_limit,
-        fail_fast,
-        ..Options::default()
-    };
+    let options =
+        Options { claim, pattern: cases, seed, extra_limit, fail_fast, ..Options::default() };
     let subject = PythonSubject { make };
     let verdict = py
         .detach(|| examine(&subject, &options, |_, _| {}))
@@ -55,11 +49,7 @@ pub fn judge(
     py.check_signals()?;
     let json =
         serde_json::to_string(&verdict).map_err(|error| SdopError::new_err(error.to_string()))?;
-    let missed = verdict
-        .smallest
-        .as_ref()
-        .map(|smallest| missed(py, smallest))
-        .transpose()?;
+    let missed = verdict.smallest.as_ref().map(|smallest| missed(py, smallest)).transpose()?;
     Ok((verdict.passed(), verdict.to_string(), json, missed))
 }
 
@@ -129,10 +119,9 @@ impl Subject for PythonSubject {
         Python::attach(|py| match self.run(py, case, &mut answered) {
             Ok(None) => Ok(answered),
             Ok(Some(why)) => Err(StopReason::Skipped { why, answered }),
-            Err(error) if error.is_instance_of::<CaseSkipped>(py) => Err(StopReason::Skipped {
-                why: error.value(py).to_string(),
-                answered,
-            }),
+            Err(error) if error.is_instance_of::<CaseSkipped>(py) => {
+                Err(StopReason::Skipped { why: error.value(py).to_string(), answered })
+            }
             Err(error) => Err(StopReason::Trouble(AnswerError::Crashed {
                 how: how(py, &error),
                 answered: answered.len(),
@@ -153,10 +142,7 @@ impl PythonSubject {
         let Some(first) = case.frames.first() else {
             return Ok(None);
         };
-        let culler = self
-            .make
-            .bind(py)
-            .call1((Scene::new(py, case, &first.bodies)?,))?;
+        let culler = self.make.bind(py).call1((Scene::new(py, case, &first.bodies)?,))?;
         for frame in &case.frames {
             if let Some(why) = prepared(&culler, frame)? {
                 return Ok(Some(why.to_owned()));
@@ -247,17 +233,12 @@ fn change(culler: &Bound<'_, PyAny>, frame: &Frame, was: &[Option<u32>]) -> PyRe
 
 /// An exception with the line that raised it.
 fn how(py: Python<'_>, error: &PyErr) -> String {
-    let traceback = error
-        .traceback(py)
-        .and_then(|traceback| traceback.format().ok());
-    let last = traceback
-        .as_deref()
-        .and_then(|text| text.trim_end().rsplit("File ").next());
+    let traceback = error.traceback(py).and_then(|traceback| traceback.format().ok());
+    let last = traceback.as_deref().and_then(|text| text.trim_end().rsplit("File ").next());
     match last {
-        Some(last) => format!(
-            "{error}, in {}",
-            last.split_whitespace().collect::<Vec<_>>().join(" ")
-        ),
+        Some(last) => {
+            format!("{error}, in {}", last.split_whitespace().collect::<Vec<_>>().join(" "))
+        }
         None => error.to_string(),
     }
 }

@@ -339,9 +339,7 @@ fn set_pose(body: &mut Body, (rotation, translation): ([f32; 4], [f64; 3])) {
 /// One box: six numbers, or two corners.
 fn one(given: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
     let remedy = "pass six numbers: the lower corner, then the upper one";
-    Ok(corners(
-        wide_rows::<6>(&one_row::<6>(given, "bounds", remedy)?, "bounds")?[0],
-    ))
+    Ok(corners(wide_rows::<6>(&one_row::<6>(given, "bounds", remedy)?, "bounds")?[0]))
 }
 
 fn corners([a, b, c, d, e, f]: [f64; 6]) -> [[f64; 3]; 2] {

@@ -108,10 +108,7 @@ impl QueryIndex {
         centres: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let (centres, radii) = (
-            wide_rows::<3>(centres, "centres")?,
-            wide_column(radii, "radii")?,
-        );
+        let (centres, radii) = (wide_rows::<3>(centres, "centres")?, wide_column(radii, "radii")?);
         check_length("radii", radii.len(), centres.len())?;
         let balls = centres.into_iter().zip(radii);
         let volumes = balls.map(|(centre, radius)| QueryVolume::Ball { centre, radius });
@@ -214,9 +211,7 @@ fn segments(starts: &Bound<'_, PyAny>, ends: &Bound<'_, PyAny>) -> PyResult<Vec<
     let (starts, ends) = (wide_rows::<3>(starts, "starts")?, wide_rows(ends, "ends")?);
     check_length("ends", ends.len(), starts.len())?;
     let segments = starts.into_iter().zip(ends);
-    Ok(segments
-        .map(|(from, to)| Line::Segment { from, to })
-        .collect())
+    Ok(segments.map(|(from, to)| Line::Segment { from, to }).collect())
 }
 
 fn hits<'py>(py: Python<'py>, answers: &Answers<LineHit>) -> PyResult<Hits<'py>> {

@@ -121,10 +121,7 @@ impl Shape {
         py: Python<'py>,
     ) -> (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f32>>) {
         let ordop = &self.built.ordop;
-        (
-            PyArray1::from_slice(py, &ordop.lo),
-            PyArray1::from_slice(py, &ordop.hi),
-        )
+        (PyArray1::from_slice(py, &ordop.lo), PyArray1::from_slice(py, &ordop.hi))
     }
 
     /// The point of the mesh's coordinates that is the origin of `vertices`.
@@ -168,10 +165,7 @@ impl Shape {
     pub(super) fn judged(&self) -> PyResult<&reference::Shape> {
         if self.built.is_far() {
             return Err(with_help(
-                format!(
-                    "shape `{}` is far from the origin of its mesh",
-                    self.built.name
-                ),
+                format!("shape `{}` is far from the origin of its mesh", self.built.name),
                 "the exact answer is about float32 vertices: move the mesh to its origin, and add its place to the translations",
             ));
         }
@@ -179,18 +173,13 @@ impl Shape {
             let mut shapes = Shapes::new(vec![self.built.clone()])?;
             Ok(shapes.judged.remove(0))
         });
-        judged
-            .as_ref()
-            .map_err(|error| with_help(error, "pass a mesh that `Culler` takes"))
+        judged.as_ref().map_err(|error| with_help(error, "pass a mesh that `Culler` takes"))
     }
 }
 
 impl From<sdop::Shape> for Shape {
     fn from(built: sdop::Shape) -> Self {
-        Self {
-            built,
-            judged: OnceLock::new(),
-        }
+        Self { built, judged: OnceLock::new() }
     }
 }
 
@@ -198,12 +187,7 @@ fn spec(radius: Option<f32>, origin: &str, k: u32, axes: &str) -> PyResult<Shape
     let origin: Origin = origin.parse().map_err(refused)?;
     let directions: DirectionSet = k.to_string().parse().map_err(refused)?;
     let axes: Axes = axes.parse().map_err(refused)?;
-    Ok(ShapeSpec {
-        origin,
-        radius,
-        directions,
-        axes,
-    })
+    Ok(ShapeSpec { origin, radius, directions, axes })
 }
 
 /// Shapes of a list.

@@ -93,9 +93,7 @@ impl World {
         groups: (u32, u32),
     ) -> PyResult<u64> {
         let body = body(shape, pose(rotation, translation)?, margin, dynamic, groups);
-        locked(py, &self.0, |world| world.insert(body))
-            .map(BodyId::to_bits)
-            .map_err(refused)
+        locked(py, &self.0, |world| world.insert(body)).map(BodyId::to_bits).map_err(refused)
     }
 
     /// Removes a body.
@@ -112,10 +110,8 @@ impl World {
         translation: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
         let (rotation, translation) = pose(rotation, translation)?;
-        locked(py, &self.0, |world| {
-            world.set_pose(BodyId::from_bits(id), rotation, translation)
-        })
-        .map_err(refused)
+        locked(py, &self.0, |world| world.set_pose(BodyId::from_bits(id), rotation, translation))
+            .map_err(refused)
     }
 
     /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). If one
@@ -129,10 +125,8 @@ impl World {
     ) -> PyResult<()> {
         let ids = id_column(ids, "ids")?;
         let rotations = rows::<4>(rotations, "rotations", ROUND)?;
-        let (rotations, translations) = (
-            rotations.rows(),
-            wide_rows::<3>(translations, "translations")?,
-        );
+        let (rotations, translations) =
+            (rotations.rows(), wide_rows::<3>(translations, "translations")?);
         check_length("rotations", rotations.len(), ids.len())?;
         check_length("translations", translations.len(), ids.len())?;
         locked(py, &self.0, |world| {
@@ -147,10 +141,8 @@ impl World {
     /// to rest begins and ends no pair.
     fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
         let motion = self::motion(motion)?;
-        locked(py, &self.0, |world| {
-            world.set_motion(BodyId::from_bits(id), motion)
-        })
-        .map_err(refused)
+        locked(py, &self.0, |world| world.set_motion(BodyId::from_bits(id), motion))
+            .map_err(refused)
     }
 
     /// Never reports the pair of two bodies again, such as two links that share a joint, until
@@ -175,9 +167,7 @@ impl World {
 
     /// Finds the pairs that might touch now: ids of shape (m, 2), sorted.
     fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let found = locked(py, &self.0, |world| {
-            world.cull().map(|found| bits_of(found.iter()))
-        });
+        let found = locked(py, &self.0, |world| world.cull().map(|found| bits_of(found.iter())));
         pairs(py, found.map_err(refused)?)
     }
 
@@ -221,19 +211,14 @@ pub(super) fn motion(name: &str) -> PyResult<Motion> {
         "dynamic" => Ok(Motion::Dynamic),
         "resting" => Ok(Motion::Resting),
         "fixed" => Ok(Motion::Fixed),
-        _ => Err(with_help(
-            format!("unknown motion `{name}`"),
-            "one of: dynamic, resting, fixed",
-        )),
+        _ => Err(with_help(format!("unknown motion `{name}`"), "one of: dynamic, resting, fixed")),
     }
 }
 
 /// The choices of a world.
 pub(super) fn builder(strategy: &str, finder: &str, threads: usize) -> PyResult<CullerBuilder> {
-    let (strategy, finder): (Strategy, Finder) = (
-        strategy.parse().map_err(refused)?,
-        finder.parse().map_err(refused)?,
-    );
+    let (strategy, finder): (Strategy, Finder) =
+        (strategy.parse().map_err(refused)?, finder.parse().map_err(refused)?);
     let builder = sdop::Culler::builder().strategy(strategy).finder(finder);
     Ok(builder.threads(threads))
 }
@@ -248,11 +233,7 @@ pub(super) fn body(
 ) -> Body {
     Body {
         shape,
-        motion: if dynamic {
-            Motion::Dynamic
-        } else {
-            Motion::Fixed
-        },
+        motion: if dynamic { Motion::Dynamic } else { Motion::Fixed },
         rotation,
         translation,
         margin,

@@ -63,12 +63,7 @@ pub fn check_directions(slabs: &Slabs) -> Result<(), Breach> {
         dot(&integers(*c), &column)
     };
     let exact = |c: &[i32; 3]| (0..3).all(|i| fits_f32(&component(c, i), unit));
-    match slabs
-        .directions
-        .coefficients()
-        .iter()
-        .position(|c| !exact(c))
-    {
+    match slabs.directions.coefficients().iter().position(|c| !exact(c)) {
         Some(slab) => Err(Breach::Direction { slab }),
         None => Ok(()),
     }
@@ -87,17 +82,7 @@ fn fits_f32(x: &IBig, unit: i32) -> bool {
 /// The first vertex that is not.
 pub fn check_ball(ball: &Ball, vertices: &[[f32; 3]], pose: &Pose) -> Result<(), Breach> {
     let map = Approximate::between(&Pose::IDENTITY, pose);
-    let inside = |v: &[f32; 3]| {
-        inner_ball(
-            ball,
-            &Ball {
-                centre: *v,
-                radius: 0.0,
-            },
-            pose,
-            &map,
-        )
-    };
+    let inside = |v: &[f32; 3]| inner_ball(ball, &Ball { centre: *v, radius: 0.0 }, pose, &map);
     match vertices.iter().position(|v| !inside(v)) {
         Some(vertex) => Err(Breach::Ball { vertex }),
         None => Ok(()),
@@ -106,12 +91,7 @@ pub fn check_ball(ball: &Ball, vertices: &[[f32; 3]], pose: &Pose) -> Result<(),
 
 /// Is the whole posed ball `inner` in the ball `outer`: ‖R c/|q|² + t − c'‖ ≤ r' − r?
 pub fn ball_in_ball(outer: &Ball, inner: &Ball, pose: &Pose) -> bool {
-    inner_ball(
-        outer,
-        inner,
-        pose,
-        &Approximate::between(&Pose::IDENTITY, pose),
-    )
+    inner_ball(outer, inner, pose, &Approximate::between(&Pose::IDENTITY, pose))
 }
 
 /// The f64 filter's bound is that of [`crate::exact::sphere`].
@@ -126,11 +106,8 @@ fn inner_ball(outer: &Ball, inner: &Ball, pose: &Pose, map: &Approximate) -> boo
         sphere::compare(&d, map.error(largest(&centre)), room)
     };
     let unit = || {
-        let lengths = outer
-            .centre
-            .iter()
-            .chain(&inner.centre)
-            .chain([&outer.radius, &inner.radius]);
+        let lengths =
+            outer.centre.iter().chain(&inner.centre).chain([&outer.radius, &inner.radius]);
         unit_of(lengths.map(|x| f64::from(*x)).chain(pose.translation()))
     };
     cascade(
@@ -148,9 +125,7 @@ fn in_ball<N: Number>(outer: &Ball, inner: &Ball, pose: &Pose, unit: i32) -> Opt
         &map.own(&outer.centre.map(f64::from), unit),
     );
     let lift = |x: f32| N::lift(f64::from(x), unit);
-    let room = map
-        .scale
-        .times(&lift(outer.radius).minus(&lift(inner.radius)));
+    let room = map.scale.times(&lift(outer.radius).minus(&lift(inner.radius)));
     Some(room.times(&room).minus(&dot(&d, &d)).sign()? != Ordering::Less)
 }
 

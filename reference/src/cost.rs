@@ -59,12 +59,7 @@ mod tests {
 
     #[test]
     fn total_is_linear_in_the_counts() {
-        let cost = VolumeCost {
-            update: 2.0,
-            hit: 3.0,
-            miss: 5.0,
-            construct: 7.0,
-        };
+        let cost = VolumeCost { update: 2.0, hit: 3.0, miss: 5.0, construct: 7.0 };
         assert_eq!(total(1, 10, 100, &cost), 2.0 + 30.0 + 500.0 + 7.0);
     }
 }

@@ -10,9 +10,7 @@ pub type Matrix<N> = [[N; 3]; 3];
 
 /// a·b
 pub fn dot<N: Number>(a: &Vector<N>, b: &Vector<N>) -> N {
-    a[0].times(&b[0])
-        .plus(&a[1].times(&b[1]))
-        .plus(&a[2].times(&b[2]))
+    a[0].times(&b[0]).plus(&a[1].times(&b[1])).plus(&a[2].times(&b[2]))
 }
 
 /// a × b
@@ -64,11 +62,8 @@ pub fn integers<N: Number>(a: [i32; 3]) -> Vector<N> {
 
 /// |q|² of a quaternion.
 pub fn norm_squared<N: Number>(q: &[N; 4]) -> N {
-    dot(
-        &[q[0].clone(), q[1].clone(), q[2].clone()],
-        &[q[0].clone(), q[1].clone(), q[2].clone()],
-    )
-    .plus(&q[3].times(&q[3]))
+    dot(&[q[0].clone(), q[1].clone(), q[2].clone()], &[q[0].clone(), q[1].clone(), q[2].clone()])
+        .plus(&q[3].times(&q[3]))
 }
 
 /// R(q), the rotation by the quaternion (x, y, z, w) times |q|²: quadratic in q, free of divisions.
@@ -95,9 +90,7 @@ pub fn conjugate_product<N: Number>(a: &[N; 4], b: &[N; 4]) -> [N; 4] {
     let component = |i: usize, j: usize, k: usize| {
         // w_a b_i − a_i w_b − (a × b)_i
         let [ai, bi] = imaginary(i);
-        a[3].times(bi)
-            .minus(&ai.times(&b[3]))
-            .minus(&a[j].times(&b[k]).minus(&a[k].times(&b[j])))
+        a[3].times(bi).minus(&ai.times(&b[3])).minus(&a[j].times(&b[k]).minus(&a[k].times(&b[j])))
     };
     let real = (0..4).map(|i| a[i].times(&b[i])).reduce(|s, p| s.plus(&p));
     [
@@ -124,14 +117,7 @@ mod tests {
         let norm = norm_squared(&a).times(&norm_squared(&b));
         for (i, row) in square.iter().enumerate() {
             for (j, entry) in row.iter().enumerate() {
-                assert_eq!(
-                    *entry,
-                    if i == j {
-                        norm.times(&norm)
-                    } else {
-                        IBig::ZERO
-                    }
-                );
+                assert_eq!(*entry, if i == j { norm.times(&norm) } else { IBig::ZERO });
             }
         }
     }

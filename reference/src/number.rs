@@ -118,11 +118,8 @@ pub fn dyadic(x: f64) -> (i64, i32) {
     // 11 bits of exponent always fit an i32.
     let field = (bits >> 52 & 0x7ff) as i32;
     let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let (mantissa, exponent) = if field == 0 {
-        (fraction, -1074)
-    } else {
-        (fraction | 1 << 52, field - 1075)
-    };
+    let (mantissa, exponent) =
+        if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) };
     let zeros = mantissa.trailing_zeros();
     let odd = mantissa >> zeros;
     (if x < 0.0 { -odd } else { odd }, exponent + zeros as i32)
@@ -130,10 +127,7 @@ pub fn dyadic(x: f64) -> (i64, i32) {
 
 /// The largest u such that every number is a multiple of 2^u; 0 when all are zero.
 pub fn unit_of(numbers: impl IntoIterator<Item = f64>) -> i32 {
-    let units = numbers
-        .into_iter()
-        .filter(|x| *x != 0.0)
-        .map(|x| dyadic(x).1);
+    let units = numbers.into_iter().filter(|x| *x != 0.0).map(|x| dyadic(x).1);
     units.min().unwrap_or(0)
 }
 
@@ -149,14 +143,9 @@ mod tests {
 
     #[test]
     fn every_float_is_its_dyadic_parts() {
-        for x in [
-            1.0,
-            -0.75,
-            5e-324,
-            f64::MIN_POSITIVE,
-            f64::MAX,
-            f64::from(f32::MIN_POSITIVE) / 3.0,
-        ] {
+        for x in
+            [1.0, -0.75, 5e-324, f64::MIN_POSITIVE, f64::MAX, f64::from(f32::MIN_POSITIVE) / 3.0]
+        {
             let (m, e) = dyadic(x);
             assert_ne!(m % 2, 0, "{x}");
             // Two steps, as 2^e alone may leave the range.

@@ -12,10 +12,7 @@ pub struct Pose {
 
 impl Pose {
     /// The body frame itself.
-    pub const IDENTITY: Self = Self {
-        q: [0.0, 0.0, 0.0, 1.0],
-        t: [0.0; 3],
-    };
+    pub const IDENTITY: Self = Self { q: [0.0, 0.0, 0.0, 1.0], t: [0.0; 3] };
 
     /// A pose of the quaternion q = (x, y, z, w) and the translation t.
     ///

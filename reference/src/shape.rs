@@ -49,15 +49,7 @@ impl Shape {
         check_mesh(&vertices, &triangles)?;
         let polytope = Polytope::new(&slabs)?;
         let obb = Polytope::new(&slabs.axes_only())?;
-        Ok(Self {
-            ball,
-            slabs,
-            polytope,
-            obb,
-            vertices,
-            triangles,
-            mesh: OnceLock::new(),
-        })
+        Ok(Self { ball, slabs, polytope, obb, vertices, triangles, mesh: OnceLock::new() })
     }
 
     /// A mesh of which only the triangles are used: its ball and slabs are those of a cube about
@@ -69,10 +61,7 @@ impl Shape {
         vertices: Vec<[f32; 3]>,
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, InvalidInput> {
-        let ball = Ball {
-            centre: [0.0; 3],
-            radius: 2.0,
-        };
+        let ball = Ball { centre: [0.0; 3], radius: 2.0 };
         let slabs = Slabs {
             directions: DirectionSet::K6,
             basis: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -87,16 +76,12 @@ impl Shape {
     /// # Errors
     /// As [`Shape::new`].
     pub fn with_obb(self, slabs: &Slabs) -> Result<Self, InvalidInput> {
-        Ok(Self {
-            obb: Polytope::new(slabs)?,
-            ..self
-        })
+        Ok(Self { obb: Polytope::new(slabs)?, ..self })
     }
 
     /// The mesh prepared for exact judgement, at first use.
     pub fn mesh(&self) -> &Mesh {
-        self.mesh
-            .get_or_init(|| Mesh::checked(&self.vertices, &self.triangles))
+        self.mesh.get_or_init(|| Mesh::checked(&self.vertices, &self.triangles))
     }
 
     /// The vertices in f64.

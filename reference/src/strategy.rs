@@ -140,13 +140,7 @@ impl<'a> PlainPredicates<'a> {
     pub fn new(bodies: &'a [Body<'a>], overlap: Overlap) -> Self {
         let none = || vec![OnceCell::new(); bodies.len()];
         let extents = std::array::from_fn(|_| vec![OnceCell::new(); bodies.len()]);
-        Self {
-            bodies,
-            overlap,
-            ordops: none(),
-            obbs: none(),
-            extents,
-        }
+        Self { bodies, overlap, ordops: none(), obbs: none(), extents }
     }
 
     fn delta(&self, i: u32, j: u32) -> Vector<f64> {
@@ -177,12 +171,7 @@ impl OverlapTests for PlainPredicates<'_> {
     }
 
     fn ordops(&self, i: u32, j: u32) -> bool {
-        ordop::overlap_turned(
-            self.ordop(i),
-            self.ordop(j),
-            &self.delta(i, j),
-            self.overlap,
-        )
+        ordop::overlap_turned(self.ordop(i), self.ordop(j), &self.delta(i, j), self.overlap)
     }
 
     fn world_kdops(&self, i: u32, j: u32, directions: DirectionSet) -> bool {

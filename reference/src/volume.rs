@@ -26,14 +26,8 @@ pub enum DirectionSet {
 }
 
 const AXES: [[i32; 3]; 3] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-const FACE_DIAGONALS: [[i32; 3]; 6] = [
-    [1, 1, 0],
-    [1, -1, 0],
-    [1, 0, 1],
-    [1, 0, -1],
-    [0, 1, 1],
-    [0, 1, -1],
-];
+const FACE_DIAGONALS: [[i32; 3]; 6] =
+    [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];
 const CUBE_DIAGONALS: [[i32; 3]; 4] = [[1, 1, 1], [-1, 1, 1], [1, -1, 1], [-1, -1, 1]];
 
 impl DirectionSet {
@@ -88,11 +82,7 @@ pub(crate) fn check_mesh(
     }
     for (triangle, indices) in triangles.iter().enumerate() {
         if let Some(&vertex) = indices.iter().find(|i| **i as usize >= vertices.len()) {
-            return Err(InvalidInput::Index {
-                triangle,
-                vertex,
-                vertices: vertices.len(),
-            });
+            return Err(InvalidInput::Index { triangle, vertex, vertices: vertices.len() });
         }
     }
     Ok(())

@@ -110,11 +110,7 @@ fn held(exact: RBig) -> Option<f64> {
 fn scaled(q: [f64; 4]) -> [f64; 4] {
     let exponent = |q: [f64; 4]| (largest_of(q).to_bits() >> 52) as i32 - 1023;
     // First out of the subnormal numbers, which have no exponent of their own.
-    let q = if exponent(q) < 0 {
-        q.map(|x| x * power_of_two(600))
-    } else {
-        q
-    };
+    let q = if exponent(q) < 0 { q.map(|x| x * power_of_two(600)) } else { q };
     // Two steps: one alone may leave the normal numbers.
     let down = -exponent(q);
     q.map(|x| x * power_of_two(down / 2) * power_of_two(down - down / 2))
@@ -131,11 +127,7 @@ pub fn meet(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Meeting {
 
 /// A point that two posed meshes share; `None` when they don't meet.
 pub fn common_point(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Option<Point> {
-    let [a, b] = [a, b].map(|(shape, pose)| Body {
-        shape,
-        pose: pose.0,
-        dynamic: true,
-    });
+    let [a, b] = [a, b].map(|(shape, pose)| Body { shape, pose: pose.0, dynamic: true });
     common::of_meshes(&a, &b)
 }
 
@@ -152,10 +144,6 @@ pub fn balls_overlap(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Decision
 /// Whether no face normal of the first or-DOP separates it from the second: the one-sided test.
 pub fn slabs_overlap(a: (&Shape, &WidePose), b: (&Shape, &WidePose)) -> Decision<bool> {
     let (a, b) = ((&a.1.0, &a.0.polytope), (&b.1.0, &b.0.polytope));
-    cascade(
-        || None,
-        || axes::one_sided::<Interval>(a, b),
-        || axes::one_sided::<IBig>(a, b),
-    )
-    .map(|separated| !separated)
+    cascade(|| None, || axes::one_sided::<Interval>(a, b), || axes::one_sided::<IBig>(a, b))
+        .map(|separated| !separated)
 }

@@ -82,12 +82,7 @@ pub(crate) fn refuse(
     value: String,
     hint: &'static str,
 ) -> Result<(), ContractError> {
-    Err(ContractError {
-        body,
-        quantity,
-        value,
-        hint,
-    })
+    Err(ContractError { body, quantity, value, hint })
 }
 
 #[cfg(test)]
@@ -101,26 +96,16 @@ mod tests {
         assert_eq!(check_number(MOST_BODIES), Ok(()));
         let told = check_number(MOST_BODIES + 1).map_err(|error| error.to_string());
         let [more, most] = [MOST_BODIES + 1, MOST_BODIES];
-        assert_eq!(
-            told,
-            Err(format!("body {most}: number {more} of {most} at most"))
-        );
+        assert_eq!(told, Err(format!("body {most}: number {more} of {most} at most")));
     }
 
     /// An error names a body of a share by its number in the whole scene.
     #[cfg(feature = "internals")]
     #[test]
     fn error_uses_scene_body_number() {
-        let own = ContractError {
-            body: 3,
-            quantity: "shape",
-            value: "7".to_owned(),
-            hint: "mend it",
-        };
-        let whole = ContractError {
-            body: 43,
-            ..own.clone()
-        };
+        let own =
+            ContractError { body: 3, quantity: "shape", value: "7".to_owned(), hint: "mend it" };
+        let whole = ContractError { body: 43, ..own.clone() };
         assert_eq!(own.numbered(40), whole);
     }
 }

@@ -137,22 +137,15 @@ impl<'a> PairFilter<'a> {
 
     /// A filter of groups alone.
     pub fn of_groups(groups: Option<&'a [super::Groups]>) -> Option<Self> {
-        groups.map(|groups| Self {
-            groups: Some(groups),
-            excluded: None,
-        })
+        groups.map(|groups| Self { groups: Some(groups), excluded: None })
     }
 
     /// Whether two bodies may be reported as a pair.
     #[inline]
     pub fn passes(&self, a: u32, b: u32) -> bool {
-        let collide = self
-            .groups
-            .is_none_or(|groups| groups[a as usize].collide(groups[b as usize]));
-        collide
-            && self
-                .excluded
-                .is_none_or(|excluded| !excluded.contains(a, b))
+        let collide =
+            self.groups.is_none_or(|groups| groups[a as usize].collide(groups[b as usize]));
+        collide && self.excluded.is_none_or(|excluded| !excluded.contains(a, b))
     }
 }
 

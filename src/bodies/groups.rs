@@ -12,10 +12,7 @@ pub struct Groups {
 
 impl Groups {
     /// In all groups, and collides with all: the default.
-    pub const ALL: Self = Self {
-        member: u32::MAX,
-        mask: u32::MAX,
-    };
+    pub const ALL: Self = Self { member: u32::MAX, mask: u32::MAX };
 
     /// Whether each of two bodies is in a group that the other collides with.
     #[inline(always)]
@@ -40,10 +37,7 @@ mod tests {
     fn groups_must_collide_mutually() {
         for (member, mask) in [(0b01, 0b10), (0b10, 0b01), (0b01, 0b01)] {
             let one = Groups { member, mask };
-            for other in (0..16).map(|bits| Groups {
-                member: bits & 3,
-                mask: bits >> 2,
-            }) {
+            for other in (0..16).map(|bits| Groups { member: bits & 3, mask: bits >> 2 }) {
                 let sees =
                     |a: Groups, b: Groups| (0..2).any(|i| a.mask >> i & b.member >> i & 1 == 1);
                 let expected = sees(one, other) && sees(other, one);

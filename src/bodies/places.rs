@@ -28,11 +28,7 @@ impl Places {
         let moving = body.len();
         body.extend(fixed);
         let shape = body.iter().map(|&b| bodies.shape[b as usize]).collect();
-        Self {
-            body,
-            shape,
-            moving,
-        }
+        Self { body, shape, moving }
     }
 
     /// The order of the user's columns, with every body taken as moving: for timing a stage without
@@ -40,11 +36,7 @@ impl Places {
     #[must_use]
     pub fn as_given(bodies: &Bodies) -> Self {
         let n = bodies.shape.len();
-        Self {
-            body: (0..n as u32).collect(),
-            shape: bodies.shape.clone(),
-            moving: n,
-        }
+        Self { body: (0..n as u32).collect(), shape: bodies.shape.clone(), moving: n }
     }
 
     /// Number of bodies.

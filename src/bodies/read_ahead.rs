@@ -48,17 +48,11 @@ mod tests {
     fn read<const N: usize>(elements: usize, wanted: usize) -> Vec<usize> {
         let column: Vec<[f32; N]> = (0..elements).map(|i| [(N * i) as f32; N]).collect();
         let seen = Mutex::new(Vec::new());
-        let is_read = read_ahead(
-            &Threads::default(),
-            &column,
-            wanted,
-            MOST_BYTES,
-            |element| {
-                let mut seen = seen.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-                seen.push(element[0] as usize);
-                element[0]
-            },
-        );
+        let is_read = read_ahead(&Threads::default(), &column, wanted, MOST_BYTES, |element| {
+            let mut seen = seen.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            seen.push(element[0] as usize);
+            element[0]
+        });
         let seen = seen.into_inner().unwrap_or_default();
         assert_eq!(is_read, !seen.is_empty() || elements == 0);
         seen
@@ -70,15 +64,8 @@ mod tests {
         // A line is sixteen numbers long, wherever the lines begin.
         let gaps = seen.windows(2).map(|two| two[1] - two[0]);
         assert!(gaps.max().is_some_and(|gap| gap <= 16), "{N}");
-        assert!(
-            seen[0] == 0 && N * elements - seen[seen.len() - 1] <= 16 + N,
-            "{N}"
-        );
-        assert!(
-            seen.len() <= 1 + elements.div_ceil(2),
-            "{N}: {}",
-            seen.len()
-        );
+        assert!(seen[0] == 0 && N * elements - seen[seen.len() - 1] <= 16 + N, "{N}");
+        assert!(seen.len() <= 1 + elements.div_ceil(2), "{N}: {}", seen.len());
     }
 
     /// Each line of a column is read and hardly one twice.

@@ -23,10 +23,7 @@ impl Kernel for MakeCubes<'_> {
     type Output = (f32, bool);
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> (f32, bool) {
-        let mut seen = CubeFacts {
-            gap: l.splat(0.0),
-            sound: u32::MAX,
-        };
+        let mut seen = CubeFacts { gap: l.splat(0.0), sound: u32::MAX };
         let numbers = numbers_of(self.boxes);
         let mut ahead = self.ahead.chunks(MAX_WIDTH);
         let cubes = self.cubes.chunks_mut(MAX_WIDTH);
@@ -122,16 +119,10 @@ mod tests {
                     let centre: [f32; 3] = std::array::from_fn(|k| (min[k] + max[k]) / 16.0);
                     let half = (0..3).map(|k| (max[k] - min[k]) / 16.0).fold(0.0, f32::max);
                     assert_eq!(cube[..3], centre, "{tier}: {name} of {count}");
-                    assert!(
-                        cube[3] >= half && cube[3] <= half * 1.000_01,
-                        "{tier}: {name}"
-                    );
+                    assert!(cube[3] >= half && cube[3] <= half * 1.000_01, "{tier}: {name}");
                 }
                 // The longest has H = 50 and h = 1/2.
-                assert!(
-                    (49.5..49.501).contains(&gap) && are_sound,
-                    "{tier}: {gap} of {count}"
-                );
+                assert!((49.5..49.501).contains(&gap) && are_sound, "{tier}: {gap} of {count}");
             }
         }
     }

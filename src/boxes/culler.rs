@@ -44,12 +44,7 @@ pub struct BoxCullerBuilder {
 
 impl Default for BoxCullerBuilder {
     fn default() -> Self {
-        Self {
-            finder: Finder::Auto,
-            threads: 1,
-            worth_waking: WORTH_WAKING,
-            tier: None,
-        }
+        Self { finder: Finder::Auto, threads: 1, worth_waking: WORTH_WAKING, tier: None }
     }
 }
 
@@ -71,10 +66,7 @@ impl BoxCullerBuilder {
     /// for always. Lists and counters don't depend on it.
     pub fn worth_waking(self, nanoseconds: u64) -> Self {
         let worth_waking = nanoseconds;
-        Self {
-            worth_waking,
-            ..self
-        }
+        Self { worth_waking, ..self }
     }
 
     /// A SIMD tier instead of the fastest of this CPU. Lists and counters don't depend on it.
@@ -254,11 +246,7 @@ mod tests {
     fn builder_keeps_choices() {
         let built = BoxCuller::builder();
         assert_eq!(built, BoxCullerBuilder::default());
-        let built = built
-            .threads(3)
-            .worth_waking(7)
-            .tier(Tier::SCALAR)
-            .finder(Finder::Sweep);
+        let built = built.threads(3).worth_waking(7).tier(Tier::SCALAR).finder(Finder::Sweep);
         let wanted = BoxCullerBuilder {
             finder: Finder::Sweep,
             threads: 3,
@@ -266,10 +254,7 @@ mod tests {
             tier: Some(Tier::SCALAR),
         };
         assert_eq!(built, wanted);
-        let other = BoxCullerBuilder {
-            threads: 5,
-            ..wanted
-        };
+        let other = BoxCullerBuilder { threads: 5, ..wanted };
         assert_eq!(built.threads(5), other);
     }
 
@@ -298,11 +283,7 @@ mod tests {
             world.insert(aabb).unwrap();
         }
         world.cull().unwrap();
-        let every = VolumeCounters {
-            updates: 2000,
-            tests: 2000 * 1999 / 2,
-            hits: 0,
-        };
+        let every = VolumeCounters { updates: 2000, tests: 2000 * 1999 / 2, hits: 0 };
         assert_eq!([culler.counters(), world.counters()], [&every; 2]);
     }
 }

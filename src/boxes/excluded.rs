@@ -46,9 +46,7 @@ impl BoxWorld {
     #[must_use]
     pub fn excluded(&self) -> Vec<[BodyId; 2]> {
         let pairs = self.excluded.sorted();
-        let ids = pairs
-            .into_iter()
-            .map(|pair| pair.map(|slot| self.ids.id(slot)));
+        let ids = pairs.into_iter().map(|pair| pair.map(|slot| self.ids.id(slot)));
         ids.collect()
     }
 }

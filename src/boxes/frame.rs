@@ -151,28 +151,18 @@ impl BoxFrames {
         let executor = pool.executor(self.tier);
         let names = &self.places.body;
         let are_long = !self.cubes_decide(gap);
-        let given = Some(GivenBoxes {
-            all: boxes,
-            are_long,
-        });
-        self.finder
-            .arrange(executor, &self.places, &self.cubes, names, given);
+        let given = Some(GivenBoxes { all: boxes, are_long });
+        self.finder.arrange(executor, &self.places, &self.cubes, names, given);
         let slots = self.finder.slots(&self.cubes);
         let test = if are_long {
             let order = &slots.names[..names.len()];
-            self.ends
-                .fill(executor, order, boxes, self.finder.hands_out_runs());
+            self.ends.fill(executor, order, boxes, self.finder.hands_out_runs());
             BoxTest::Ends(&self.ends)
         } else {
             let less = less_than_sure(gap);
             BoxTest::Cubes(CubeTest { slots, boxes, less })
         };
-        let inputs = BoxInputs {
-            executor,
-            finder: &self.finder,
-            test,
-            filter,
-        };
+        let inputs = BoxInputs { executor, finder: &self.finder, test, filter };
         let mut counted = list_boxes(inputs, &mut self.tasks, output);
         counted.updates = self.places.moving as u64;
         self.candidates = counted.tests;
@@ -208,9 +198,8 @@ impl BoxFrames {
     /// invalid.
     fn make_cubes(&mut self, boxes: &[Aabb], range: Range<usize>) -> Option<f32> {
         let pool = self.threads.get();
-        let are_near = read_ahead(pool, boxes, range.len(), MOST_READ_AHEAD_BYTES, |aabb| {
-            aabb.min[0]
-        });
+        let are_near =
+            read_ahead(pool, boxes, range.len(), MOST_READ_AHEAD_BYTES, |aabb| aabb.min[0]);
         let names = &self.places.body[range.clone()];
         // The bits of non-negative numbers sort as the values do.
         let (greatest, are_sound) = (AtomicU32::new(0), AtomicBool::new(true));
@@ -235,12 +224,8 @@ impl BoxFrames {
     fn cubes_decide(&self, gap: f32) -> bool {
         let step = self.cubes.len().div_ceil(SAMPLE_SIZE).max(1);
         let asked = self.cubes.iter().step_by(step);
-        let (all, small) = (
-            asked.len(),
-            asked
-                .filter(|cube| cube[3] < LEAST_CUBIC_RATIO * gap)
-                .count(),
-        );
+        let (all, small) =
+            (asked.len(), asked.filter(|cube| cube[3] < LEAST_CUBIC_RATIO * gap).count());
         SAMPLES_PER_EXCEPTION * small <= all
     }
 
@@ -266,12 +251,7 @@ fn finder(choice: Finder, boxes: usize) -> PairFinder {
 }
 
 fn population(boxes: usize) -> Population {
-    Population {
-        bodies: boxes,
-        radii: [1.0; 2],
-        cheap_test: true,
-        volume: Volume::Cube,
-    }
+    Population { bodies: boxes, radii: [1.0; 2], cheap_test: true, volume: Volume::Cube }
 }
 
 #[cfg(test)]
@@ -307,11 +287,8 @@ mod tests {
 
     /// The frames of `boxes` boxes, all of which may move, before the first cull.
     fn frames(choice: Finder, boxes: usize) -> BoxFrames {
-        let mut frames = BoxFrames::new(
-            choice,
-            Tier::SCALAR,
-            FrameThreads::new(Threads::default(), 0),
-        );
+        let mut frames =
+            BoxFrames::new(choice, Tier::SCALAR, FrameThreads::new(Threads::default(), 0));
         frames.replace(&vec![true; boxes], &vec![true; boxes]);
         frames
     }
@@ -324,28 +301,17 @@ mod tests {
             frames.replace(&vec![true; boxes], &vec![true; boxes]);
             frames.news
         };
-        assert_eq!(
-            set(&mut frames, 1001),
-            SetChange::All,
-            "nothing was culled yet"
-        );
+        assert_eq!(set(&mut frames, 1001), SetChange::All, "nothing was culled yet");
         let mut pairs = PairList::default();
         let boxes = all_in_a_row(2000);
         frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
-        assert_eq!(
-            (frames.news, frames.candidates > 0),
-            (SetChange::None, true)
-        );
+        assert_eq!((frames.news, frames.candidates > 0), (SetChange::None, true));
         assert_eq!(set(&mut frames, 1010), SetChange::Some);
         assert_eq!(set(&mut frames, 2000), SetChange::All);
         assert_eq!(frames.candidates, 0);
         frames.choice = Finder::Sweep;
         frames.news = SetChange::None;
-        assert_eq!(
-            set(&mut frames, 2001),
-            SetChange::All,
-            "another finder knows nothing"
-        );
+        assert_eq!(set(&mut frames, 2001), SetChange::All, "another finder knows nothing");
     }
 
     /// If cells were planned from boxes without extent, giants and small boxes would share them:

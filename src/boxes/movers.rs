@@ -44,10 +44,7 @@ impl BoxWorld {
             let present = self.ids.iter().map(|id| self.indexed(id.slot() as u32));
             movers.take_index(BoxIndex::of(present, self.ids.len()));
         }
-        let rules = PairRules {
-            groups: &self.groups,
-            excluded: &self.excluded,
-        };
+        let rules = PairRules { groups: &self.groups, excluded: &self.excluded };
         let work = movers.find(|slot| self.indexed(slot), rules, most);
         if let Some(work) = work {
             let present = |&&slot: &&u32| self.ids.present()[slot as usize];

@@ -78,9 +78,7 @@ impl BoxWorld {
         self.resting = resting;
         self.excluded = excluded;
         let groups = snapshot.groups.iter();
-        self.groups = groups
-            .map(|&[member, mask]| Groups { member, mask })
-            .collect();
+        self.groups = groups.map(|&[member, mask]| Groups { member, mask }).collect();
         self.count_groups();
         self.movers.forget();
         self.replaced = true;

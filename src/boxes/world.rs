@@ -23,11 +23,7 @@ pub struct BoxBody {
 impl From<Aabb> for BoxBody {
     /// A dynamic box that collides with all.
     fn from(bounds: Aabb) -> Self {
-        Self {
-            bounds,
-            motion: Motion::Dynamic,
-            groups: Groups::ALL,
-        }
+        Self { bounds, motion: Motion::Dynamic, groups: Groups::ALL }
     }
 }
 
@@ -333,10 +329,7 @@ mod tests {
     }
 
     fn at_rest(x: f32) -> BoxBody {
-        BoxBody {
-            motion: Motion::Fixed,
-            ..at(x).into()
-        }
+        BoxBody { motion: Motion::Fixed, ..at(x).into() }
     }
 
     /// The next cull searches changed boxes and no others.
@@ -346,27 +339,15 @@ mod tests {
         assert!(world.is_empty() && !world.replaced);
         let one = world.insert(at(0.0)).unwrap();
         let fixed = world.insert(at_rest(0.5)).unwrap();
-        assert_eq!(
-            (world.is_empty(), world.len(), world.slots()),
-            (false, 2, 2)
-        );
+        assert_eq!((world.is_empty(), world.len(), world.slots()), (false, 2, 2));
         // A change of the world, and whether the next cull must test boxes again.
         type Call = fn(&mut BoxWorld, BodyId, BodyId);
         let calls: [(Call, bool); 8] = [
             (|_, _, _| (), false),
-            (
-                |world, one, _| world.set_bounds(one, at(0.2)).unwrap(),
-                false,
-            ),
+            (|world, one, _| world.set_bounds(one, at(0.2)).unwrap(), false),
             (|world, one, _| world.set(one, at(0.1)).unwrap(), false),
-            (
-                |world, _, fixed| world.set_bounds(fixed, at(0.6)).unwrap(),
-                true,
-            ),
-            (
-                |world, _, fixed| world.set(fixed, at_rest(0.7)).unwrap(),
-                true,
-            ),
+            (|world, _, fixed| world.set_bounds(fixed, at(0.6)).unwrap(), true),
+            (|world, _, fixed| world.set(fixed, at_rest(0.7)).unwrap(), true),
             (|world, one, _| world.set(one, at_rest(0.0)).unwrap(), true),
             (|world, one, _| world.set(one, at(0.0)).unwrap(), true),
             (|world, _, fixed| world.remove(fixed).unwrap(), true),
@@ -377,17 +358,10 @@ mod tests {
             assert_eq!(world.replaced, is_news, "call {call}");
             world.set_bounds(one, at(0.0)).unwrap();
             world.cull().unwrap();
-            assert_eq!(
-                world.pairs().len(),
-                usize::from(call < 7 && call != 5),
-                "call {call}"
-            );
+            assert_eq!(world.pairs().len(), usize::from(call < 7 && call != 5), "call {call}");
             assert!(!world.replaced);
         }
-        assert_eq!(
-            (world.is_empty(), world.len(), world.slots()),
-            (false, 1, 2)
-        );
+        assert_eq!((world.is_empty(), world.len(), world.slots()), (false, 1, 2));
         world.remove(one).unwrap();
         assert_eq!((world.is_empty(), world.len(), world.slots()), (true, 0, 2));
     }
@@ -395,10 +369,7 @@ mod tests {
     /// Groups count where some or none collide with all.
     #[test]
     fn grouped_boxes_are_counted() {
-        let only = |group| Groups {
-            member: group,
-            mask: group,
-        };
+        let only = |group| Groups { member: group, mask: group };
         for (groups, meet) in [
             ([Groups::ALL, Groups::ALL], true),
             ([Groups::ALL, only(1)], true),
@@ -407,10 +378,7 @@ mod tests {
         ] {
             let mut world = BoxWorld::new();
             for groups in groups {
-                let body = BoxBody {
-                    groups,
-                    ..at(0.0).into()
-                };
+                let body = BoxBody { groups, ..at(0.0).into() };
                 world.insert(body).unwrap();
             }
             world.cull().unwrap();

@@ -68,13 +68,7 @@ mod tests {
     fn auto_picks_by_count_and_cost() {
         let pick = |bodies, widest, cheap_test| {
             let radii = [2.0, 2.0_f32 * widest];
-            Population {
-                bodies,
-                radii,
-                cheap_test,
-                volume: Volume::Ball,
-            }
-            .finder()
+            Population { bodies, radii, cheap_test, volume: Volume::Ball }.finder()
         };
         assert_eq!(pick(0, 1.0, true), Finder::AllPairs);
         assert_eq!(pick(64, 16.0, true), Finder::AllPairs);

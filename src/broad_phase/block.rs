@@ -40,11 +40,7 @@ impl<'a> Block<'a> {
     /// arbitrary codes follows them.
     #[inline(always)]
     pub(crate) fn new(first: usize, padded: &'a [u32], len: usize) -> Self {
-        Self {
-            first,
-            codes: &padded[..len],
-            padded: &padded[..len + MAX_WIDTH],
-        }
+        Self { first, codes: &padded[..len], padded: &padded[..len + MAX_WIDTH] }
     }
 
     /// The first slot, that of lane 0.
@@ -123,19 +119,14 @@ impl BlockPage {
     #[inline(always)]
     pub fn long_runs(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
         let long = &self.long[..self.long_len];
-        long.iter()
-            .map(|&(i, start, end)| (i as usize, start as usize..end as usize))
+        long.iter().map(|&(i, start, end)| (i as usize, start as usize..end as usize))
     }
 
     /// Empties the page for the slots from `first` on, and returns a writer for their runs.
     #[inline(always)]
     pub fn restart(&mut self, first: usize) -> RunWriter<'_> {
         self.first = first;
-        RunWriter {
-            page: self,
-            len: 0,
-            long_len: 0,
-        }
+        RunWriter { page: self, len: 0, long_len: 0 }
     }
 }
 
@@ -200,10 +191,7 @@ mod tests {
         let mut page = BlockPage::new();
         let mut pen = page.restart(64);
         let (mut short, mut long) = (Vec::new(), Vec::new());
-        for (lane, length) in [0, 1, 7, 8, 9, 16, 0, 17, 15, 300, 2]
-            .into_iter()
-            .enumerate()
-        {
+        for (lane, length) in [0, 1, 7, 8, 9, 16, 0, 17, 15, 300, 2].into_iter().enumerate() {
             assert!(!pen.is_full(1));
             let start = 1000 * lane as u32;
             pen.push(lane, start..start + length);

@@ -16,11 +16,8 @@ pub struct BallBounds {
 
 impl BallBounds {
     /// The bounds of an empty set.
-    pub const EMPTY: Self = Self {
-        lo: [f32::INFINITY; 3],
-        hi: [f32::NEG_INFINITY; 3],
-        widest: 0.0,
-    };
+    pub const EMPTY: Self =
+        Self { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3], widest: 0.0 };
 
     /// The bounds of some balls.
     #[must_use]
@@ -60,10 +57,7 @@ impl Kernel for FindExtremes<'_> {
                 hi[k] = l.max(numbers, hi[k]);
             }
         }
-        let mut ends = [
-            [f32::INFINITY; NUMBERS_PER_CHUNK],
-            [f32::NEG_INFINITY; NUMBERS_PER_CHUNK],
-        ];
+        let mut ends = [[f32::INFINITY; NUMBERS_PER_CHUNK], [f32::NEG_INFINITY; NUMBERS_PER_CHUNK]];
         for k in 0..vectors {
             l.store(lo[k], &mut ends[0][k * L::WIDTH..]);
             l.store(hi[k], &mut ends[1][k * L::WIDTH..]);
@@ -74,11 +68,7 @@ impl Kernel for FindExtremes<'_> {
         lows.for_each(|(i, x)| lo[i % 4] = lo[i % 4].min(*x));
         highs.for_each(|(i, x)| hi[i % 4] = hi[i % 4].max(*x));
         let ([x, y, z, _], [to_x, to_y, to_z, widest]) = (lo, hi);
-        BallBounds {
-            lo: [x, y, z],
-            hi: [to_x, to_y, to_z],
-            widest: widest.max(0.0),
-        }
+        BallBounds { lo: [x, y, z], hi: [to_x, to_y, to_z], widest: widest.max(0.0) }
     }
 }
 
@@ -100,11 +90,7 @@ mod tests {
                         _ => [[0.5, -4.0, -0.5], [3.0, 0.25, 5.0]],
                     };
                     let widest = 6.0;
-                    assert_eq!(
-                        bounds,
-                        BallBounds { lo, hi, widest },
-                        "{tier}, {extreme} of {n}"
-                    );
+                    assert_eq!(bounds, BallBounds { lo, hi, widest }, "{tier}, {extreme} of {n}");
                     assert_eq!(bounds.union(alone), bounds);
                     assert_eq!(BallBounds::EMPTY.union(bounds), bounds);
                 }

@@ -90,12 +90,7 @@ impl EndSlots {
         let boxes = numbers_of(boxes);
         let Executor { tier, pool } = executor;
         pool.pieces_of_two([lower, upper], BOXES_PER_TASK, |start, [lower, upper]| {
-            let fill = FillBoxes {
-                names: &order[start..],
-                boxes,
-                lower,
-                upper,
-            };
+            let fill = FillBoxes { names: &order[start..], boxes, lower, upper };
             dispatch(tier, fill);
         });
     }
@@ -104,12 +99,8 @@ impl EndSlots {
     pub fn hold(&self, executor: Executor<'_>, names: &[u32], boxes: &[Aabb]) -> bool {
         let Executor { tier, pool } = executor;
         pool.all(names.len(), BOXES_PER_TASK, |range| {
-            let within = BoxesWithin {
-                ends: self,
-                first: range.start,
-                names: &names[range],
-                boxes,
-            };
+            let within =
+                BoxesWithin { ends: self, first: range.start, names: &names[range], boxes };
             dispatch(tier, within)
         })
     }
@@ -125,16 +116,8 @@ impl EndSlots {
     fn vector<L: Lanes>(&self, l: L, start: usize) -> [[L::F; 3]; 2] {
         // Written out, because closures would be compiled without the tier's features.
         let [x, y, z, to_x, to_y, to_z] = &self.columns;
-        let lower = [
-            l.load(&x[start..]),
-            l.load(&y[start..]),
-            l.load(&z[start..]),
-        ];
-        let upper = [
-            l.load(&to_x[start..]),
-            l.load(&to_y[start..]),
-            l.load(&to_z[start..]),
-        ];
+        let lower = [l.load(&x[start..]), l.load(&y[start..]), l.load(&z[start..])];
+        let upper = [l.load(&to_x[start..]), l.load(&to_y[start..]), l.load(&to_z[start..])];
         [lower, upper]
     }
 
@@ -142,10 +125,7 @@ impl EndSlots {
     #[inline(always)]
     fn splat<L: Lanes>(&self, l: L, slot: usize) -> [[L::F; 3]; 2] {
         let ([x, y, z, _], [to_x, to_y, to_z, _]) = (self.lower[slot], self.upper[slot]);
-        [
-            [l.splat(x), l.splat(y), l.splat(z)],
-            [l.splat(to_x), l.splat(to_y), l.splat(to_z)],
-        ]
+        [[l.splat(x), l.splat(y), l.splat(z)], [l.splat(to_x), l.splat(to_y), l.splat(to_z)]]
     }
 }
 
@@ -189,10 +169,7 @@ impl SlotTest for EndSlots {
             let (code, [[x, y, z, _], lower]) = block.balls(l, start, &ours[0], &self.lower);
             let (_, [[to_x, to_y, to_z, _], upper]) = block.balls(l, start, &ours[1], &self.upper);
             let one = [[x, y, z], [to_x, to_y, to_z]];
-            let other = [
-                [lower[0], lower[1], lower[2]],
-                [upper[0], upper[1], upper[2]],
-            ];
+            let other = [[lower[0], lower[1], lower[2]], [upper[0], upper[1], upper[2]]];
             let hit = with_common_points(l, one, other, count - start);
             l.compress(hit, code, &mut hits[found..]);
             found += hit.count_ones() as usize;

@@ -33,11 +33,7 @@ impl PairFinder {
         }
         let (slots, by_place) = (self.own_slots().arranged(), self.slots_are_places());
         let ball = |slot: usize| {
-            if by_place {
-                balls[slot]
-            } else {
-                slots.ball(slot)
-            }
+            if by_place { balls[slot] } else { slots.ball(slot) }
         };
         let finite = |slot| ball(slot).iter().all(|x| x.is_finite());
         if !(0..n).all(finite) {
@@ -55,16 +51,10 @@ impl PairFinder {
         // Slots of moving bodies come first, as their places do.
         for i in 0..n {
             let fixed = seen.0[i] & u64::MAX.checked_shl(places.moving as u32).unwrap_or(0);
-            assert!(
-                i < places.moving || fixed == 0,
-                "static slots are candidates: {i}"
-            );
+            assert!(i < places.moving || fixed == 0, "static slots are candidates: {i}");
             for j in i + 1..n {
                 let may_lack = i >= places.moving || !meet(i, j);
-                assert!(
-                    may_lack || seen.has(i, j),
-                    "slots {i} and {j} meet and are no candidates"
-                );
+                assert!(may_lack || seen.has(i, j), "slots {i} and {j} meet and are no candidates");
             }
         }
     }
@@ -111,10 +101,7 @@ impl SeenPairs {
     }
 
     fn take(&mut self, i: usize, j: usize) {
-        assert!(
-            !self.has(i, j) && i != j,
-            "slots {i} and {j} are candidates twice"
-        );
+        assert!(!self.has(i, j) && i != j, "slots {i} and {j} are candidates twice");
         self.0[i.min(j)] |= 1 << i.max(j);
     }
 }

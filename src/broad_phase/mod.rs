@@ -215,11 +215,7 @@ impl PairFinder {
     #[must_use]
     pub fn slots<'a>(&'a self, balls: &'a Balls) -> SlotBodies<'a> {
         let slots = self.own_slots();
-        if self.slots_are_places() {
-            slots.followed(balls)
-        } else {
-            slots.arranged()
-        }
+        if self.slots_are_places() { slots.followed(balls) } else { slots.arranged() }
     }
 
     /// Whether places have the order of slots, so that columns by place can be read by slot.
@@ -294,26 +290,15 @@ mod tests {
     use crate::threads::Threads;
 
     fn population(bodies: usize) -> Population {
-        Population {
-            bodies,
-            radii: [1.0; 2],
-            cheap_test: true,
-            volume: Volume::Ball,
-        }
+        Population { bodies, radii: [1.0; 2], cheap_test: true, volume: Volume::Ball }
     }
 
     /// Bodies in a row, of which this finder has arranged two frames.
     fn arranged(finder: Finder, bodies: usize) -> PairFinder {
         let balls: Vec<_> = (0..bodies).map(|i| [i as f32, 1.0, 1.0, 0.5]).collect();
-        let mut places = Places {
-            body: (0..bodies as u32).collect(),
-            shape: vec![0; bodies],
-            moving: bodies,
-        };
-        let (mut finder, pool) = (
-            PairFinder::new(finder, &population(bodies)),
-            Threads::default(),
-        );
+        let mut places =
+            Places { body: (0..bodies as u32).collect(), shape: vec![0; bodies], moving: bodies };
+        let (mut finder, pool) = (PairFinder::new(finder, &population(bodies)), Threads::default());
         let mut order = Vec::new();
         for _ in 0..2 {
             let names = &places.body;
@@ -357,12 +342,7 @@ mod tests {
     fn staying_bodies_keep_their_cells() {
         for (finder, next, name, kept) in [
             (Finder::Grid, Finder::Grid, Finder::Grid, true),
-            (
-                Finder::Neighbours,
-                Finder::Neighbours,
-                Finder::Neighbours,
-                true,
-            ),
+            (Finder::Neighbours, Finder::Neighbours, Finder::Neighbours, true),
             (Finder::Auto, Finder::Auto, Finder::Neighbours, true),
             (Finder::Grid, Finder::Neighbours, Finder::Neighbours, false),
             (Finder::Neighbours, Finder::Grid, Finder::Grid, false),

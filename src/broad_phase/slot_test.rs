@@ -95,9 +95,7 @@ impl<T: BallTest> SlotTest for T {
                 l.load(&z[vector.clone()]),
                 l.load(&r[vector]),
             ];
-            let hit = hits_of(self, l, [one, other], run.end - start, |lane| {
-                [i, start + lane]
-            });
+            let hit = hits_of(self, l, [one, other], run.end - start, |lane| [i, start + lane]);
             found += list_slots(l, hit, start, &mut hits[found..found + MAX_WIDTH]);
             start += L::WIDTH;
         }

@@ -72,21 +72,14 @@ impl Slots {
 
     /// The bodies of a frame that has these balls.
     pub(crate) fn arranged(&self) -> SlotBodies<'_> {
-        SlotBodies {
-            balls: &self.balls,
-            columns: &self.columns,
-            names: &self.names,
-        }
+        SlotBodies { balls: &self.balls, columns: &self.columns, names: &self.names }
     }
 
     /// The bodies of a frame in which places have the order of slots, so that `balls` by place are
     /// those in slot order.
     pub(super) fn followed<'a>(&'a self, balls: &'a Balls) -> SlotBodies<'a> {
         let balls = &balls.padded;
-        SlotBodies {
-            balls,
-            ..self.arranged()
-        }
+        SlotBodies { balls, ..self.arranged() }
     }
 }
 
@@ -107,11 +100,7 @@ impl SlotBodies<'_> {
     #[must_use]
     pub fn ball(&self, slot: usize) -> [f32; 4] {
         let [x, y, z, r] = self.columns;
-        if x.is_empty() {
-            self.balls[slot]
-        } else {
-            [x[slot], y[slot], z[slot], r[slot]]
-        }
+        if x.is_empty() { self.balls[slot] } else { [x[slot], y[slot], z[slot], r[slot]] }
     }
 }
 

@@ -215,18 +215,7 @@ mod tests {
     /// Keys sort by value and stay in order when equal.
     #[test]
     fn radix_sort_is_stable() {
-        let keys = [
-            3.0,
-            -1e-40,
-            0.0,
-            -7.5,
-            3.0,
-            f32::MAX,
-            -0.0,
-            f32::MIN,
-            1e-40,
-            3.0,
-        ];
+        let keys = [3.0, -1e-40, 0.0, -7.5, 3.0, f32::MAX, -0.0, f32::MIN, 1e-40, 3.0];
         let mut expected: Vec<u32> = (0..keys.len() as u32).collect();
         expected.sort_by(|&a, &b| keys[a as usize].total_cmp(&keys[b as usize]));
         let mut sorter = Sorter::default();
@@ -257,11 +246,7 @@ mod tests {
         let mut order = vec![9];
         for age in 1..=3 * FRAMES_PER_REORDER {
             // Without bodies at first.
-            (sweep.len, sweep.moving) = if age > FRAMES_PER_REORDER {
-                (4, 2)
-            } else {
-                (0, 0)
-            };
+            (sweep.len, sweep.moving) = if age > FRAMES_PER_REORDER { (4, 2) } else { (0, 0) };
             sweep.slots.names = vec![7, 6, 5, 4];
             let names = [1, 2, 3, 4];
             let reorder = sweep.reorder(sweep.moving, &names[..sweep.len], &mut order);
@@ -277,11 +262,7 @@ mod tests {
     #[test]
     fn moving_and_static_have_parts() {
         let parts = |moving, len| {
-            let sweep = Sweep {
-                moving,
-                len,
-                ..Sweep::default()
-            };
+            let sweep = Sweep { moving, len, ..Sweep::default() };
             sweep.parts()
         };
         let found = [parts(0, 0), parts(64, 64), parts(65, 130), parts(0, 130)];
@@ -298,11 +279,7 @@ mod tests {
                 [40.0 + x, y - 7.0, z, 1.0]
             };
             let balls: Vec<_> = (0..6).map(ball).collect();
-            let mut sweep = Sweep {
-                axis: from,
-                fixed_sorted: true,
-                ..Sweep::default()
-            };
+            let mut sweep = Sweep { axis: from, fixed_sorted: true, ..Sweep::default() };
             sweep.turn(&balls);
             (sweep.axis, sweep.fixed_sorted)
         };

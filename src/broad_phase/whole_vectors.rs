@@ -26,10 +26,7 @@ pub fn check(test: &impl SlotTest) {
             [slots, codes]
         }
     }
-    let all = [
-        (0..SLOTS_PER_CHECK as u32).collect(),
-        codes(SLOTS_PER_CHECK),
-    ];
+    let all = [(0..SLOTS_PER_CHECK as u32).collect(), codes(SLOTS_PER_CHECK)];
     for tier in Tier::available() {
         assert_eq!(dispatch(tier, ListTouching(test)), all, "{tier}");
     }
@@ -37,7 +34,5 @@ pub fn check(test: &impl SlotTest) {
 
 /// Pairs of the first sixteen slots and others, as a block writes them.
 fn codes(pairs: usize) -> Vec<u32> {
-    (0..pairs as u32)
-        .map(|pair| (pair << 4) | (pair % 16))
-        .collect()
+    (0..pairs as u32).map(|pair| (pair << 4) | (pair % 16)).collect()
 }

@@ -46,18 +46,10 @@ unsafe fn spec(given: *const SdopShapeSpec) -> Result<ShapeSpec, Refusal> {
         k => k.to_string().parse()?,
     };
     Ok(ShapeSpec {
-        origin: if given.about_ball {
-            Origin::Ball
-        } else {
-            Origin::File
-        },
+        origin: if given.about_ball { Origin::Ball } else { Origin::File },
         radius: (given.radius != 0.0).then_some(given.radius),
         directions,
-        axes: if given.on_model_axes {
-            Axes::Model
-        } else {
-            Axes::Principal
-        },
+        axes: if given.on_model_axes { Axes::Model } else { Axes::Principal },
     })
 }
 
@@ -184,12 +176,8 @@ pub unsafe extern "C" fn sdop_culler_new(
 ) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
-        let (shapes, given) = unsafe {
-            (
-                self::shapes(shapes, shape_count)?,
-                shared(bodies, "bodies")?,
-            )
-        };
+        let (shapes, given) =
+            unsafe { (self::shapes(shapes, shape_count)?, shared(bodies, "bodies")?) };
         let n = given.count;
         // SAFETY: the caller's promise.
         let bodies = unsafe {
@@ -236,12 +224,8 @@ pub unsafe extern "C" fn sdop_culler_cull(
         let it = unsafe { handle(culler, "culler") }?;
         let n = it.bodies.len();
         // SAFETY: the caller's promise.
-        let (rotation, translation) = unsafe {
-            (
-                column(rotation, n, "rotation")?,
-                column(translation, n, "translation")?,
-            )
-        };
+        let (rotation, translation) =
+            unsafe { (column(rotation, n, "rotation")?, column(translation, n, "translation")?) };
         it.bodies.rotation.copy_from_slice(rotation);
         it.bodies.translation.copy_from_slice(translation);
         let found = it.culler.cull(&it.bodies)?.len();

@@ -148,10 +148,7 @@ pub fn call(run: impl FnOnce() -> Result<(), Refusal>) -> SdopStatus {
 }
 
 pub fn null(what: &str) -> Refusal {
-    Refusal::new(
-        SdopStatus::Null,
-        format!("{what} is null\nhelp: pass a pointer"),
-    )
+    Refusal::new(SdopStatus::Null, format!("{what} is null\nhelp: pass a pointer"))
 }
 
 /// What a handle points to.
@@ -227,9 +224,7 @@ pub unsafe fn column<'a, T>(first: *const T, count: usize, what: &str) -> Result
 /// As [`column`].
 pub unsafe fn optional<'a, T>(first: *const T, count: usize) -> Option<&'a [T]> {
     // SAFETY: the caller's promise.
-    unsafe { column(first, count, "") }
-        .ok()
-        .filter(|_| !first.is_null())
+    unsafe { column(first, count, "") }.ok().filter(|_| !first.is_null())
 }
 
 /// A text that may be left out.
@@ -278,31 +273,22 @@ pub unsafe fn fill<T>(
 
 /// A snapshot as bytes.
 pub fn saved(snapshot: &impl serde::Serialize) -> Result<Vec<u8>, Refusal> {
-    let refused = |error| {
-        Refusal::new(
-            SdopStatus::Bug,
-            format!("{error}\nhelp: report what was called"),
-        )
-    };
+    let refused =
+        |error| Refusal::new(SdopStatus::Bug, format!("{error}\nhelp: report what was called"));
     serde_json::to_vec(snapshot).map_err(refused)
 }
 
 /// A snapshot of bytes.
 pub fn read_back<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T, Refusal> {
     let help = "pass what a snapshot of this version has written";
-    let refused = |error| {
-        Refusal::new(
-            SdopStatus::Refused,
-            format!("no snapshot: {error}\nhelp: {help}"),
-        )
-    };
+    let refused =
+        |error| Refusal::new(SdopStatus::Refused, format!("no snapshot: {error}\nhelp: {help}"));
     serde_json::from_slice(bytes).map_err(refused)
 }
 
 /// The pairs of a list.
 pub fn pairs(list: &PairList) -> impl ExactSizeIterator<Item = SdopPair> + '_ {
-    list.iter()
-        .map(|[first, second]| SdopPair { first, second })
+    list.iter().map(|[first, second]| SdopPair { first, second })
 }
 
 /// The pointer that a caller wants back in its callback, which may be called on another thread.

@@ -42,12 +42,7 @@ impl From<SdopBoxBody> for BoxBody {
 /// A box that is neither fixed nor resting, in all groups. Change what differs.
 #[unsafe(no_mangle)]
 pub extern "C" fn sdop_box_body_at(bounds: Aabb) -> SdopBoxBody {
-    SdopBoxBody {
-        bounds,
-        fixed: false,
-        resting: false,
-        groups: Groups::ALL,
-    }
+    SdopBoxBody { bounds, fixed: false, resting: false, groups: Groups::ALL }
 }
 
 /// Makes a world without boxes. `finder` is "auto" if null; 0 threads are 1.
@@ -104,11 +99,7 @@ pub unsafe extern "C" fn sdop_box_world_insert(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_remove(world: *mut SdopBoxWorld, id: u64) -> SdopStatus {
     // SAFETY: the caller's promise.
-    call(|| {
-        Ok(unsafe { handle(world, "world") }?
-            .0
-            .remove(BodyId::from_bits(id))?)
-    })
+    call(|| Ok(unsafe { handle(world, "world") }?.0.remove(BodyId::from_bits(id))?))
 }
 
 /// Changes a box in any of its properties.

@@ -32,11 +32,7 @@ pub struct SdopPartPair {
 impl From<&PartPair> for SdopPartPair {
     fn from(pair: &PartPair) -> Self {
         let [first_part, second_part] = pair.parts;
-        Self {
-            bodies: pair.bodies.into(),
-            first_part,
-            second_part,
-        }
+        Self { bodies: pair.bodies.into(), first_part, second_part }
     }
 }
 

@@ -56,10 +56,7 @@ pub struct SdopPeriodicPair {
 
 impl From<&PeriodicPair> for SdopPeriodicPair {
     fn from(pair: &PeriodicPair) -> Self {
-        Self {
-            bodies: pair.bodies.into(),
-            image: pair.image,
-        }
+        Self { bodies: pair.bodies.into(), image: pair.image }
     }
 }
 

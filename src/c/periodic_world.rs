@@ -33,11 +33,7 @@ pub unsafe extern "C" fn sdop_periodic_world_new(
     call(|| {
         // SAFETY: the caller's promise.
         let (shapes, periods, culler) = unsafe {
-            (
-                self::shapes(shapes, shape_count)?,
-                self::periods(periods)?,
-                builder(options)?,
-            )
+            (self::shapes(shapes, shape_count)?, self::periods(periods)?, builder(options)?)
         };
         let world = PeriodicWorld::with(shapes, &culler, periods)?;
         // SAFETY: the caller's promise.

@@ -40,10 +40,7 @@ pub struct SdopHit {
 
 impl From<LineHit> for SdopHit {
     fn from(hit: LineHit) -> Self {
-        Self {
-            id: hit.body.to_bits(),
-            at: hit.at,
-        }
+        Self { id: hit.body.to_bits(), at: hit.at }
     }
 }
 

@@ -149,11 +149,7 @@ pub unsafe extern "C" fn sdop_world_insert(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_remove(world: *mut SdopWorld, id: u64) -> SdopStatus {
     // SAFETY: the caller's promise.
-    call(|| {
-        Ok(unsafe { handle(world, "world") }?
-            .0
-            .remove(BodyId::from_bits(id))?)
-    })
+    call(|| Ok(unsafe { handle(world, "world") }?.0.remove(BodyId::from_bits(id))?))
 }
 
 /// Changes a body in any of its properties.

@@ -24,11 +24,7 @@ pub struct Part {
 impl Default for Part {
     /// Shape 0 at the origin of the body, not rotated.
     fn default() -> Self {
-        Self {
-            shape: 0,
-            rotation: [0.0, 0.0, 0.0, 1.0],
-            translation: [0.0; 3],
-        }
+        Self { shape: 0, rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] }
     }
 }
 
@@ -67,10 +63,7 @@ impl Compound {
                 ..ShapeSpec::default()
             };
             let mesh = mesh_of(shapes, parts)?.named(name);
-            Ok(Self {
-                shape: Shape::build(&mesh, &spec)?,
-                parts: PartSet::new(shapes, parts),
-            })
+            Ok(Self { shape: Shape::build(&mesh, &spec)?, parts: PartSet::new(shapes, parts) })
         })
     }
 

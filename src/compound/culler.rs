@@ -165,11 +165,7 @@ impl PartCuller {
                 }
             }
             let end = self.pairs.len();
-            self.bodies.push(BodyPair {
-                ids,
-                bodies: [a, b],
-                end,
-            });
+            self.bodies.push(BodyPair { ids, bodies: [a, b], end });
         }
     }
 }

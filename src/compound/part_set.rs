@@ -40,12 +40,7 @@ impl PartSet {
         };
         let balls: Vec<_> = parts.iter().map(ball).collect();
         let reach = balls.iter().map(|(c, radius)| 2.0 * largest(*c) + radius);
-        Self {
-            reach: reach.fold(0.0, f64::max),
-            shapes,
-            parts,
-            balls,
-        }
+        Self { reach: reach.fold(0.0, f64::max), shapes, parts, balls }
     }
 
     pub fn len(&self) -> usize {
@@ -96,10 +91,7 @@ struct Bounds {
 }
 
 impl Bounds {
-    const EMPTY: Self = Self {
-        lo: [f64::INFINITY; 3],
-        hi: [f64::NEG_INFINITY; 3],
-    };
+    const EMPTY: Self = Self { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3] };
 
     #[inline(always)]
     fn add_ball(&mut self, centre: [f64; 3], radius: f64) {
@@ -130,13 +122,8 @@ impl Bounds {
 impl<'a> PosedParts<'a> {
     /// The parts of a body with balls as seen from `origin`.
     pub fn new(set: &'a PartSet, body: Body, origin: [f64; 3]) -> Self {
-        let mut parts = Self {
-            set,
-            body,
-            balls: Vec::new(),
-            bounds: Bounds::EMPTY,
-            near: Vec::new(),
-        };
+        let mut parts =
+            Self { set, body, balls: Vec::new(), bounds: Bounds::EMPTY, near: Vec::new() };
         parts.place(origin);
         parts
     }
@@ -157,13 +144,12 @@ impl<'a> PosedParts<'a> {
         let out = margin + slack(self.set.reach + margin + largest(apart));
         let mut bounds = Bounds::EMPTY;
         self.balls.clear();
-        self.balls
-            .extend(self.set.balls.iter().map(|&(centre, radius)| {
-                let turned = rotate_of(&turn, centre);
-                let centre = [0, 1, 2].map(|axis| turned[axis] + apart[axis]);
-                bounds.add_ball(centre, radius + out);
-                (centre, radius + out)
-            }));
+        self.balls.extend(self.set.balls.iter().map(|&(centre, radius)| {
+            let turned = rotate_of(&turn, centre);
+            let centre = [0, 1, 2].map(|axis| turned[axis] + apart[axis]);
+            bounds.add_ball(centre, radius + out);
+            (centre, radius + out)
+        }));
         self.bounds = bounds;
     }
 
@@ -172,13 +158,12 @@ impl<'a> PosedParts<'a> {
         self.near.clear();
         let near = (0..).zip(&self.balls);
         let near = near.filter(|(_, (centre, radius))| common.has_ball(*centre, *radius));
-        self.near
-            .extend(near.map(|(number, &(centre, radius))| NearPart {
-                number,
-                centre,
-                radius,
-                posed: None,
-            }));
+        self.near.extend(near.map(|(number, &(centre, radius))| NearPart {
+            number,
+            centre,
+            radius,
+            posed: None,
+        }));
     }
 
     /// Calls `take` with each pair of parts of two bodies that may touch, sorted. The balls of both
@@ -195,12 +180,8 @@ impl<'a> PosedParts<'a> {
                 if is_beyond(a.centre, a.radius + b.radius, b.centre, b.centre) {
                     continue;
                 }
-                let one = a
-                    .posed
-                    .get_or_insert_with(|| self.set.posed(&self.body, a.number));
-                let two = b
-                    .posed
-                    .get_or_insert_with(|| other.set.posed(&other.body, b.number));
+                let one = a.posed.get_or_insert_with(|| self.set.posed(&self.body, a.number));
+                let two = b.posed.get_or_insert_with(|| other.set.posed(&other.body, b.number));
                 if one.may_touch(two) {
                     take([a.number, b.number]);
                 }

@@ -99,10 +99,7 @@ impl CullerBuilder {
     /// them always. Lists, counters and hashes don't depend on it.
     pub fn worth_waking(self, nanoseconds: u64) -> Self {
         let worth_waking = Some(nanoseconds);
-        Self {
-            worth_waking,
-            ..self
-        }
+        Self { worth_waking, ..self }
     }
 
     /// The SIMD tier, instead of the fastest. Lists, counters and hashes don't depend on it.
@@ -147,25 +144,16 @@ mod tests {
     /// A builder keeps each choice and no other.
     #[test]
     fn builder_keeps_each_choice() {
-        let built = Culler::builder()
-            .threads(3)
-            .worth_waking(7)
-            .tier(Tier::SCALAR)
-            .finder(Finder::Sweep);
+        let built =
+            Culler::builder().threads(3).worth_waking(7).tier(Tier::SCALAR).finder(Finder::Sweep);
         let wanted = CullerBuilder {
-            settings: CullSettings {
-                pairs: Finder::Sweep,
-                ..CullSettings::default()
-            },
+            settings: CullSettings { pairs: Finder::Sweep, ..CullSettings::default() },
             threads: 3,
             worth_waking: Some(7),
             tier: Some(Tier::SCALAR),
         };
         assert_eq!(built, wanted);
-        let other = CullerBuilder {
-            threads: 5,
-            ..wanted
-        };
+        let other = CullerBuilder { threads: 5, ..wanted };
         assert_eq!(built.threads(5), other);
     }
 }

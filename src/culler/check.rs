@@ -17,11 +17,7 @@ pub(super) fn fixed(bodies: &Bodies) -> Bodies {
     if bodies.dynamic.contains(&false) {
         return bodies.clone();
     }
-    Bodies {
-        shape: bodies.shape.clone(),
-        dynamic: bodies.dynamic.clone(),
-        ..Bodies::default()
-    }
+    Bodies { shape: bodies.shape.clone(), dynamic: bodies.dynamic.clone(), ..Bodies::default() }
 }
 
 /// How to mend a shape that is far from its origin.
@@ -107,11 +103,7 @@ impl Culler {
         } else if bodies.dynamic != self.set.fixed.dynamic {
             let mut flags = bodies.dynamic.iter().zip(&self.set.fixed.dynamic);
             let body = flags.position(|(now, then)| now != then).unwrap_or(0);
-            let now = if bodies.dynamic[body] {
-                "dynamic"
-            } else {
-                "static"
-            };
+            let now = if bodies.dynamic[body] { "dynamic" } else { "static" };
             format!("body {body} has become {now}")
         } else {
             return Ok(());

@@ -130,11 +130,7 @@ impl Models {
     }
 
     fn ordop_of(&self, shape: &Shape) -> OrDop {
-        if self.boxes {
-            shape.obb(&Hull::of(&shape.vertices))
-        } else {
-            shape.ordop.clone()
-        }
+        if self.boxes { shape.obb(&Hull::of(&shape.vertices)) } else { shape.ordop.clone() }
     }
 
     /// Adds a model, under the number of a removed one if there is any, and returns its number.
@@ -151,8 +147,7 @@ impl Models {
     }
 
     fn set(&mut self, number: usize, frame: ShapeFrame, ordop: OrDop) {
-        self.tables
-            .set(number, &ordop, frame.centre(), frame.reach());
+        self.tables.set(number, &ordop, frame.centre(), frame.reach());
         self.ordops[number] = ordop;
         self.frames.set(number, self.binned(frame, number));
     }

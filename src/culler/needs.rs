@@ -49,11 +49,7 @@ impl VolumeNeeds {
     /// The work of a frame with `moving` moving bodies and the tests of the frame `like`.
     pub fn work(&self, moving: u64, like: &Totals) -> FrameWork {
         let volumes = u64::from(self.balls) + u64::from(self.rows);
-        let slabs = if self.intervals.is_some() {
-            INTERVALS_COST
-        } else {
-            0
-        };
+        let slabs = if self.intervals.is_some() { INTERVALS_COST } else { 0 };
         FrameWork {
             updates: (volumes + slabs) * moving,
             candidates: like.first.tests,
@@ -67,10 +63,7 @@ const INTERVALS_COST: u64 = 16;
 
 /// The facts by which `auto` picks a finder.
 pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Population {
-    let radii = places
-        .shape
-        .iter()
-        .map(|&s| models.frames[s as usize].radius());
+    let radii = places.shape.iter().map(|&s| models.frames[s as usize].radius());
     Population {
         bodies: places.len(),
         radii: radii.fold([f32::INFINITY, 0.0], |[lo, hi], r| [r.min(lo), r.max(hi)]),
@@ -90,15 +83,8 @@ mod tests {
     /// Work is each volume of moving bodies and the tests of the frame before.
     #[test]
     fn work_adds_updates_and_tests() {
-        let counted = |tests| VolumeCounters {
-            tests,
-            ..VolumeCounters::default()
-        };
-        let like = Totals {
-            first: counted(1000),
-            refining: counted(20),
-            ..Totals::default()
-        };
+        let counted = |tests| VolumeCounters { tests, ..VolumeCounters::default() };
+        let like = Totals { first: counted(1000), refining: counted(20), ..Totals::default() };
         for (balls, rows, intervals, volumes) in [
             (false, false, None, 0),
             (true, false, None, 1),
@@ -106,12 +92,7 @@ mod tests {
             (false, false, Some(DirectionSet::K6), INTERVALS_COST),
             (true, true, Some(DirectionSet::K18), INTERVALS_COST + 2),
         ] {
-            let needs = VolumeNeeds {
-                balls,
-                rows,
-                intervals,
-                by_place: rows,
-            };
+            let needs = VolumeNeeds { balls, rows, intervals, by_place: rows };
             let work = needs.work(7, &like);
             assert_eq!(work.updates, 7 * volumes, "{needs:?}");
             assert_eq!((work.candidates, work.refined), (1000, 20));

@@ -103,16 +103,11 @@ impl Culler {
         let by_place = self.needs.by_place;
         let names = self.needs.names(&self.set.numbers, &self.set.places);
         let (balls, order) = (&self.volumes.balls, &mut self.set.order);
-        let changed = self
-            .set
-            .finder
-            .reorder(&self.set.places, balls, names, order);
+        let changed = self.set.finder.reorder(&self.set.places, balls, names, order);
         if changed == Reorder::None {
             return;
         }
-        self.set
-            .places
-            .reorder(&self.set.fixed, &mut self.set.order, by_place);
+        self.set.places.reorder(&self.set.fixed, &mut self.set.order, by_place);
         if changed == Reorder::All {
             let (moving, all) = (self.set.places.moving, self.set.places.len());
             self.update_first(bodies, 0..moving);

@@ -72,12 +72,7 @@ impl Culler {
     /// Keeps the reported pairs among those whose boxes meet. The bodies are those of the last call
     /// of [`Self::boxes_of`].
     pub(crate) fn test_found(&mut self, bodies: &Bodies, found: FoundPairs<'_>) {
-        let FoundPairs {
-            bodies: some,
-            others,
-            ends,
-            interest,
-        } = found;
+        let FoundPairs { bodies: some, others, ends, interest } = found;
         let start = Instant::now();
         self.place_sample(bodies, others);
         let updated = Instant::now();
@@ -112,12 +107,7 @@ impl Culler {
     /// Gives places to more bodies after those of the sample, and computes their volumes for the
     /// first test.
     fn place_sample(&mut self, bodies: &Bodies, more: &[u32]) {
-        let Sample {
-            places,
-            balls,
-            ends,
-            ..
-        } = &mut self.sample;
+        let Sample { places, balls, ends, .. } = &mut self.sample;
         let first = places.len();
         places.body.extend_from_slice(more);
         places.reread_shapes(bodies);
@@ -128,12 +118,7 @@ impl Culler {
         match &mut self.volumes.intervals {
             Some(intervals) => {
                 let frames = &self.models.frames;
-                let posed = UpdateInputs {
-                    frames,
-                    bodies,
-                    places,
-                    balls: &[],
-                };
+                let posed = UpdateInputs { frames, bodies, places, balls: &[] };
                 std::mem::swap(&mut intervals.ends, ends);
                 intervals.resize(range.end);
                 intervals.update(executor, balls, posed, range);
@@ -149,35 +134,16 @@ impl Culler {
     /// Keeps the pairs that pass the first test, of bodies in the first `count` places with those
     /// in the places after them.
     fn keep_near(&self, count: usize, others: &mut Vec<u32>, ends: &mut [usize]) -> VolumeCounters {
-        let Sample {
-            balls,
-            ends: slabs,
-            places,
-            ..
-        } = &self.sample;
+        let Sample { balls, ends: slabs, places, .. } = &self.sample;
         let tests = others.len() as u64;
         if self.volumes.intervals.is_some() {
             let each = slabs.len() / places.len().max(1);
             let of = |place: usize| &slabs[place * each..(place + 1) * each];
-            keep(others, ends, |number, at, _| {
-                meet(of(number), of(count + at))
-            });
+            keep(others, ends, |number, at, _| meet(of(number), of(count + at)));
         } else {
-            dispatch(
-                Tier::SCALAR,
-                KeepNear {
-                    balls,
-                    count,
-                    others,
-                    ends,
-                },
-            );
+            dispatch(Tier::SCALAR, KeepNear { balls, count, others, ends });
         }
-        VolumeCounters {
-            updates: 0,
-            tests,
-            hits: others.len() as u64,
-        }
+        VolumeCounters { updates: 0, tests, hits: others.len() as u64 }
     }
 
     /// Keeps the pairs that pass the refining test, and those that need no refinement.
@@ -194,24 +160,13 @@ impl Culler {
                 || interest[a as usize]
                 || interest[b as usize]
         };
-        let Sample {
-            places,
-            rows,
-            pairs,
-            survivors,
-            ..
-        } = &mut self.sample;
+        let Sample { places, rows, pairs, survivors, .. } = &mut self.sample;
         places.body.truncate(some.len());
         places.body.extend_from_slice(others);
         places.reread_shapes(bodies);
         places.moving = places.len();
         rows.resize(places.len());
-        let posed = UpdateInputs {
-            frames: &self.models.frames,
-            bodies,
-            places,
-            balls: &[],
-        };
+        let posed = UpdateInputs { frames: &self.models.frames, bodies, places, balls: &[] };
         let executor = self.threads.get().executor(self.tier);
         rows.update(executor, posed, 0..places.len(), self.volumes.stamp);
         pairs.clear();
@@ -239,11 +194,7 @@ impl Culler {
             let passed = survivors.next_if_eq(&(some.len() + at)).is_some();
             passed || !is_refined(some[number], other)
         });
-        VolumeCounters {
-            updates: places.len() as u64,
-            tests: tested.tests,
-            hits: tested.hits,
-        }
+        VolumeCounters { updates: places.len() as u64, tests: tested.tests, hits: tested.hits }
     }
 }
 
@@ -314,8 +265,5 @@ fn box_of_slabs(slabs: &[[f32; 2]]) -> Aabb {
 fn box_about(&[x, y, z, radius]: &[f32; 4]) -> Aabb {
     let reach = f64::from(widen(radius));
     let centre = [x, y, z].map(f64::from);
-    Aabb::new(
-        centre.map(|x| down(x - reach)),
-        centre.map(|x| up(x + reach)),
-    )
+    Aabb::new(centre.map(|x| down(x - reach)), centre.map(|x| up(x + reach)))
 }

@@ -25,12 +25,7 @@ impl Culler {
             check_poses(bodies, 0..bodies.len()).is_ok()
         };
         if let Some(intervals) = &mut self.volumes.intervals {
-            let posed = UpdateInputs {
-                frames,
-                bodies,
-                places,
-                balls: &[],
-            };
+            let posed = UpdateInputs { frames, bodies, places, balls: &[] };
             intervals.update(executor, &mut self.volumes.balls, posed, range);
         }
         is_sound
@@ -48,9 +43,7 @@ impl Culler {
             balls: self.needs.known(&self.volumes.balls),
         };
         let executor = self.threads.get().executor(self.tier);
-        self.volumes
-            .rows
-            .update(executor, posed, range, self.volumes.stamp);
+        self.volumes.rows.update(executor, posed, range, self.volumes.stamp);
     }
 
     pub(super) fn count_updates(&mut self) {
@@ -73,14 +66,10 @@ impl Culler {
         let names = self.needs.names(&self.set.numbers, &self.set.places);
         let pool = self.threads.get();
         let executor = pool.executor(self.tier);
-        self.set
-            .finder
-            .arrange(executor, &self.set.places, &self.volumes.balls, names, None);
+        self.set.finder.arrange(executor, &self.set.places, &self.volumes.balls, names, None);
         if let Some(intervals) = &self.volumes.intervals {
             let order = &self.set.finder.names()[..self.set.places.len()];
-            self.volumes
-                .interval_slots
-                .fill(pool, order, &intervals.ends);
+            self.volumes.interval_slots.fill(pool, order, &intervals.ends);
         }
     }
 

@@ -26,10 +26,8 @@ pub fn decimate(mesh: &TriangleMesh, target: usize) -> TriangleMesh {
     if surface.alive == 0 || mesh.triangles.len() <= target {
         return mesh.clone();
     }
-    let mut queue: BinaryHeap<EdgeCollapse> = surface
-        .edges()
-        .map(|edge| surface.candidate(edge))
-        .collect();
+    let mut queue: BinaryHeap<EdgeCollapse> =
+        surface.edges().map(|edge| surface.candidate(edge)).collect();
     while surface.alive > target
         && let Some(candidate) = queue.pop()
     {
@@ -38,9 +36,7 @@ pub fn decimate(mesh: &TriangleMesh, target: usize) -> TriangleMesh {
             let kept = candidate.edge.0;
             let neighbours = surface.neighbours(kept);
             queue.extend(
-                neighbours
-                    .into_iter()
-                    .map(|n| surface.candidate((kept.min(n), kept.max(n)))),
+                neighbours.into_iter().map(|n| surface.candidate((kept.min(n), kept.max(n)))),
             );
         }
     }
@@ -57,30 +53,18 @@ struct Quadric {
 
 impl Quadric {
     fn zero() -> Self {
-        Self {
-            a: DMat3::ZERO,
-            b: DVec3::ZERO,
-            c: 0.0,
-        }
+        Self { a: DMat3::ZERO, b: DVec3::ZERO, c: 0.0 }
     }
 
     /// weight·(n·(x − p))².
     fn of_plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
         let offset = -normal.dot(point);
         let a = DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
-        Self {
-            a: a * weight,
-            b: normal * (offset * weight),
-            c: offset * offset * weight,
-        }
+        Self { a: a * weight, b: normal * (offset * weight), c: offset * offset * weight }
     }
 
     fn plus(&self, other: &Self) -> Self {
-        Self {
-            a: self.a + other.a,
-            b: self.b + other.b,
-            c: self.c + other.c,
-        }
+        Self { a: self.a + other.a, b: self.b + other.b, c: self.c + other.c }
     }
 
     fn at(&self, x: DVec3) -> f64 {
@@ -119,10 +103,7 @@ impl Ord for EdgeCollapse {
     /// Reversed, because the heap returns the greatest first: the cheapest edge, then the one with
     /// the lowest indices.
     fn cmp(&self, other: &Self) -> Ordering {
-        other
-            .cost
-            .total_cmp(&self.cost)
-            .then_with(|| other.edge.cmp(&self.edge))
+        other.cost.total_cmp(&self.cost).then_with(|| other.edge.cmp(&self.edge))
     }
 }
 
@@ -167,10 +148,7 @@ impl Surface {
             triangles: Vec::new(),
             alive: 0,
         };
-        let proper = mesh
-            .triangles
-            .iter()
-            .filter(|[a, b, c]| a != b && b != c && c != a);
+        let proper = mesh.triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a);
         for &triangle in proper {
             for vertex in triangle {
                 surface.around[vertex as usize].push(surface.alive as u32);
@@ -218,31 +196,22 @@ impl Surface {
     }
 
     fn triangles_at(&self, vertex: u32) -> impl Iterator<Item = [u32; 3]> {
-        self.around[vertex as usize]
-            .iter()
-            .filter_map(|&t| self.triangles[t as usize])
+        self.around[vertex as usize].iter().filter_map(|&t| self.triangles[t as usize])
     }
 
     /// The triangles on both sides of an edge.
     fn shared(&self, a: u32, b: u32) -> impl Iterator<Item = [u32; 3]> {
-        self.triangles_at(a)
-            .filter(move |triangle| triangle.contains(&b))
+        self.triangles_at(a).filter(move |triangle| triangle.contains(&b))
     }
 
     fn neighbours(&self, vertex: u32) -> BTreeSet<u32> {
-        self.triangles_at(vertex)
-            .flatten()
-            .filter(|&other| other != vertex)
-            .collect()
+        self.triangles_at(vertex).flatten().filter(|&other| other != vertex).collect()
     }
 
     fn edges(&self) -> impl Iterator<Item = (u32, u32)> {
         let vertices = 0..self.positions.len() as u32;
         vertices.flat_map(|a| {
-            self.neighbours(a)
-                .into_iter()
-                .filter(move |b| a < *b)
-                .map(move |b| (a, b))
+            self.neighbours(a).into_iter().filter(move |b| a < *b).map(move |b| (a, b))
         })
     }
 
@@ -257,16 +226,8 @@ impl Surface {
                 best = (cost, position);
             }
         }
-        let versions = (
-            self.versions[edge.0 as usize],
-            self.versions[edge.1 as usize],
-        );
-        EdgeCollapse {
-            cost: best.0,
-            edge,
-            versions,
-            position: best.1,
-        }
+        let versions = (self.versions[edge.0 as usize], self.versions[edge.1 as usize]);
+        EdgeCollapse { cost: best.0, edge, versions, position: best.1 }
     }
 
     fn is_current(&self, candidate: &EdgeCollapse) -> bool {
@@ -280,10 +241,7 @@ impl Surface {
         let at_a: Vec<[u32; 3]> = self.triangles_at(a).filter(touched).collect();
         let at_b: Vec<[u32; 3]> = self.triangles_at(b).filter(touched).collect();
         self.keeps_topology(a, b, &at_a, &at_b)
-            && !at_a
-                .iter()
-                .chain(&at_b)
-                .any(|&triangle| self.turns_over(triangle, candidate))
+            && !at_a.iter().chain(&at_b).any(|&triangle| self.turns_over(triangle, candidate))
     }
 
     /// The link condition: the ends share no neighbour except those across the edge's one or two
@@ -297,11 +255,7 @@ impl Surface {
         let link = |triangles: &[[u32; 3]], end: u32| -> BTreeSet<(u32, u32)> {
             let opposite =
                 |t: &[u32; 3]| t.iter().copied().filter(|&v| v != end).collect::<Vec<_>>();
-            triangles
-                .iter()
-                .map(opposite)
-                .map(|e| (e[0].min(e[1]), e[0].max(e[1])))
-                .collect()
+            triangles.iter().map(opposite).map(|e| (e[0].min(e[1]), e[0].max(e[1]))).collect()
         };
         let folds = !link(at_a, a).is_disjoint(&link(at_b, b));
         (1..=2).contains(&faces) && common == faces && !bridge && !vanishes && !folds
@@ -311,22 +265,15 @@ impl Surface {
     fn turns_over(&self, triangle: [u32; 3], candidate: &EdgeCollapse) -> bool {
         let (a, b) = candidate.edge;
         let before = self.cross(triangle);
-        let [p, q, r] = triangle.map(|v| {
-            if v == a || v == b {
-                candidate.position
-            } else {
-                self.position(v)
-            }
-        });
+        let [p, q, r] =
+            triangle.map(|v| if v == a || v == b { candidate.position } else { self.position(v) });
         let after = (q - p).cross(r - p);
         after == DVec3::ZERO || before.dot(after) < LEAST_TURN * before.length() * after.length()
     }
 
     /// Whether some edge at the vertex has only one face.
     fn on_boundary(&self, vertex: u32) -> bool {
-        self.neighbours(vertex)
-            .into_iter()
-            .any(|other| self.shared(vertex, other).count() == 1)
+        self.neighbours(vertex).into_iter().any(|other| self.shared(vertex, other).count() == 1)
     }
 
     /// Moves both ends to the candidate's position and keeps the first.
@@ -370,12 +317,7 @@ impl Surface {
             let [a, b, c] = triangle.map(|vertex| new_index[vertex as usize]);
             Some([a?, b?, c?])
         };
-        let triangles = self
-            .triangles
-            .into_iter()
-            .flatten()
-            .filter_map(renumber)
-            .collect();
+        let triangles = self.triangles.into_iter().flatten().filter_map(renumber).collect();
         TriangleMesh {
             name: mesh.name.clone(),
             vertices,

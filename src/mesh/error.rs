@@ -155,18 +155,11 @@ impl Problem {
     /// A format violation with its remedy.
     #[cfg(feature = "readers")]
     pub(super) fn malformed(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::Malformed {
-            message: message.into(),
-            help: help.into(),
-        }
+        Self::Malformed { message: message.into(), help: help.into() }
     }
 
     /// The problem as an error of a file, with a line if it is known.
     pub(super) fn at(self, file: &str, line: impl Into<Option<usize>>) -> MeshError {
-        MeshError {
-            file: file.to_owned(),
-            line: line.into(),
-            problem: self,
-        }
+        MeshError { file: file.to_owned(), line: line.into(), problem: self }
     }
 }

@@ -29,11 +29,7 @@ pub(super) fn place(points: &[[f64; 3]]) -> PlacedPoints {
     let bounds = PointBounds::of(points.iter().copied());
     let moved = moved(points.iter().copied());
     if moved <= 0.5 * MOST_ROUNDING * bounds.size() {
-        return PlacedPoints {
-            vertices: round([0.0; 3]),
-            offset: [0.0; 3],
-            rounding: 0.0,
-        };
+        return PlacedPoints { vertices: round([0.0; 3]), offset: [0.0; 3], rounding: 0.0 };
     }
     let offset = bounds.settled_offset();
     let kept = || points.iter().map(|&p| kept(p, offset));
@@ -43,11 +39,7 @@ pub(super) fn place(points: &[[f64; 3]]) -> PlacedPoints {
     PlacedPoints {
         vertices: round(offset),
         offset,
-        rounding: if far || tiny {
-            rounding(points, offset)
-        } else {
-            0.0
-        },
+        rounding: if far || tiny { rounding(points, offset) } else { 0.0 },
     }
 }
 
@@ -105,10 +97,7 @@ struct PointBounds {
 
 impl PointBounds {
     fn of(points: impl Iterator<Item = [f64; 3]>) -> Self {
-        let none = Self {
-            lo: [f64::INFINITY; 3],
-            hi: [f64::NEG_INFINITY; 3],
-        };
+        let none = Self { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3] };
         points.fold(none, |Self { lo, hi }, p| Self {
             lo: std::array::from_fn(|i| lo[i].min(p[i])),
             hi: std::array::from_fn(|i| hi[i].max(p[i])),
@@ -136,10 +125,7 @@ impl PointBounds {
     fn settled_offset(mut self) -> [f64; 3] {
         let mut offset = self.offset();
         for _ in 0..8 {
-            self = Self {
-                lo: kept(self.lo, offset),
-                hi: kept(self.hi, offset),
-            };
+            self = Self { lo: kept(self.lo, offset), hi: kept(self.hi, offset) };
             let next = self.offset();
             if next == offset {
                 break;

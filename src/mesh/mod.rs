@@ -67,12 +67,7 @@ impl TriangleMesh {
         let vertices: Vec<[f32; 3]> = vertices.into_iter().map(Into::into).collect();
         let points: Vec<[f64; 3]> = vertices.iter().map(|v| v.map(f64::from)).collect();
         match check(&points, &triangles) {
-            Ok(()) => Ok(Self {
-                name,
-                vertices,
-                triangles,
-                ..Self::default()
-            }),
+            Ok(()) => Ok(Self { name, vertices, triangles, ..Self::default() }),
             Err(problem) => Err(problem.at(&name, None)),
         }
     }
@@ -101,9 +96,8 @@ impl TriangleMesh {
     /// Makes a mesh from three points per triangle. Points at equal positions become one vertex.
     #[cfg(feature = "readers")]
     fn from_soup(points: &[[f64; 3]]) -> Result<Self, Problem> {
-        let corners: Vec<[u32; 3]> = (0..points.len() as u32 / 3)
-            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-            .collect();
+        let corners: Vec<[u32; 3]> =
+            (0..points.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         check(points, &corners)?;
         let mut placed = far::place(points);
         let triangles = files::weld(&mut placed.vertices);
@@ -158,10 +152,7 @@ fn check(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), Problem> {
     }
     for (what, count) in [("vertices", vertices.len()), ("triangles", triangles.len())] {
         if u32::try_from(count).is_err() {
-            return Err(Problem::TooMany {
-                what,
-                count: count as u64,
-            });
+            return Err(Problem::TooMany { what, count: count as u64 });
         }
     }
     for (index, vertex) in vertices.iter().enumerate() {
@@ -198,11 +189,8 @@ fn check_triangle(
         |index: i64| u64::try_from(index).is_ok_and(|i| i >= u64::from(first) && i <= last);
     match indices.into_iter().find(|&index| !allowed(index)) {
         None => Ok(()),
-        Some(index) => Err(Problem::IndexOutOfRange {
-            triangle,
-            index,
-            first: u64::from(first),
-            last,
-        }),
+        Some(index) => {
+            Err(Problem::IndexOutOfRange { triangle, index, first: u64::from(first), last })
+        }
     }
 }

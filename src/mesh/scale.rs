@@ -28,10 +28,7 @@ impl TriangleMesh {
     /// A factor that is zero or not finite, or a scaled coordinate beyond 2⁶⁰.
     pub fn scaled(&self, scale: impl Into<Scale>) -> Result<Self, MeshError> {
         let Scale(scale) = scale.into();
-        if !scale
-            .iter()
-            .all(|factor| factor.is_finite() && *factor != 0.0)
-        {
+        if !scale.iter().all(|factor| factor.is_finite() && *factor != 0.0) {
             return Err(Problem::Scale { scale }.at(&self.name, None));
         }
         let point = |point: [f64; 3]| std::array::from_fn(|axis| point[axis] * scale[axis]);

@@ -69,11 +69,8 @@ impl Topology {
             });
             components[number].vertices += 1;
         }
-        let component_of: Vec<usize> = mesh
-            .triangles
-            .iter()
-            .map(|t| number_of_root[&roots[t[0] as usize]])
-            .collect();
+        let component_of: Vec<usize> =
+            mesh.triangles.iter().map(|t| number_of_root[&roots[t[0] as usize]]).collect();
         for (triangle, &number) in mesh.triangles.iter().zip(&component_of) {
             components[number].triangles += 1;
             components[number].degenerate += usize::from(!is_face(triangle));
@@ -85,25 +82,19 @@ impl Topology {
             component.non_manifold_edges += usize::from(faces > 2);
         }
         let unused_vertices = used.iter().filter(|used| !**used).count();
-        Self {
-            components,
-            component_of,
-            unused_vertices,
-        }
+        Self { components, component_of, unused_vertices }
     }
 
     /// The whole mesh's counts, summed over its components (unused vertices belong to none).
     pub fn total(&self) -> Component {
-        self.components
-            .iter()
-            .fold(Component::default(), |sum, c| Component {
-                vertices: sum.vertices + c.vertices,
-                triangles: sum.triangles + c.triangles,
-                degenerate: sum.degenerate + c.degenerate,
-                edges: sum.edges + c.edges,
-                boundary_edges: sum.boundary_edges + c.boundary_edges,
-                non_manifold_edges: sum.non_manifold_edges + c.non_manifold_edges,
-            })
+        self.components.iter().fold(Component::default(), |sum, c| Component {
+            vertices: sum.vertices + c.vertices,
+            triangles: sum.triangles + c.triangles,
+            degenerate: sum.degenerate + c.degenerate,
+            edges: sum.edges + c.edges,
+            boundary_edges: sum.boundary_edges + c.boundary_edges,
+            non_manifold_edges: sum.non_manifold_edges + c.non_manifold_edges,
+        })
     }
 
     /// How many components are closed.
@@ -122,10 +113,7 @@ pub fn without_area(mesh: &TriangleMesh) -> usize {
         let corners = triangle.map(|i| mesh.vertices[i as usize]);
         // Points are on a line exactly if their projections onto all three coordinate planes are.
         [(0, 1), (1, 2), (2, 0)].iter().all(|&(x, y)| {
-            let [a, b, c] = corners.map(|v| Coord {
-                x: f64::from(v[x]),
-                y: f64::from(v[y]),
-            });
+            let [a, b, c] = corners.map(|v| Coord { x: f64::from(v[x]), y: f64::from(v[y]) });
             orient2d(a, b, c) == 0.0
         })
     };
@@ -156,9 +144,7 @@ fn vertex_roots(mesh: &TriangleMesh) -> Vec<u32> {
             parent[from.max(to) as usize] = from.min(to);
         }
     }
-    (0..parent.len() as u32)
-        .map(|vertex| root(&mut parent, vertex))
-        .collect()
+    (0..parent.len() as u32).map(|vertex| root(&mut parent, vertex)).collect()
 }
 
 fn root(parent: &mut [u32], mut vertex: u32) -> u32 {

@@ -81,11 +81,7 @@ mod tests {
         };
         let boxes = [Aabb::new([1.0; 3], [2.0; 3]); SLOTS_PER_CHECK];
         let cubes = |slots: &Slots| {
-            check(&CubeTest {
-                slots: slots.arranged(),
-                boxes: &boxes,
-                less: 0.0,
-            });
+            check(&CubeTest { slots: slots.arranged(), boxes: &boxes, less: 0.0 });
         };
         cubes(&slots);
         let [x, y, z, half] = [1.5, 1.5, 1.5, 0.5].map(|number| vec![number; SLOTS_PER_CHECK]);

@@ -112,17 +112,13 @@ mod tests {
         let mut slots = IntervalSlots::default();
         for bodies in [1, 3, 2] {
             // Of each place and slab, ends that are like no others.
-            let ends: Vec<_> = (0..7 * bodies)
-                .map(|end| [end as f32, end as f32 + 0.5])
-                .collect();
+            let ends: Vec<_> = (0..7 * bodies).map(|end| [end as f32, end as f32 + 0.5]).collect();
             let order: Vec<u32> = (0..bodies as u32).rev().collect();
             slots.fill(&Threads::default(), &order, &ends);
             for (side, columns) in [&slots.lo, &slots.hi].into_iter().enumerate() {
                 assert_eq!(columns.len(), 7);
                 for (slab, column) in columns.iter().enumerate() {
-                    let own = order
-                        .iter()
-                        .map(|&place| ends[place as usize * 7 + slab][side]);
+                    let own = order.iter().map(|&place| ends[place as usize * 7 + slab][side]);
                     assert_eq!(column[..bodies], own.collect::<Vec<_>>());
                     assert_eq!(column[bodies..], [0.0; MAX_WIDTH]);
                 }

@@ -35,10 +35,7 @@ mod tests {
     /// Balls that fill their vectors cost no vector more.
     #[test]
     fn full_ball_vectors_cost_no_more() {
-        let mut slots = Slots {
-            balls: vec![[1.0; 4]; SLOTS_PER_CHECK],
-            ..Slots::default()
-        };
+        let mut slots = Slots { balls: vec![[1.0; 4]; SLOTS_PER_CHECK], ..Slots::default() };
         check(&Spheres(slots.arranged()));
         slots.columns = [(); 4].map(|()| vec![1.0; SLOTS_PER_CHECK]);
         check(&Spheres(slots.arranged()));

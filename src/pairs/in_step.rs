@@ -73,9 +73,7 @@ mod tests {
         for round in 0..400 {
             let mut below = |n: u32| random.next_u32() % n;
             let (left_out, moved) = (1 + below(30), below(3) * below(40));
-            let all: Vec<_> = (0..below(600))
-                .map(|at| [(at * 7919) % 601, 601 + at])
-                .collect();
+            let all: Vec<_> = (0..below(600)).map(|at| [(at * 7919) % 601, 601 + at]).collect();
             let mut some = || {
                 let mut list: Vec<_> = all.iter().filter(|_| below(left_out + 1) > 0).collect();
                 for _ in 0..moved.min(list.len() as u32) {

@@ -114,12 +114,7 @@ impl Partners {
 
     /// The pairs, the lower number first, sorted.
     pub fn iter(&self) -> PartnerPairs<'_> {
-        PartnerPairs {
-            partners: self,
-            next: 0,
-            higher: [].iter(),
-            left: self.len(),
-        }
+        PartnerPairs { partners: self, next: 0, higher: [].iter(), left: self.len() }
     }
 
     /// Bytes that the lists hold.
@@ -175,10 +170,8 @@ mod tests {
     fn pairs_come_and_go_in_order() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut draw = |n: u32| random.next_u32() % n;
-        let mut wanted: BTreeSet<[u32; 2]> = (0..300)
-            .map(|_| [draw(40), draw(40)])
-            .filter(|[i, j]| i < j)
-            .collect();
+        let mut wanted: BTreeSet<[u32; 2]> =
+            (0..300).map(|_| [draw(40), draw(40)]).filter(|[i, j]| i < j).collect();
         let list: PairList = wanted.iter().copied().collect();
         let mut partners = Partners::of(&list, 40);
         for step in 0..2000 {

@@ -64,12 +64,7 @@ pub(crate) struct Runs<T> {
 
 impl<T> Default for Runs<T> {
     fn default() -> Self {
-        Self {
-            items: Vec::new(),
-            skipped: 0,
-            free: Vec::new(),
-            taken: 0,
-        }
+        Self { items: Vec::new(), skipped: 0, free: Vec::new(), taken: 0 }
     }
 }
 
@@ -159,8 +154,7 @@ impl<T: Copy + Default> Runs<T> {
             self.resize(run, (2 * run.room).max(LEAST_ROOM));
         }
         let (first, len) = (self.first(*run), run.len());
-        self.items
-            .copy_within(first + at..first + len, first + at + 1);
+        self.items.copy_within(first + at..first + len, first + at + 1);
         self.items[first + at] = item;
         run.len += 1;
     }
@@ -168,8 +162,7 @@ impl<T: Copy + Default> Runs<T> {
     /// Removes the entry at `at`. The others keep their order.
     pub fn remove(&mut self, run: &mut Run, at: usize) {
         let (first, len) = (self.first(*run), run.len());
-        self.items
-            .copy_within(first + at + 1..first + len, first + at);
+        self.items.copy_within(first + at + 1..first + len, first + at);
         self.shorten(run);
     }
 
@@ -206,11 +199,7 @@ impl<T: Copy + Default> Runs<T> {
 
     /// Moves the list to another room.
     fn resize(&mut self, run: &mut Run, room: u32) {
-        let mut moved = Run {
-            start: self.take_room(room),
-            len: run.len,
-            room,
-        };
+        let mut moved = Run { start: self.take_room(room), len: run.len, room };
         let (from, to) = (self.first(*run), self.first(moved));
         self.items.copy_within(from..from + run.len(), to);
         std::mem::swap(run, &mut moved);
@@ -322,10 +311,7 @@ mod tests {
                 compacted += 1;
             }
             assert!(runs.items.len() <= 5 * entries + 12 * 5 + 16, "{step}");
-            assert!(
-                lists.iter().all(|(run, list)| runs.get(*run) == list),
-                "{step}"
-            );
+            assert!(lists.iter().all(|(run, list)| runs.get(*run) == list), "{step}");
         }
         assert!((20..2000).contains(&compacted), "{compacted}");
     }

@@ -81,11 +81,7 @@ impl PairList {
 
     /// Makes the sorter's keys those of this list, sorted.
     fn sort_keys(&self, numbers: usize, sorter: &mut PairSorter) {
-        let PairSorter {
-            key_places: places,
-            keys,
-            ..
-        } = sorter;
+        let PairSorter { key_places: places, keys, .. } = sorter;
         places.clear();
         places.resize(numbers, 0);
         for &first in self.first() {

@@ -32,11 +32,8 @@ pub struct Borders {
 impl Borders {
     /// Before any body.
     pub fn new(periods: &Periods) -> Self {
-        let mut borders = Self {
-            widest: [f64::INFINITY; 3],
-            slack: [0.0; 3],
-            near: [f64::NEG_INFINITY; 3],
-        };
+        let mut borders =
+            Self { widest: [f64::INFINITY; 3], slack: [0.0; 3], near: [f64::NEG_INFINITY; 3] };
         for (axis, period) in periods.iter() {
             borders.set(axis, period, 0.0);
         }

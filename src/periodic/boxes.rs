@@ -29,12 +29,7 @@ impl PeriodicBox {
     /// A dynamic box between two corners that collides with all.
     #[must_use]
     pub fn new(min: [f64; 3], max: [f64; 3]) -> Self {
-        Self {
-            min,
-            max,
-            motion: Motion::Dynamic,
-            groups: Groups::ALL,
-        }
+        Self { min, max, motion: Motion::Dynamic, groups: Groups::ALL }
     }
 
     #[inline]
@@ -58,11 +53,7 @@ impl PeriodicBox {
         // An end that is moved is where it is half of the period or more, exactly or off by 2⁻⁵³ of
         // itself.
         let [min, max] = [self.min, self.max].map(|ends| periods.moved(ends, shift).0);
-        BoxBody {
-            bounds: outward_box(&min, &max),
-            motion: self.motion,
-            groups: self.groups,
-        }
+        BoxBody { bounds: outward_box(&min, &max), motion: self.motion, groups: self.groups }
     }
 }
 
@@ -116,11 +107,7 @@ impl ImageWorld for BoxWorld {
     ) -> Result<Placement, PeriodicError> {
         body.check(slot)?;
         if periods.contain(&body.min, &body.max) {
-            return Ok(Placement {
-                lo: body.min,
-                hi: body.max,
-                ..Placement::default()
-            });
+            return Ok(Placement { lo: body.min, hi: body.max, ..Placement::default() });
         }
         wrapped(slot, body, periods)
     }

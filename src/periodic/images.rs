@@ -42,13 +42,7 @@ pub struct Image {
 impl Image {
     pub fn new(of: BodyId, axes: u8, place: &Placement) -> Self {
         let shift = [0, 1, 2].map(|axis| place.shift[axis] + i32::from(axes >> axis & 1));
-        Self {
-            of,
-            axes,
-            across: 0,
-            shift,
-            is_small: place.is_small,
-        }
+        Self { of, axes, across: 0, shift, is_small: place.is_small }
     }
 }
 
@@ -165,11 +159,7 @@ macro_rules! forward_images {
             [a, b]: [BodyId; 2],
             is_excluded: bool,
         ) -> Result<bool, WorldError> {
-            if is_excluded {
-                self.exclude(a, b)
-            } else {
-                self.include(a, b)
-            }
+            if is_excluded { self.exclude(a, b) } else { self.include(a, b) }
         }
 
         fn has_excluded(&self, [a, b]: [BodyId; 2]) -> bool {

@@ -29,11 +29,7 @@ const REACH_SHARE: f64 = exp2(-9);
 /// The image of a body that is moved by whole periods.
 fn image(body: &Body, shift: [i32; 3], periods: &Periods) -> Body {
     let (translation, errors) = periods.moved(body.translation, shift);
-    Body {
-        translation,
-        margin: margin_about(body.margin, errors),
-        ..*body
-    }
+    Body { translation, margin: margin_about(body.margin, errors), ..*body }
 }
 
 impl ImageWorld for World {

@@ -18,10 +18,7 @@ pub struct Periods {
 
 impl Default for Periods {
     fn default() -> Self {
-        Self {
-            of_axes: [None; 3],
-            halves: [f64::INFINITY; 3],
-        }
+        Self { of_axes: [None; 3], halves: [f64::INFINITY; 3] }
     }
 }
 
@@ -90,12 +87,9 @@ impl Periods {
         position: f64,
     ) -> Result<(), PeriodicError> {
         match self.of_axes[axis] {
-            Some(period) if !(position.abs() <= MOST_PERIODS * period) => Err(PeriodicError::Far {
-                body,
-                axis: NAMES[axis],
-                position,
-                period,
-            }),
+            Some(period) if !(position.abs() <= MOST_PERIODS * period) => {
+                Err(PeriodicError::Far { body, axis: NAMES[axis], position, period })
+            }
             _ => Ok(()),
         }
     }
@@ -121,9 +115,5 @@ pub fn distance(errors: [f64; 3]) -> f64 {
 #[inline]
 pub fn margin_about(margin: f32, errors: [f64; 3]) -> f32 {
     let error = distance(errors);
-    if error > 0.0 {
-        up(f64::from(margin) + error)
-    } else {
-        margin
-    }
+    if error > 0.0 { up(f64::from(margin) + error) } else { margin }
 }

@@ -177,9 +177,7 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
         near.clear();
         self.index.touch(&moved(volume, way, &self.periods), near);
         for id in near {
-            let Image {
-                of, axes, shift, ..
-            } = self.images[id.slot()];
+            let Image { of, axes, shift, .. } = self.images[id.slot()];
             let image = [0, 1, 2].map(|axis| shift[axis] + way[axis]);
             let body = &self.bodies[id.slot()];
             // The other images of a body are found without their own slots.
@@ -218,12 +216,7 @@ fn moved<'a>(volume: &QueryVolume<'a>, way: [i32; 3], periods: &Periods) -> Quer
             let radius = outward(radius, distance(errors));
             QueryVolume::Ball { centre, radius }
         }
-        QueryVolume::Shape {
-            shape,
-            rotation,
-            translation,
-            margin,
-        } => {
+        QueryVolume::Shape { shape, rotation, translation, margin } => {
             let (translation, errors) = back(translation);
             QueryVolume::Shape {
                 shape,

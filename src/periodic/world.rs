@@ -282,8 +282,7 @@ impl<W: ImageWorld> Periodic<W> {
         let (of, PlacedBody { body, place }) = (self.images[slot].of, &self.bodies[slot]);
         for &ghost in &self.ghosts[slot] {
             let image = Image::new(of, self.images[ghost.slot()].axes, place);
-            self.world
-                .set_image(ghost, body, image.shift, &self.periods);
+            self.world.set_image(ghost, body, image.shift, &self.periods);
             self.images[ghost.slot()] = image;
         }
     }
@@ -341,10 +340,8 @@ impl<W: ImageWorld> Periodic<W> {
             && place.shift != self.images[slot].shift
         {
             self.world.set_image(of, body, place.shift, periods);
-            self.images[slot] = Image {
-                across: self.images[slot].across,
-                ..Image::new(of, 0, &place)
-            };
+            self.images[slot] =
+                Image { across: self.images[slot].across, ..Image::new(of, 0, &place) };
             self.bodies[slot].place = place;
         }
         let across = self.borders.near(&self.bodies[slot].place.lo, 1.0);
@@ -393,11 +390,7 @@ impl<W: ImageWorld> Periodic<W> {
             if one.axes & two.axes != 0 || one.of == two.of {
                 continue;
             }
-            let (first, second) = if one.of < two.of {
-                (one, two)
-            } else {
-                (two, one)
-            };
+            let (first, second) = if one.of < two.of { (one, two) } else { (two, one) };
             let bodies = [first.of, second.of];
             let image = [0, 1, 2].map(|axis| second.shift[axis] - first.shift[axis]);
             if !(one.is_small && two.is_small) {

@@ -63,12 +63,9 @@ impl<'a> Probe<'a> {
         match *volume {
             QueryVolume::Box { min, max } => Self::Box([min, max]),
             QueryVolume::Ball { centre, radius } => Self::Ball(centre, radius),
-            QueryVolume::Shape {
-                shape,
-                rotation,
-                translation,
-                margin,
-            } => Self::Shape(shape.at(rotation, translation, margin)),
+            QueryVolume::Shape { shape, rotation, translation, margin } => {
+                Self::Shape(shape.at(rotation, translation, margin))
+            }
         }
     }
 
@@ -76,10 +73,9 @@ impl<'a> Probe<'a> {
     fn bounds(&self, origin: [f64; 3]) -> Aabb {
         let (lo, hi) = match self {
             Self::Box([lo, hi]) => (*lo, *hi),
-            Self::Ball(centre, radius) => (
-                centre.map(|x| (x - radius).next_down()),
-                centre.map(|x| (x + radius).next_up()),
-            ),
+            Self::Ball(centre, radius) => {
+                (centre.map(|x| (x - radius).next_down()), centre.map(|x| (x + radius).next_up()))
+            }
             Self::Shape(posed) => return posed.bounds(origin),
         };
         Aabb {
@@ -162,9 +158,7 @@ impl QueryIndex {
         answer: impl Fn(&Q, &mut Vec<T>) + Sync,
     ) -> Answers<T> {
         let pieces = queries.chunks(QUERIES_PER_TASK);
-        let mut tasks: Vec<_> = pieces
-            .map(|piece| (piece, Vec::new(), Vec::new()))
-            .collect();
+        let mut tasks: Vec<_> = pieces.map(|piece| (piece, Vec::new(), Vec::new())).collect();
         in_default_mode(|| {
             self.threads.each(&mut tasks, |_, (piece, all, ends)| {
                 for query in *piece {
@@ -173,10 +167,7 @@ impl QueryIndex {
                 }
             });
         });
-        let mut answers = Answers {
-            all: Vec::new(),
-            ends: Vec::with_capacity(queries.len()),
-        };
+        let mut answers = Answers { all: Vec::new(), ends: Vec::with_capacity(queries.len()) };
         for (_, all, ends) in tasks {
             let start = answers.all.len();
             answers.all.extend(all);

@@ -104,10 +104,7 @@ impl QueryIndex {
     /// Number of bodies.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.homes
-            .iter()
-            .filter(|home| home.place != NOWHERE)
-            .count()
+        self.homes.iter().filter(|home| home.place != NOWHERE).count()
     }
 
     /// Whether there are no bodies.
@@ -138,10 +135,7 @@ impl QueryIndex {
     pub(super) fn put(&mut self, id: BodyId, tree: usize, bounds: &Aabb) {
         let slot = id.slot();
         if self.homes.len() <= slot {
-            let nowhere = TreePlace {
-                tree: 0,
-                place: NOWHERE,
-            };
+            let nowhere = TreePlace { tree: 0, place: NOWHERE };
             self.homes.resize(slot + 1, nowhere);
             self.ids.resize(slot + 1, id);
         }
@@ -151,10 +145,8 @@ impl QueryIndex {
             return self.trees[tree].set(home.place, bounds);
         }
         self.take_out(slot);
-        self.homes[slot] = TreePlace {
-            tree: tree as u8,
-            place: self.trees[tree].push(slot as u32, bounds),
-        };
+        self.homes[slot] =
+            TreePlace { tree: tree as u8, place: self.trees[tree].push(slot as u32, bounds) };
     }
 
     /// Removes the bodies of these slots.

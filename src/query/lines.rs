@@ -49,11 +49,7 @@ impl LineCourses {
         let mut last = [ALL; BOXES_PER_GROUP];
         for axis in 0..3 {
             let (course, lo, hi) = (self.axes[axis], &group.lo[axis], &group.hi[axis]);
-            let [near, far] = if course.is_falling() {
-                [hi, lo]
-            } else {
-                [lo, hi]
-            };
+            let [near, far] = if course.is_falling() { [hi, lo] } else { [lo, hi] };
             for lane in 0..BOXES_PER_GROUP {
                 let [enters, leaves] = course.between([near[lane], far[lane]].map(f64::from));
                 first[lane] = larger(enters, first[lane]);
@@ -176,12 +172,8 @@ impl QueryIndex {
     /// returns the new limit.
     fn walk(&self, line: &Line, take: impl FnMut(LineHit, f64) -> f64) {
         let track = line.track();
-        let walk = LineSearch {
-            index: self,
-            courses: LineCourses::new(&track, self.origin),
-            track,
-            take,
-        };
+        let walk =
+            LineSearch { index: self, courses: LineCourses::new(&track, self.origin), track, take };
         dispatch(self.tier, walk);
     }
 }
@@ -205,20 +197,12 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for LineSearch<'_, T> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self, _: L) {
-        let nothing = WaitingGroup {
-            enters: 0.0,
-            tree: 0,
-            node: Node::default(),
-        };
+        let nothing = WaitingGroup { enters: 0.0, tree: 0, node: Node::default() };
         let mut waiting = [nothing; MOST_WAITING + TREES];
         let mut count = 0;
         for tree in (0..TREES).rev() {
             if let Some(node) = self.index.trees[tree].top() {
-                waiting[count] = WaitingGroup {
-                    enters: 0.0,
-                    tree,
-                    node,
-                };
+                waiting[count] = WaitingGroup { enters: 0.0, tree, node };
                 count += 1;
             }
         }
@@ -229,19 +213,13 @@ impl<T: FnMut(LineHit, f64) -> f64> Kernel for LineSearch<'_, T> {
             if enters > limit {
                 continue;
             }
-            let (meeting, first) = self
-                .courses
-                .meeting(self.index.trees[tree].group(node), limit);
+            let (meeting, first) = self.courses.meeting(self.index.trees[tree].group(node), limit);
             let start = count;
             for lane in lanes_of(meeting) {
                 match node.below(lane) {
                     LaneContent::Place(place) => self.meet(tree, place, first[lane], &mut limit),
                     LaneContent::Node(node) => {
-                        waiting[count] = WaitingGroup {
-                            enters: first[lane],
-                            tree,
-                            node,
-                        };
+                        waiting[count] = WaitingGroup { enters: first[lane], tree, node };
                         count += 1;
                     }
                 }

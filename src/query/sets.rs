@@ -27,20 +27,13 @@ impl QueryIndex {
         in_default_mode(|| {
             self.threads.each(&mut tasks, |_, (tree, groups, found)| {
                 for group in groups.clone() {
-                    let pairs = GroupPairs {
-                        sets: [self, other],
-                        tree: *tree,
-                        group,
-                        found,
-                    };
+                    let pairs = GroupPairs { sets: [self, other], tree: *tree, group, found };
                     dispatch(self.tier, pairs);
                 }
             });
         });
         let mut pairs = Vec::with_capacity(tasks.iter().map(|(_, _, found)| found.len()).sum());
-        tasks
-            .iter()
-            .for_each(|(_, _, found)| pairs.extend_from_slice(found));
+        tasks.iter().for_each(|(_, _, found)| pairs.extend_from_slice(found));
         pairs.sort_unstable_by_key(|[one, other]: &[BodyId; 2]| {
             (one.slot() as u64) << 32 | other.slot() as u64
         });

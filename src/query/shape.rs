@@ -129,10 +129,7 @@ impl QueryShape {
         error: f64,
     ) -> PosedShape<'_> {
         let posed = self.at(rotation, translation, margin);
-        PosedShape {
-            margin: posed.margin + error,
-            ..posed
-        }
+        PosedShape { margin: posed.margin + error, ..posed }
     }
 
     /// The ball about it, as seen from the point that poses place.
@@ -200,9 +197,7 @@ impl QueryShape {
 
 /// The index of the end that faces a sum of basis vectors.
 fn index_of(facing: [i8; 3]) -> usize {
-    facing
-        .iter()
-        .fold(0, |index, c| 3 * index + (c + 1) as usize)
+    facing.iter().fold(0, |index, c| 3 * index + (c + 1) as usize)
 }
 
 /// Shapes and poses of bodies that are not boxes.

@@ -75,11 +75,7 @@ impl QuerySource for World {
             }
             if let Some(shape) = &posed.shapes[body.shape as usize] {
                 let body_there = shape.at(body.rotation, body.translation, body.margin);
-                let tree = if body.motion.is_dynamic() {
-                    MOVING_TREE
-                } else {
-                    FIXED_TREE
-                };
+                let tree = if body.motion.is_dynamic() { MOVING_TREE } else { FIXED_TREE };
                 index.put(id, tree, &body_there.bounds(index.origin));
             }
         }

@@ -42,11 +42,8 @@ pub(super) struct BoxGroup {
 }
 
 impl BoxGroup {
-    const EMPTY: Self = Self {
-        lo: [[0.0; BOXES_PER_GROUP]; 3],
-        hi: [[0.0; BOXES_PER_GROUP]; 3],
-        present: 0,
-    };
+    const EMPTY: Self =
+        Self { lo: [[0.0; BOXES_PER_GROUP]; 3], hi: [[0.0; BOXES_PER_GROUP]; 3], present: 0 };
 
     pub fn set(&mut self, lane: usize, aabb: &Aabb) {
         for axis in 0..3 {
@@ -57,10 +54,7 @@ impl BoxGroup {
     }
 
     pub fn get(&self, lane: usize) -> Aabb {
-        Aabb {
-            min: self.lo.map(|ends| ends[lane]),
-            max: self.hi.map(|ends| ends[lane]),
-        }
+        Aabb { min: self.lo.map(|ends| ends[lane]), max: self.hi.map(|ends| ends[lane]) }
     }
 
     /// The lanes that hold a box.
@@ -195,10 +189,7 @@ impl Tree {
         for level in 0..self.levels.len() - 1 {
             changed.dedup();
             for group in &mut changed {
-                let (at, bounds) = (
-                    *group as usize,
-                    self.levels[level][*group as usize].bounds(),
-                );
+                let (at, bounds) = (*group as usize, self.levels[level][*group as usize].bounds());
                 let above = &mut self.levels[level + 1][at / BOXES_PER_GROUP];
                 let former = above.width_of(at % BOXES_PER_GROUP);
                 match bounds {
@@ -281,10 +272,7 @@ impl Node {
         let at = self.group as usize * BOXES_PER_GROUP + lane;
         match self.level {
             0 => LaneContent::Place(at),
-            level => LaneContent::Node(Self {
-                level: level - 1,
-                group: at as u32,
-            }),
+            level => LaneContent::Node(Self { level: level - 1, group: at as u32 }),
         }
     }
 }
@@ -308,14 +296,9 @@ impl CurveOrder {
             }
             largest = largest.max(octave_of(aabb));
         }
-        let widest = (0..3).fold(f64::MIN_POSITIVE, |widest: f64, axis| {
-            widest.max(highest[axis] - lowest[axis])
-        });
-        Self {
-            lowest,
-            per_unit: f64::from((1_u32 << CURVE_BITS) - 1) / widest,
-            largest,
-        }
+        let widest = (0..3)
+            .fold(f64::MIN_POSITIVE, |widest: f64, axis| widest.max(highest[axis] - lowest[axis]));
+        Self { lowest, per_unit: f64::from((1_u32 << CURVE_BITS) - 1) / widest, largest }
     }
 
     fn place_of(&self, aabb: &Aabb) -> u64 {

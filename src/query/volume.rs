@@ -87,12 +87,7 @@ impl QueryError {
         value: String,
         hint: &'static str,
     ) -> Self {
-        Self {
-            query,
-            quantity,
-            value,
-            hint,
-        }
+        Self { query, quantity, value, hint }
     }
 
     /// How to mend it.
@@ -118,12 +113,7 @@ impl QueryCheck {
         if is_sound {
             return Ok(());
         }
-        Err(QueryError::new(
-            self.0,
-            quantity,
-            format!("{value:?}"),
-            hint,
-        ))
+        Err(QueryError::new(self.0, quantity, format!("{value:?}"), hint))
     }
 
     fn vector(&self, quantity: &'static str, v: [f64; 3]) -> Result<(), QueryError> {
@@ -134,12 +124,7 @@ impl QueryCheck {
 
     fn length(&self, quantity: &'static str, length: f64) -> Result<(), QueryError> {
         let is_sound = (0.0..=f64::from(LIMIT)).contains(&length);
-        self.that(
-            is_sound,
-            quantity,
-            &length,
-            "a length of 0 or more, at most 2^60",
-        )
+        self.that(is_sound, quantity, &length, "a length of 0 or more, at most 2^60")
     }
 }
 
@@ -158,12 +143,7 @@ impl QueryVolume<'_> {
                 check.vector("centre", centre)?;
                 check.length("radius", radius)
             }
-            Self::Shape {
-                shape,
-                rotation,
-                translation,
-                margin,
-            } => {
+            Self::Shape { shape, rotation, translation, margin } => {
                 check.length("shape's size", shape.reach())?;
                 check.length("margin", margin.into())?;
                 let pose = shape.check_pose(query, rotation, translation);
@@ -196,16 +176,12 @@ impl Line {
     /// Its start, the unit of s, and the largest s.
     pub(super) fn track(&self) -> LineTrack {
         match *self {
-            Self::Segment { from, to } => LineTrack {
-                from,
-                speed: [0, 1, 2].map(|axis| to[axis] - from[axis]),
-                limit: 1.0,
-            },
-            Self::Ray { origin, direction } => LineTrack {
-                from: origin,
-                speed: direction,
-                limit: f64::INFINITY,
-            },
+            Self::Segment { from, to } => {
+                LineTrack { from, speed: [0, 1, 2].map(|axis| to[axis] - from[axis]), limit: 1.0 }
+            }
+            Self::Ray { origin, direction } => {
+                LineTrack { from: origin, speed: direction, limit: f64::INFINITY }
+            }
         }
     }
 }

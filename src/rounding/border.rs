@@ -53,11 +53,7 @@ pub fn may_meet(distance: f64, reach: f32, widest: f32, skin: f32) -> bool {
 pub fn stays(now: ([f32; 3], f32), then: ([f32; 3], f32), skin: f32) -> bool {
     let further = |now: f32, then: f32| f64::from(now) - f64::from(then);
     // A NaN is not a growth of 0, and never stays.
-    let grown = if now.1 <= then.1 {
-        0.0
-    } else {
-        further(now.1, then.1)
-    };
+    let grown = if now.1 <= then.1 { 0.0 } else { further(now.1, then.1) };
     let most = f64::from(skin) * DRIFT_FACTOR;
     (0..3).all(|axis| further(now.0[axis], then.0[axis]).abs() + grown <= most)
 }
@@ -91,10 +87,7 @@ mod tests {
         let (giant, small) = (reach(100.0), reach(1.0));
         assert!(may_meet(100.5, giant, small, 0.0) && !may_meet(101.5, giant, small, 0.0));
         assert!(may_meet(1.5, small, giant, 0.0) && !may_meet(2.5, small, giant, 0.0));
-        assert!(
-            may_meet(103.5, giant, small, 1.5),
-            "with a skin on either side"
-        );
+        assert!(may_meet(103.5, giant, small, 1.5), "with a skin on either side");
     }
 
     /// Drift is any coordinate's and growth.
@@ -103,10 +96,7 @@ mod tests {
         let then = ([1.0, 2.0, 3.0], 1.0);
         assert!(stays(then, then, 0.0), "who doesn't move needs no skin");
         assert!(stays(([1.2, 1.8, 3.2], 1.0), then, 0.25));
-        assert!(
-            !stays(([1.0, 2.0, 3.25], 1.0), then, 0.25),
-            "the skin itself is too much"
-        );
+        assert!(!stays(([1.0, 2.0, 3.25], 1.0), then, 0.25), "the skin itself is too much");
         assert!(!stays(([1.2, 2.0, 3.0], 1.1), then, 0.25));
         assert!(!stays(([f32::NAN, 2.0, 3.0], 1.0), then, 0.25));
         assert!(!stays(([1.0, 2.0, f32::NAN], 1.0), then, 0.25));
@@ -122,10 +112,7 @@ mod tests {
             let size = f64::from(farthest) + f64::from(shape);
             let exact = f64::from(reach(inflated)) + BOX_ERROR * size;
             let found = f64::from(reach_of_box(inflated, t, shape));
-            assert!(
-                exact <= found && found < exact * (1.0 + exp2(-21)),
-                "{found}"
-            );
+            assert!(exact <= found && found < exact * (1.0 + exp2(-21)), "{found}");
         }
     }
 
@@ -145,10 +132,7 @@ mod tests {
         let near = reach_of_box(1.0, [0.0; 3], 1.0);
         let far = reach_of_box(1.0, [0.0, -4.0e6, 0.0], 1.0);
         assert!(reach(1.0) < near && near < 1.00001);
-        assert!(
-            far >= reach(1.0) + 0.5,
-            "the f32 next to four million is half a unit away"
-        );
+        assert!(far >= reach(1.0) + 0.5, "the f32 next to four million is half a unit away");
     }
 
     /// What is just within reach may meet.

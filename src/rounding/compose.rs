@@ -68,10 +68,7 @@ mod tests {
         let [about_x, about_z] = [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
         assert_eq!(product(about_z, about_x), [1.0, 1.0, 1.0, 1.0]);
         assert_eq!(product(about_x, about_z), [1.0, -1.0, 1.0, 1.0]);
-        assert_eq!(
-            product([0.0, 0.0, -3.0, 3.0], UNTURNED),
-            [0.0, 0.0, -1.0, 1.0]
-        );
+        assert_eq!(product([0.0, 0.0, -3.0, 3.0], UNTURNED), [0.0, 0.0, -1.0, 1.0]);
     }
 
     /// Norms are free, up to those whose squares no f32 holds.

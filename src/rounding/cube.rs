@@ -61,11 +61,7 @@ impl<L: Lanes> Cube<L> {
             sound &= l.bits(l.gt(infinity, hi - lo)) & !l.bits(swapped);
         }
         outer[3] = widest * l.splat(WIDER) + l.splat(FLOOR);
-        Self {
-            outer,
-            gap: outer[3] - narrowest,
-            sound,
-        }
+        Self { outer, gap: outer[3] - narrowest, sound }
     }
 }
 
@@ -136,9 +132,7 @@ mod tests {
     }
 
     fn is_sound(slabs: &Slabs) -> bool {
-        Tier::available()
-            .into_iter()
-            .all(|tier| dispatch(tier, MakeCube(slabs)).2)
+        Tier::available().into_iter().all(|tier| dispatch(tier, MakeCube(slabs)).2)
     }
 
     fn meet(a: &Slabs, b: &Slabs) -> bool {
@@ -249,10 +243,7 @@ mod tests {
     fn cubes_are_as_tight_as_possible() {
         let within = |found: f32, exact: f64| {
             let found = f64::from(found);
-            assert!(
-                exact <= found && found <= exact * (1.0 + 4e-6),
-                "{found} of {exact}"
-            );
+            assert!(exact <= found && found <= exact * (1.0 + 4e-6), "{found} of {exact}");
         };
         let about = MakeCube(&[[1.0, 3.0], [-8.0, 0.0], [40.0, 44.0]]);
         let (outer, gap, _) = dispatch(Tier::SCALAR, about);

@@ -79,21 +79,14 @@ pub fn outward_box(min: &[f64; 3], max: &[f64; 3]) -> Aabb {
         let rank = ranked((x as f32).to_bits() as i32) + by;
         f32::from_bits(ranked(rank) as u32)
     };
-    Aabb {
-        min: min.map(|x| stepped(x, -1)),
-        max: max.map(|x| stepped(x, 1)),
-    }
+    Aabb { min: min.map(|x| stepped(x, -1)), max: max.map(|x| stepped(x, 1)) }
 }
 
 /// The smallest f32 that is at least `x`, itself if it is an f32.
 #[must_use]
 pub const fn ceil_f32(x: f64) -> f32 {
     let nearest = x as f32;
-    if (nearest as f64) < x {
-        nearest.next_up()
-    } else {
-        nearest
-    }
+    if (nearest as f64) < x { nearest.next_up() } else { nearest }
 }
 
 /// The largest f32 that is at most `x`, itself if it is an f32.
@@ -137,23 +130,12 @@ mod tests {
     #[test]
     fn outward_boxes_contain() {
         let least = f64::from(f32::from_bits(1));
-        let sizes = [
-            0.0,
-            0.4 * least,
-            0.6 * least,
-            least,
-            1.0,
-            1.0 + exp2(-40),
-            exp2(60),
-        ];
+        let sizes = [0.0, 0.4 * least, 0.6 * least, least, 1.0, 1.0 + exp2(-40), exp2(60)];
         for x in sizes.into_iter().flat_map(|size| [size, -size]) {
             let Aabb { min, max } = outward_box(&[x, 1.0, x], &[x, 1.0, x]);
             assert!(f64::from(min[0]) <= x && x <= f64::from(max[2]), "{x:e}");
             if x.abs() > least {
-                assert_eq!(
-                    ([min[0], min[2]], [max[0], max[2]]),
-                    ([down(x); 2], [up(x); 2])
-                );
+                assert_eq!(([min[0], min[2]], [max[0], max[2]]), ([down(x); 2], [up(x); 2]));
             }
             assert_eq!((min[1], max[1]), (down(1.0), up(1.0)));
         }
@@ -173,10 +155,7 @@ mod tests {
     fn squares_at_the_limit_are_finite() {
         // d² of centres at opposite corners, and (R + R)² of the largest radii after every
         // inflation.
-        let (d, s) = (
-            2.0 * LIMIT,
-            2.0 * widen(sphere::inflate_radius(2.0 * LIMIT)),
-        );
+        let (d, s) = (2.0 * LIMIT, 2.0 * widen(sphere::inflate_radius(2.0 * LIMIT)));
         assert!((3.0 * d * d).is_finite() && (s * s).is_finite());
     }
 
@@ -185,9 +164,6 @@ mod tests {
     fn widening_exceeds_its_factor() {
         assert!(widen(0.0) > 0.0);
         assert!(f64::from(widen(1.0)) >= FINDER_FACTOR);
-        assert!(
-            widen(0.0) < 1e-20 && widen(1.0) < 1.0 + 1e-5,
-            "and little else"
-        );
+        assert!(widen(0.0) < 1e-20 && widen(1.0) < 1.0 + 1e-5, "and little else");
     }
 }

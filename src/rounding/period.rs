@@ -113,11 +113,7 @@ mod tests {
             let x = (mantissa(&mut random) - 1.5) * exp2(step % 29);
             let (rest, n) = wrap(x, period);
             assert!(rest.abs() <= 0.5 * period, "{x} {period}");
-            assert_eq!(
-                whole(x),
-                whole(rest) + i128::from(n) * whole(period),
-                "{x} {period}"
-            );
+            assert_eq!(whole(x), whole(rest) + i128::from(n) * whole(period), "{x} {period}");
         }
         // The border belongs to both sides, and stays where it is.
         assert_eq!([wrap(1.5, 3.0), wrap(-1.5, 3.0)], [(1.5, 0), (-1.5, 0)]);

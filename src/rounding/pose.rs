@@ -61,21 +61,9 @@ pub fn rotation_of<N: Real>([x, y, z, w]: [N; 4]) -> [[N; 3]; 3] {
     let (xx, yy, zz, ww) = (x * x, y * y, z * z, w * w);
     let over = x.like(1.0) / (xx + yy + zz + ww);
     [
-        [
-            ((xx - yy) + (ww - zz)) * over,
-            twice(x * y, -(w * z), over),
-            twice(x * z, w * y, over),
-        ],
-        [
-            twice(x * y, w * z, over),
-            ((yy - xx) + (ww - zz)) * over,
-            twice(y * z, -(w * x), over),
-        ],
-        [
-            twice(x * z, -(w * y), over),
-            twice(y * z, w * x, over),
-            ((zz - xx) + (ww - yy)) * over,
-        ],
+        [((xx - yy) + (ww - zz)) * over, twice(x * y, -(w * z), over), twice(x * z, w * y, over)],
+        [twice(x * y, w * z, over), ((yy - xx) + (ww - zz)) * over, twice(y * z, -(w * x), over)],
+        [twice(x * z, -(w * y), over), twice(y * z, w * x, over), ((zz - xx) + (ww - yy)) * over],
     ]
 }
 
@@ -102,11 +90,7 @@ pub fn rotate_of<N: Real>(r: &[[N; 3]; 3], [x, y, z]: [N; 3]) -> [N; 3] {
 /// R·x + t in the world frame, each coordinate within [`COORDINATE_ERROR`]·max(|x|∞, |t|∞).
 pub fn transform(r: &Rotation, x: [f32; 3], t: [f32; 3]) -> [f64; 3] {
     let p = rotate(r, x);
-    [
-        p[0] + f64::from(t[0]),
-        p[1] + f64::from(t[1]),
-        p[2] + f64::from(t[2]),
-    ]
+    [p[0] + f64::from(t[0]), p[1] + f64::from(t[1]), p[2] + f64::from(t[2])]
 }
 
 /// World directions of an orthogonal basis: the columns of R·basis/‖basis‖, each entry rounded once
@@ -115,26 +99,16 @@ pub fn transform(r: &Rotation, x: [f32; 3], t: [f32; 3]) -> [f64; 3] {
 /// Against the exactly posed orthonormal basis an entry errs by u of itself and an f64 part below
 /// 2⁻⁴⁷.
 pub fn world_axes(r: &Rotation, basis: [[f32; 3]; 3]) -> [[f32; 3]; 3] {
-    let (unit, basis) = (
-        over_norm(basis[0]),
-        basis.map(|column| column.map(f64::from)),
-    );
+    let (unit, basis) = (over_norm(basis[0]), basis.map(|column| column.map(f64::from)));
     axes_of(r, basis, unit).map(|axis| axis.map(|x| x as f32))
 }
 
 /// The same before rounding, for numbers that are f32 each; `unit` is 1/‖basis‖, of [`over_norm`].
 #[inline(always)]
 pub fn axes_of<N: Real>(r: &[[N; 3]; 3], basis: [[N; 3]; 3], unit: N) -> [[N; 3]; 3] {
-    let [[a, b, c], [d, e, f], [g, h, i]] = [
-        rotate_of(r, basis[0]),
-        rotate_of(r, basis[1]),
-        rotate_of(r, basis[2]),
-    ];
-    [
-        [a * unit, b * unit, c * unit],
-        [d * unit, e * unit, f * unit],
-        [g * unit, h * unit, i * unit],
-    ]
+    let [[a, b, c], [d, e, f], [g, h, i]] =
+        [rotate_of(r, basis[0]), rotate_of(r, basis[1]), rotate_of(r, basis[2])];
+    [[a * unit, b * unit, c * unit], [d * unit, e * unit, f * unit], [g * unit, h * unit, i * unit]]
 }
 
 /// Euclidean norm of an f32 vector, in f64.
@@ -152,9 +126,7 @@ pub fn over_norm(v: [f32; 3]) -> f64 {
 /// by [`transform`], with d's coefficients in {−1, 0, 1}: `hi' = up(hi + 2⁻⁴⁶·max(ρ, |t|∞) +
 /// 2⁻¹²⁰)`, lo mirrored; ρ ≥ ‖x‖.
 pub fn refit(lo: f64, hi: f64, reach: f32, t: [f32; 3]) -> (f32, f32) {
-    let size = t
-        .iter()
-        .fold(f64::from(reach), |m, &x| m.max(f64::from(x.abs())));
+    let size = t.iter().fold(f64::from(reach), |m, &x| m.max(f64::from(x.abs())));
     let margin = REFIT_MARGIN * size + REFIT_FLOOR;
     (down(lo - margin), up(hi + margin))
 }
@@ -176,15 +148,9 @@ mod tests {
     #[test]
     fn quarter_turn_takes_x_to_y() {
         let turn = rotation([0.0, 0.0, 1.0, 1.0]);
-        assert_eq!(
-            transform(&turn, [1.0, 2.0, 3.0], [10.0, 0.0, 0.0]),
-            [8.0, 1.0, 3.0]
-        );
+        assert_eq!(transform(&turn, [1.0, 2.0, 3.0], [10.0, 0.0, 0.0]), [8.0, 1.0, 3.0]);
         let basis = [[0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5]];
-        assert_eq!(
-            world_axes(&turn, basis),
-            [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-        );
+        assert_eq!(world_axes(&turn, basis), [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     }
 
     /// A refitted extent grows with the distance from the origin.

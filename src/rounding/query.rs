@@ -84,11 +84,7 @@ impl Course {
     #[inline(always)]
     #[must_use]
     pub fn new(at: f64, speed: f64) -> Self {
-        let inverse = if speed.abs() < STILL {
-            0.0
-        } else {
-            1.0 / speed
-        };
+        let inverse = if speed.abs() < STILL { 0.0 } else { 1.0 / speed };
         Self { at, inverse }
     }
 }
@@ -121,11 +117,7 @@ impl Course {
 #[inline(always)]
 #[must_use]
 pub fn crossing(course: Course, [lo, hi]: [f64; 2]) -> [f64; 2] {
-    let [near, far] = if course.is_falling() {
-        [hi, lo]
-    } else {
-        [lo, hi]
-    };
+    let [near, far] = if course.is_falling() { [hi, lo] } else { [lo, hi] };
     let [first, last] = course.between([near, far]);
     [earlier(first), later(last)]
 }

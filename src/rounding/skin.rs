@@ -82,10 +82,7 @@ pub struct Reach {
 
 impl Reach {
     /// Radii as they are.
-    pub const NONE: Self = Self {
-        factor: 1.0,
-        floor: 0.0,
-    };
+    pub const NONE: Self = Self { factor: 1.0, floor: 0.0 };
 
     /// By a skin: the sphere test of balls so grown loses no pair of balls that may be reported
     /// within their budgets.

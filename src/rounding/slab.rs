@@ -43,9 +43,7 @@ pub fn inflate_slab(
     centre: [f32; 3],
     reach: f32,
 ) -> (f32, f32) {
-    let offset: f64 = (0..3)
-        .map(|i| f64::from(direction[i]) * f64::from(centre[i]))
-        .sum();
+    let offset: f64 = (0..3).map(|i| f64::from(direction[i]) * f64::from(centre[i])).sum();
     let (length, reach) = (norm(direction) / scale, f64::from(reach) + norm(centre));
     let margin = length * (SLAB_MARGIN * reach + SLAB_FLOOR);
     let lo = ((f64::from(lo) - offset) / scale).min(0.0) - margin;
@@ -66,10 +64,7 @@ mod tests {
         let margin = 2.0f64.sqrt() * SLAB_MARGIN * (4.0 + norm(centre));
         for (end, exact) in [(-f64::from(lo), 1.75), (f64::from(hi), 4.25)] {
             let gained = end - exact;
-            assert!(
-                margin < gained && gained < margin + 1e-6,
-                "{gained:e}, {margin:e}"
-            );
+            assert!(margin < gained && gained < margin + 1e-6, "{gained:e}, {margin:e}");
         }
     }
 

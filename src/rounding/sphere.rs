@@ -49,18 +49,9 @@ pub fn world_ball(rotation: &Rotation, t: [f32; 3], c: [f32; 3], r: f32) -> ([f3
 #[inline(always)]
 pub fn rounded_ball(exact: [f64; 3], t: [f32; 3], c: [f32; 3], r: f32) -> ([f32; 3], f32) {
     let centre = exact.map(|x| x as f32);
-    let moved = (0..3)
-        .map(|i| (exact[i] - f64::from(centre[i])).powi(2))
-        .sum::<f64>()
-        .sqrt();
-    let size = c
-        .iter()
-        .chain(&t)
-        .fold(0.0, |m: f64, &x| m.max(f64::from(x.abs())));
-    (
-        centre,
-        up(f64::from(r) + 1.0001 * moved + CENTRE_ERROR * size + CENTRE_FLOOR),
-    )
+    let moved = (0..3).map(|i| (exact[i] - f64::from(centre[i])).powi(2)).sum::<f64>().sqrt();
+    let size = c.iter().chain(&t).fold(0.0, |m: f64, &x| m.max(f64::from(x.abs())));
+    (centre, up(f64::from(r) + 1.0001 * moved + CENTRE_ERROR * size + CENTRE_FLOOR))
 }
 
 /// Whether balls are apart whose centres differ by d and whose radii add up to s: d² > s².
@@ -105,10 +96,7 @@ mod tests {
         let turn = crate::rounding::pose::rotation([0.0, 0.0, 0.0, 1.0]);
         let subnormal = f32::from_bits(0x007f_ffff);
         let (_, radius) = world_ball(&turn, [subnormal; 3], [1e-45, 0.0, 0.0], 0.0);
-        assert!(
-            f64::from(radius) >= 3_f64.sqrt() * f64::from(subnormal),
-            "{radius:e}"
-        );
+        assert!(f64::from(radius) >= 3_f64.sqrt() * f64::from(subnormal), "{radius:e}");
     }
 
     /// A far small ball includes the f64 rounding of its centre.

@@ -137,10 +137,7 @@ pub struct CullSettings {
     /// The or-DOP's slab directions, written as k = 6, 14, 18 or 26.
     #[cfg_attr(
         feature = "serde",
-        serde(
-            serialize_with = "super::text::write_k",
-            deserialize_with = "super::text::read_k"
-        )
+        serde(serialize_with = "super::text::write_k", deserialize_with = "super::text::read_k")
     )]
     pub k: DirectionSet,
     /// The or-DOP's axes.
@@ -210,10 +207,7 @@ impl CullSettings {
     /// The defaults, but with the finder `all-pairs`, as in the paper.
     #[must_use]
     pub fn all_pairs() -> Self {
-        Self {
-            pairs: Finder::AllPairs,
-            ..Self::default()
-        }
+        Self { pairs: Finder::AllPairs, ..Self::default() }
     }
 
     /// Checks that the settings fit together and suit a scene of `bodies` bodies.
@@ -221,11 +215,8 @@ impl CullSettings {
     /// # Errors
     /// A strategy without its interest or budget; an interest in a body that doesn't exist.
     pub fn check(&self, bodies: usize) -> Result<(), SettingsError> {
-        let missing = |key, hint| SettingsError::Missing {
-            strategy: self.strategy.name(),
-            key,
-            hint,
-        };
+        let missing =
+            |key, hint| SettingsError::Missing { strategy: self.strategy.name(), key, hint };
         let flow = self.strategy.scheme().flow;
         let needs_interest = flow == Flow::OfInterest
             || (flow == Flow::TimeCritical && self.order == Order::InterestFirst);
@@ -241,9 +232,7 @@ impl CullSettings {
                 "give budget = { tests = 1000 } or budget = { microseconds = 500 }",
             ));
         }
-        self.interest
-            .as_ref()
-            .map_or(Ok(()), |interest| interest.check(bodies))
+        self.interest.as_ref().map_or(Ok(()), |interest| interest.check(bodies))
     }
 }
 
@@ -269,17 +258,11 @@ impl Interest {
             return Ok(());
         };
         if cone.body.is_some() == cone.apex.is_some() {
-            return wrong(
-                "a cone has one apex".to_owned(),
-                "give `body` or `apex`, not both",
-            );
+            return wrong("a cone has one apex".to_owned(), "give `body` or `apex`, not both");
         }
         let all_finite = |v: &[f32; 3]| v.iter().all(|x| x.is_finite());
         if !all_finite(&cone.direction) || cone.direction == [0.0; 3] {
-            return wrong(
-                format!("direction {:?}", cone.direction),
-                "any finite vector but zero",
-            );
+            return wrong(format!("direction {:?}", cone.direction), "any finite vector but zero");
         }
         if let Some(apex) = cone.apex.filter(|apex| !all_finite(apex)) {
             return wrong(format!("apex {apex:?}"), "coordinates are finite");
@@ -291,10 +274,7 @@ impl Interest {
             );
         }
         if let Some(range) = cone.range.filter(|range| range.is_nan() || *range <= 0.0) {
-            return wrong(
-                format!("range {range}"),
-                "a length above 0, or leave it out",
-            );
+            return wrong(format!("range {range}"), "a length above 0, or leave it out");
         }
         Ok(())
     }

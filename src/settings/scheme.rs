@@ -67,11 +67,7 @@ impl Strategy {
             Self::KDop => (Some(KDop), None, Flow::FirstTest),
             Self::Obb => (None, Some(Obb), Flow::Sequential),
         };
-        Scheme {
-            first,
-            refining,
-            flow,
-        }
+        Scheme { first, refining, flow }
     }
 }
 
@@ -127,11 +123,7 @@ impl Scheme {
     /// The separating axes of the refining test: `given`, but for oriented boxes all 15.
     #[must_use]
     pub fn overlap(self, given: Overlap) -> Overlap {
-        if self.has_boxes() {
-            Overlap::Full
-        } else {
-            given
-        }
+        if self.has_boxes() { Overlap::Full } else { given }
     }
 }
 
@@ -143,11 +135,7 @@ mod tests {
     #[test]
     fn scheme_rows_are_consistent() {
         for strategy in Strategy::ALL {
-            let Scheme {
-                first,
-                refining,
-                flow,
-            } = strategy.scheme();
+            let Scheme { first, refining, flow } = strategy.scheme();
             let oriented = [TestedVolume::OrDop, TestedVolume::Obb];
             assert!(first.is_none_or(|volume| !oriented.contains(&volume)));
             assert!(refining.is_none_or(|volume| oriented.contains(&volume)));

@@ -43,10 +43,7 @@ pub(super) fn read_k<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Direc
     })
 }
 
-#[allow(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "the signature is serde's"
-)]
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature is serde's")]
 pub(super) fn write_k<S: Serializer>(set: &DirectionSet, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_u64(set.k() as u64)
 }

@@ -174,12 +174,7 @@ mod tests {
     #[test]
     fn tagged_boxes_meet_as_boxes_do() {
         for number in [0, 1, 0x7fff_ffff, u32::MAX] {
-            let tagged = |min, max| TaggedBox {
-                min,
-                slot: number,
-                max,
-                tags: number,
-            };
+            let tagged = |min, max| TaggedBox { min, slot: number, max, tags: number };
             let all = tagged([-1.0; 3], [9.0; 3]);
             let middle = tagged([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]);
             assert!(middle.meets(&all) && all.meets(&middle));
@@ -200,14 +195,10 @@ mod tests {
     fn soundness_and_bits_are_those_of_numbers() {
         let least = f32::from_bits(1);
         let positive = [0.0, least, f32::MIN_POSITIVE, 1.0, f32::MAX, f32::INFINITY];
-        let all: Vec<f32> = (positive.iter().flat_map(|&x| [-x, x]))
-            .chain([f32::NAN, -f32::NAN])
-            .collect();
+        let all: Vec<f32> =
+            (positive.iter().flat_map(|&x| [-x, x])).chain([f32::NAN, -f32::NAN]).collect();
         let aabb = |axis: usize, lo, hi| {
-            let mut aabb = Aabb {
-                min: [-1.0, -2.0, -3.0],
-                max: [1.0, -2.0, 3.0],
-            };
+            let mut aabb = Aabb { min: [-1.0, -2.0, -3.0], max: [1.0, -2.0, 3.0] };
             (aabb.min[axis], aabb.max[axis]) = (lo, hi);
             aabb
         };
@@ -232,10 +223,7 @@ mod tests {
     fn numbers_keep_their_order() {
         let [min, max] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
         let boxes = [Aabb { min, max }, Aabb { min: max, max: min }];
-        let expected = [
-            [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
-            [4.0, 5.0, 6.0, 1.0, 2.0, 3.0],
-        ];
+        let expected = [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [4.0, 5.0, 6.0, 1.0, 2.0, 3.0]];
         assert_eq!(numbers_of(&boxes), expected);
         assert_eq!(boxes_of(&expected), boxes);
         assert!(numbers_of(&[]).is_empty() && boxes_of(&[]).is_empty());

@@ -25,13 +25,7 @@ pub struct I8(__m256i);
 pub struct M8(__m256);
 
 float_operators!(F8, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps);
-double_operators!(
-    D8,
-    _mm256_add_pd,
-    _mm256_sub_pd,
-    _mm256_mul_pd,
-    _mm256_div_pd
-);
+double_operators!(D8, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd);
 
 impl std::ops::BitAnd for M8 {
     type Output = Self;
@@ -338,9 +332,7 @@ impl Lanes for Avx2 {
         let to = &mut to[..8];
         // SAFETY: room for 8 quads is there, and the token proves AVX.
         unsafe {
-            for (i, pair) in turn_in_halves(columns.map(|column| column.0))
-                .into_iter()
-                .enumerate()
+            for (i, pair) in turn_in_halves(columns.map(|column| column.0)).into_iter().enumerate()
             {
                 let [near, far] = [i, i + 4].map(|quad| to.as_mut_ptr().add(quad).cast());
                 _mm256_storeu2_m128(far, near, pair);
@@ -408,10 +400,8 @@ unsafe fn clamped(from: *const u32, last: u32) -> [u32; 8] {
     let mut lanes = [0; 8];
     // SAFETY: the caller vouches for the feature and the pointer.
     unsafe {
-        let index = _mm256_min_epu32(
-            _mm256_loadu_si256(from.cast()),
-            _mm256_set1_epi32(last as i32),
-        );
+        let index =
+            _mm256_min_epu32(_mm256_loadu_si256(from.cast()), _mm256_set1_epi32(last as i32));
         _mm256_storeu_si256(lanes.as_mut_ptr().cast(), index);
     }
     lanes

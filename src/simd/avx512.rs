@@ -25,13 +25,7 @@ pub struct I16(__m512i);
 pub struct M16(__mmask16);
 
 float_operators!(F16, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps);
-double_operators!(
-    D16,
-    _mm512_add_pd,
-    _mm512_sub_pd,
-    _mm512_mul_pd,
-    _mm512_div_pd
-);
+double_operators!(D16, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd);
 
 impl std::ops::BitAnd for M16 {
     type Output = Self;
@@ -350,10 +344,8 @@ unsafe fn clamped(from: *const u32, last: u32) -> [u32; 16] {
     let mut lanes = [0; 16];
     // SAFETY: the caller vouches for the feature and the pointer.
     unsafe {
-        let index = _mm512_min_epu32(
-            _mm512_loadu_epi32(from.cast()),
-            _mm512_set1_epi32(last as i32),
-        );
+        let index =
+            _mm512_min_epu32(_mm512_loadu_epi32(from.cast()), _mm512_set1_epi32(last as i32));
         _mm512_storeu_epi32(lanes.as_mut_ptr().cast(), index);
     }
     lanes

@@ -161,12 +161,7 @@ mod tests {
         let down = up.next_down();
         assert_eq!(FpMode::current(), FpMode::DEFAULT);
         assert_eq!(results(), [half, up, -up].map(f32::to_bits));
-        let wanted = [
-            [0.0, up, -up],
-            [half, down, -up],
-            [half, up, -down],
-            [half, down, -down],
-        ];
+        let wanted = [[0.0, up, -up], [half, down, -up], [half, up, -down], [half, down, -down]];
         for (mode, wanted) in FpMode::OTHERS.into_iter().zip(wanted) {
             // Nothing is known of other architectures' modes.
             if mode != FpMode::DEFAULT {

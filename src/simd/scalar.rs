@@ -28,11 +28,7 @@ impl<const FLUSH: bool> F1<FLUSH> {
     /// The value as an operation reads or leaves it.
     #[inline(always)]
     fn of(x: f32) -> Self {
-        if FLUSH && x.is_subnormal() {
-            Self(0.0f32.copysign(x))
-        } else {
-            Self(x)
-        }
+        if FLUSH && x.is_subnormal() { Self(0.0f32.copysign(x)) } else { Self(x) }
     }
 }
 
@@ -111,9 +107,7 @@ impl<const FLUSH: bool> Lanes for Scalar<FLUSH> {
     }
     #[inline(always)]
     fn flip_sign(self, a: Self::F, sign: Self::F) -> Self::F {
-        F1(f32::from_bits(
-            a.0.to_bits() ^ (sign.0.to_bits() & 0x8000_0000),
-        ))
+        F1(f32::from_bits(a.0.to_bits() ^ (sign.0.to_bits() & 0x8000_0000)))
     }
     #[inline(always)]
     fn gt(self, a: Self::F, b: Self::F) -> Self::M {

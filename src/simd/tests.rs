@@ -5,9 +5,8 @@ use super::*;
 const X: [f32; 16] = [
     0.0, -0.0, 1.5, -2.25, 1e-40, -1e-40, 3e38, -3e38, 7.0, 0.1, -0.3, 1e-20, 5.0, -5.0, 42.0, 1.0,
 ];
-const Y: [f32; 16] = [
-    -0.0, 0.0, 1.5, 2.25, 1e-40, 1e-40, -3e38, 3e38, 0.7, -0.1, -0.2, 1e20, -5.0, -6.0, 41.0, 1.0,
-];
+const Y: [f32; 16] =
+    [-0.0, 0.0, 1.5, 2.25, 1e-40, 1e-40, -3e38, 3e38, 0.7, -0.1, -0.2, 1e20, -5.0, -6.0, 41.0, 1.0];
 
 /// Lanes as numbers: a vector's lane i is what `select` and `gt` can tell of it, so compare through
 /// tables.
@@ -66,22 +65,10 @@ const THIRD: f64 = 1.0 / 3.0;
 fn doubles<L: Lanes>(l: L, start: usize) {
     let (x, y) = (l.load(&X[start..]), l.load(&Y[start..]));
     let (a, b, third) = (l.widen(x), l.widen(y), l.splat_f64(THIRD));
-    let found = [
-        a * third + b,
-        b - third * a,
-        (a + third) / (b + third),
-        a * b,
-        a,
-    ];
+    let found = [a * third + b, b - third * a, (a + third) / (b + third), a * b, a];
     for lane in 0..L::WIDTH {
         let [a, b] = [X[start + lane], Y[start + lane]].map(f64::from);
-        let expected = [
-            a * THIRD + b,
-            b - THIRD * a,
-            (a + THIRD) / (b + THIRD),
-            a * b,
-            a,
-        ];
+        let expected = [a * THIRD + b, b - THIRD * a, (a + THIRD) / (b + THIRD), a * b, a];
         for (found, expected) in found.into_iter().zip(expected) {
             let found = bits_of(l, l.narrow(found))[lane];
             assert_eq!(found, (expected as f32).to_bits(), "lane {}", start + lane);
@@ -109,16 +96,8 @@ fn arithmetic<L: Lanes>(l: L, start: usize) {
     assert!(same(l, x + y, &expect(&|x, y| x + y)));
     assert!(same(l, x - y, &expect(&|x, y| x - y)));
     assert!(same(l, x * y, &expect(&|x, y| x * y)));
-    assert!(same(
-        l,
-        l.min(x, y),
-        &expect(&|x, y| if x < y { x } else { y })
-    ));
-    assert!(same(
-        l,
-        l.max(x, y),
-        &expect(&|x, y| if x > y { x } else { y })
-    ));
+    assert!(same(l, l.min(x, y), &expect(&|x, y| if x < y { x } else { y })));
+    assert!(same(l, l.max(x, y), &expect(&|x, y| if x > y { x } else { y })));
     assert!(same(l, l.abs(x), &expect(&|x, _| x.abs())));
     let signs = [l.min(x, y), l.max(x, y)].map(|v| bits_of(l, v));
     let min = expect(&|x, y| if x < y { x } else { y });
@@ -130,51 +109,31 @@ fn arithmetic<L: Lanes>(l: L, start: usize) {
     let mut stored = [f32::NAN; MAX_WIDTH + 1];
     l.store(x, &mut stored);
     assert_eq!(stored[..L::WIDTH], xs[..L::WIDTH]);
-    assert!(
-        stored[L::WIDTH].is_nan(),
-        "nothing is written behind the lanes"
-    );
+    assert!(stored[L::WIDTH].is_nan(), "nothing is written behind the lanes");
     let flipped = expect(&|x, y| if y.is_sign_negative() { -x } else { x });
     assert!(same(l, l.flip_sign(x, y), &flipped));
-    let negative = (0..L::WIDTH)
-        .filter(|&i| xs[i].is_sign_negative())
-        .fold(0, |bits, i| bits | 1 << i);
+    let negative =
+        (0..L::WIDTH).filter(|&i| xs[i].is_sign_negative()).fold(0, |bits, i| bits | 1 << i);
     assert_eq!(l.bits(l.negative(x)), negative);
     let chosen = expect(&|x, y| if x.is_sign_negative() { x } else { y });
     assert!(same(l, l.select(l.negative(x), x, y), &chosen));
     let mut packed = [f32::NAN; MAX_WIDTH];
     l.pack(negative, x, &mut packed);
-    let kept: Vec<f32> = xs[..L::WIDTH]
-        .iter()
-        .copied()
-        .filter(|x| x.is_sign_negative())
-        .collect();
+    let kept: Vec<f32> = xs[..L::WIDTH].iter().copied().filter(|x| x.is_sign_negative()).collect();
     assert_eq!(packed[..kept.len()], kept[..]);
     let greater = l.gt(x, y);
-    let expected = (0..L::WIDTH)
-        .filter(|&i| xs[i] > ys[i])
-        .fold(0, |bits, i| bits | 1 << i);
+    let expected = (0..L::WIDTH).filter(|&i| xs[i] > ys[i]).fold(0, |bits, i| bits | 1 << i);
     assert_eq!(l.bits(greater), expected);
     assert!(same(l, l.select(greater, x, y), &expect(&f32::max)));
     let nan = l.splat(f32::NAN);
-    assert_eq!(
-        l.bits(l.gt(nan, x) | l.gt(x, nan)),
-        0,
-        "NaN compares as not greater"
-    );
-    assert!(
-        same(l, l.max(nan, x), xs) && same(l, l.min(nan, x), xs),
-        "a NaN yields the second"
-    );
+    assert_eq!(l.bits(l.gt(nan, x) | l.gt(x, nan)), 0, "NaN compares as not greater");
+    assert!(same(l, l.max(nan, x), xs) && same(l, l.min(nan, x), xs), "a NaN yields the second");
 
     let table = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
     let index: Vec<u32> = (0..16).map(|i| (5 * i + start as u32) % 8).collect();
     let expected: Vec<f32> = index.iter().map(|&i| table[i as usize]).collect();
     assert!(same(l, l.gather(&table, l.load_u32(&index)), &expected));
-    assert!(
-        same(l, l.gather(&table, l.splat_u32(1000)), &[7.0; 16]),
-        "clamped"
-    );
+    assert!(same(l, l.gather(&table, l.splat_u32(1000)), &[7.0; 16]), "clamped");
     let index: Vec<u32> = (0..16).map(|i| (7 * i + start as u32) % 16).collect();
     let expected: Vec<f32> = index.iter().map(|&i| X[i as usize]).collect();
     assert!(same(l, l.lookup_16(&X, l.load_u32(&index)), &expected));
@@ -200,14 +159,9 @@ fn integers<L: Lanes>(l: L, start: usize) {
     look_up_integers(l, start);
     let bits: Vec<u32> = X[start..][..L::WIDTH].iter().map(|x| x.to_bits()).collect();
     assert_eq!(as_floats(l.as_u32(l.load(&X[start..]))), bits);
-    let any: u32 = (0..L::WIDTH)
-        .filter(|&i| a[i] & b[i] != 0)
-        .map(|i| 1 << i)
-        .sum();
-    let codes: Vec<u32> = (start as u32..)
-        .map(|i| (i * 77_777_777) | (i % 16))
-        .take(L::WIDTH)
-        .collect();
+    let any: u32 = (0..L::WIDTH).filter(|&i| a[i] & b[i] != 0).map(|i| 1 << i).sum();
+    let codes: Vec<u32> =
+        (start as u32..).map(|i| (i * 77_777_777) | (i % 16)).take(L::WIDTH).collect();
     let (high, low) = l.split_u32(l.load_u32(&codes));
     let expect = |f: &dyn Fn(u32) -> u32| -> Vec<u32> {
         codes[..L::WIDTH].iter().map(|&code| f(code)).collect()
@@ -217,10 +171,7 @@ fn integers<L: Lanes>(l: L, start: usize) {
     for n in 0..=L::WIDTH + 1 {
         assert_eq!(l.bits(l.first(n)).count_ones() as usize, n.min(L::WIDTH));
     }
-    let kept: Vec<u32> = (0..L::WIDTH)
-        .filter(|&i| a[i] & b[i] != 0)
-        .map(|i| a[i])
-        .collect();
+    let kept: Vec<u32> = (0..L::WIDTH).filter(|&i| a[i] & b[i] != 0).map(|i| a[i]).collect();
     let mut out = [99; MAX_WIDTH];
     l.compress(any, va, &mut out);
     assert_eq!(out[..kept.len()], kept[..]);
@@ -249,100 +200,62 @@ fn look_up_integers<L: Lanes>(l: L, start: usize) {
         let (va, vb) = (l.load_u32(&a), l.load_u32(&b));
         let greater = l.gt_u32(va, vb);
         let lanes = (0..L::WIDTH).filter(|&lane| a[lane] > b[lane]);
-        assert_eq!(
-            l.bits(greater),
-            lanes.fold(0, |bits, lane| bits | 1 << lane)
-        );
-        assert_eq!(
-            lanes_of(l, l.select_u32(greater, va, vb)),
-            expect(&u32::max)
-        );
-        assert_eq!(
-            lanes_of(l, l.select_u32(greater, vb, va)),
-            expect(&u32::min)
-        );
+        assert_eq!(l.bits(greater), lanes.fold(0, |bits, lane| bits | 1 << lane));
+        assert_eq!(lanes_of(l, l.select_u32(greater, va, vb)), expect(&u32::max));
+        assert_eq!(lanes_of(l, l.select_u32(greater, vb, va)), expect(&u32::min));
     }
     let table: [u32; 16] = std::array::from_fn(|entry| u32::MAX - 10 * entry as u32);
     let entries = |scale: u32| -> Vec<u32> {
         let first = start as u32;
-        (first..first + L::WIDTH as u32)
-            .map(|lane| (scale * lane + 3) % 24)
-            .collect()
+        (first..first + L::WIDTH as u32).map(|lane| (scale * lane + 3) % 24).collect()
     };
     let index = entries(7);
-    let gathered: Vec<u32> = index
-        .iter()
-        .map(|&entry| table[entry.min(15) as usize])
-        .collect();
-    assert_eq!(
-        lanes_of(l, l.gather_u32(&table, l.load_u32(&index))),
-        gathered
-    );
+    let gathered: Vec<u32> = index.iter().map(|&entry| table[entry.min(15) as usize]).collect();
+    assert_eq!(lanes_of(l, l.gather_u32(&table, l.load_u32(&index))), gathered);
     assert_eq!(
         lanes_of(l, l.gather_u32(&table, l.splat_u32(u32::MAX))),
         [table[15]; 16][..L::WIDTH]
     );
     let index: Vec<u32> = entries(5).iter().map(|entry| entry % 16).collect();
     let found: Vec<u32> = index.iter().map(|&entry| table[entry as usize]).collect();
-    assert_eq!(
-        lanes_of(l, l.lookup_16_u32(&table, l.load_u32(&index))),
-        found
-    );
+    assert_eq!(lanes_of(l, l.lookup_16_u32(&table, l.load_u32(&index))), found);
 }
 
 fn transposed<L: Lanes>(l: L, start: usize) {
-    let rows: Vec<[f32; ROW]> = (0..40)
-        .map(|row| std::array::from_fn(|column| (row * 100 + column) as f32))
-        .collect();
+    let rows: Vec<[f32; ROW]> =
+        (0..40).map(|row| std::array::from_fn(|column| (row * 100 + column) as f32)).collect();
     // The seventh index lies after the table and reads its end.
     let pick: Vec<u32> = (0..16)
-        .map(|lane| {
-            if lane == 6 {
-                1000
-            } else {
-                (lane * 23 + 5) % 40
-            }
-        })
+        .map(|lane| if lane == 6 { 1000 } else { (lane * 23 + 5) % 40 })
         .skip(start)
         .collect();
     for (column, lanes) in l.load_transposed(&rows, &pick).into_iter().enumerate() {
-        let expected: Vec<f32> = pick
-            .iter()
-            .map(|&row| (row.min(39) * 100 + column as u32) as f32)
-            .collect();
+        let expected: Vec<f32> =
+            pick.iter().map(|&row| (row.min(39) * 100 + column as u32) as f32).collect();
         assert!(same(l, lanes, &expected), "column {column}");
     }
 }
 
 fn quads<L: Lanes>(l: L, start: usize) {
-    let quads: Vec<[f32; 4]> = (0..40)
-        .map(|quad| std::array::from_fn(|column| (quad * 10 + column) as f32))
-        .collect();
+    let quads: Vec<[f32; 4]> =
+        (0..40).map(|quad| std::array::from_fn(|column| (quad * 10 + column) as f32)).collect();
     // Every other index lies after the table and reads its end.
-    let pick: Vec<u32> = (start as u32..16)
-        .map(|lane| (15 - lane) * 2 + lane % 2 * 80)
-        .collect();
+    let pick: Vec<u32> = (start as u32..16).map(|lane| (15 - lane) * 2 + lane % 2 * 80).collect();
     let codes: Vec<u32> = pick.iter().map(|&quad| (quad << 4) | (quad % 16)).collect();
-    let columns = l
-        .load_quads(&quads[3..])
-        .into_iter()
-        .zip(l.gather_quads(&quads, &codes));
+    let columns = l.load_quads(&quads[3..]).into_iter().zip(l.gather_quads(&quads, &codes));
     for (column, (loaded, gathered)) in columns.enumerate() {
         let loaded_from: Vec<f32> = (3..19).map(|quad| quads[quad][column]).collect();
         assert!(same(l, loaded, &loaded_from), "column {column}");
-        let gathered_from: Vec<f32> = pick
-            .iter()
-            .map(|&quad| quads[(quad as usize).min(39)][column])
-            .collect();
+        let gathered_from: Vec<f32> =
+            pick.iter().map(|&quad| quads[(quad as usize).min(39)][column]).collect();
         assert!(same(l, gathered, &gathered_from), "column {column}");
     }
     let mut stored = [[0.5; 4]; MAX_WIDTH + 1];
     l.store_quads(l.load_quads(&quads[3..]), &mut stored);
     assert_eq!(stored[..L::WIDTH], quads[3..3 + L::WIDTH]);
     assert_eq!(stored[L::WIDTH], [0.5; 4], "nothing is written behind");
-    let sixes: Vec<[f32; 6]> = (0..40)
-        .map(|six| std::array::from_fn(|column| (six * 10 + column) as f32))
-        .collect();
+    let sixes: Vec<[f32; 6]> =
+        (0..40).map(|six| std::array::from_fn(|column| (six * 10 + column) as f32)).collect();
     for (column, lanes) in l.gather_sixes(&sixes, &pick).into_iter().enumerate() {
         let of_six = |&six: &u32| sixes[(six as usize).min(39)][column];
         let expected: Vec<f32> = pick.iter().map(of_six).collect();

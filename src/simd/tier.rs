@@ -115,10 +115,7 @@ impl FromStr for Tier {
             return Err(TierError::Unknown(name.to_owned()));
         }
         let have: Vec<_> = available.iter().map(|tier| tier.name()).collect();
-        Err(TierError::Unavailable {
-            missing: name.to_owned(),
-            have: have.join(", "),
-        })
+        Err(TierError::Unavailable { missing: name.to_owned(), have: have.join(", ") })
     }
 }
 

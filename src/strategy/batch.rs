@@ -23,14 +23,7 @@ pub(super) fn flow(
     interest: Option<&[bool]>,
     output: Output<'_>,
 ) -> Totals {
-    let Scratch {
-        tasks,
-        candidates,
-        selected,
-        survivors,
-        portion,
-        ..
-    } = scratch;
+    let Scratch { tasks, candidates, selected, survivors, portion, .. } = scratch;
     let mut batch = Batch {
         refiner: Refiner::new(inputs, rows),
         body: inputs.bodies_by_place(),
@@ -50,18 +43,10 @@ pub(super) fn flow(
                 batch.refine(candidates, None, portion);
                 sink(portion);
             };
-            list(
-                inputs,
-                PairNames::Places,
-                tasks,
-                Output::Portions(&mut take),
-            )
+            list(inputs, PairNames::Places, tasks, Output::Portions(&mut take))
         }
     };
-    Totals {
-        first: listed.first,
-        ..batch.refiner.totals
-    }
+    Totals { first: listed.first, ..batch.refiner.totals }
 }
 
 /// Refines listed candidates.
@@ -81,11 +66,7 @@ impl Batch<'_> {
         let Some(interest) = self.interest else {
             return self.refiner.refine(candidates, tasks, out);
         };
-        let filter = InterestFilter {
-            pairs: candidates,
-            body: self.body,
-            interest,
-        };
+        let filter = InterestFilter { pairs: candidates, body: self.body, interest };
         filter.select(self.selected);
         self.survivors.clear();
         self.refiner.refine(self.selected, tasks, self.survivors);

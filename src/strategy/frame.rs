@@ -29,11 +29,7 @@ pub(crate) struct Setup {
 
 impl Setup {
     pub fn new(settings: &CullSettings) -> Self {
-        Self {
-            settings: settings.clone(),
-            scheme: settings.strategy.scheme(),
-            is_canonical: false,
-        }
+        Self { settings: settings.clone(), scheme: settings.strategy.scheme(), is_canonical: false }
     }
 }
 
@@ -148,12 +144,7 @@ impl Scratch {
 
     /// Bytes that lists of pairs hold.
     pub fn pair_bytes(&self) -> usize {
-        let lists = [
-            &self.candidates,
-            &self.selected,
-            &self.survivors,
-            &self.portion,
-        ];
+        let lists = [&self.candidates, &self.selected, &self.survivors, &self.portion];
         let lists: usize = lists.into_iter().map(PairList::bytes).sum();
         lists + self.tasks.pair_bytes()
     }

@@ -45,11 +45,7 @@ impl<'a> HitNames<'a> {
             SlotNames::Bodies | SlotNames::Places(_) => finder.names(),
             SlotNames::Slots(body) => body,
         };
-        Self {
-            by_slot,
-            listed,
-            slots,
-        }
+        Self { by_slot, listed, slots }
     }
 
     /// The listed numbers of hits with these entries, that of the lower body first.
@@ -67,10 +63,7 @@ impl<'a> HitNames<'a> {
             SlotNames::Bodies => {}
             // Written out, because a closure would be compiled without the tier's features.
             SlotNames::Places(body) => {
-                bodies = [
-                    l.gather_u32(body, entries[0]),
-                    l.gather_u32(body, entries[1]),
-                ]
+                bodies = [l.gather_u32(body, entries[0]), l.gather_u32(body, entries[1])]
             }
             SlotNames::Slots(_) => names = hits.slots(l, hit),
         }
@@ -149,8 +142,5 @@ impl HitSlots {
 fn in_order<L: Lanes>(l: L, listed: [L::I; 2], bodies: [L::I; 2]) -> [L::I; 2] {
     let [one, other] = listed;
     let swapped = l.gt_u32(bodies[0], bodies[1]);
-    [
-        l.select_u32(swapped, other, one),
-        l.select_u32(swapped, one, other),
-    ]
+    [l.select_u32(swapped, other, one), l.select_u32(swapped, one, other)]
 }

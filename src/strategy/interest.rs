@@ -129,12 +129,7 @@ mod tests {
 
     fn seen(cone: &ViewCone, bodies: &Bodies, centre: [f32; 3]) -> bool {
         let mut marks = [false];
-        mark(
-            &Interest::Cone(cone.clone()),
-            bodies,
-            |_| centre,
-            &mut marks,
-        );
+        mark(&Interest::Cone(cone.clone()), bodies, |_| centre, &mut marks);
         marks[0]
     }
 
@@ -225,10 +220,9 @@ mod tests {
         let distance = 64.0_f64;
         for apex in APEXES {
             for half_angle in [1.0_f32, 30.0, 90.0, 135.0, 179.0] {
-                for (turn, turned) in [
-                    ([0.0, 0.0, 0.0, 1.0], [1, 2, 0]),
-                    ([0.5, 0.5, 0.5, 0.5], [2, 0, 1]),
-                ] {
+                for (turn, turned) in
+                    [([0.0, 0.0, 0.0, 1.0], [1, 2, 0]), ([0.5, 0.5, 0.5, 0.5], [2, 0, 1])]
+                {
                     let mut bodies = Bodies::default();
                     bodies.push(0, true, turn, apex);
                     let cone = ViewCone {

@@ -98,19 +98,8 @@ impl<'a> Listing<'a> {
         enough: usize,
         flush: &mut dyn FnMut(&mut PairList),
     ) -> VolumeCounters {
-        let flush = FlushRule {
-            enough,
-            call: flush,
-        };
-        dispatch(
-            self.tier,
-            ListParts {
-                listing: *self,
-                parts,
-                out,
-                flush,
-            },
-        )
+        let flush = FlushRule { enough, call: flush };
+        dispatch(self.tier, ListParts { listing: *self, parts, out, flush })
     }
 }
 
@@ -128,12 +117,7 @@ pub(super) fn list(
     tasks: &mut Tasks,
     output: Output<'_>,
 ) -> Totals {
-    list_parts(
-        Listing::new(inputs, listed),
-        inputs.executor.pool,
-        tasks,
-        output,
-    )
+    list_parts(Listing::new(inputs, listed), inputs.executor.pool, tasks, output)
 }
 
 /// Boxes that are arranged in slots, and how they are tested.
@@ -298,9 +282,7 @@ impl<T> Lister<'_, '_, T> {
     fn prefetch_beyond(&mut self, block: &Block<'_>) {
         let farthest = block.codes().last().map_or(0, |code| code >> 4) as usize;
         let end = self.names.by_slot.len().min(farthest + PREFETCH_DISTANCE);
-        let mut slot = self
-            .prefetched
-            .max(end.saturating_sub(2 * PREFETCH_DISTANCE));
+        let mut slot = self.prefetched.max(end.saturating_sub(2 * PREFETCH_DISTANCE));
         while slot < end {
             prefetch(&self.names.by_slot[slot]);
             slot += NAMES_PER_LINE;
@@ -344,7 +326,6 @@ impl<T> Lister<'_, '_, T> {
     #[inline(never)]
     fn keep_passing(&mut self, listed: usize, filter: PairFilter<'_>) {
         let body_of = |name: u32| self.names.body_of(name);
-        self.out
-            .keep_from(listed, |[a, b]| filter.passes(body_of(a), body_of(b)));
+        self.out.keep_from(listed, |[a, b]| filter.passes(body_of(a), body_of(b)));
     }
 }

@@ -87,15 +87,8 @@ pub(super) struct TaskTurn<'t, 's> {
 
 impl<'s> OutputTurns<'s> {
     pub fn new(sink: &'s mut PortionSink<'s>) -> Self {
-        let state = TurnState {
-            task: 0,
-            abandoned: false,
-            sink,
-        };
-        Self {
-            state: Mutex::new(state),
-            changed: Condvar::new(),
-        }
+        let state = TurnState { task: 0, abandoned: false, sink };
+        Self { state: Mutex::new(state), changed: Condvar::new() }
     }
 
     pub fn of(&self, task: usize) -> TaskTurn<'_, 's> {
@@ -158,9 +151,8 @@ mod tests {
                 });
                 later.join().is_err()
             });
-            let mut list: PairList = (0..PAIRS_PER_PORTION as u32)
-                .map(|pair| [pair, pair + 1])
-                .collect();
+            let mut list: PairList =
+                (0..PAIRS_PER_PORTION as u32).map(|pair| [pair, pair + 1]).collect();
             let outlet = TaskOutput::HandedOver(turns.of(0));
             outlet.offer(&mut list);
             outlet.end(&mut list);

@@ -28,9 +28,7 @@ pub(super) struct Refine<'a> {
 
 impl<'a> Refine<'a> {
     pub fn new(inputs: Inputs<'a>, rows: &'a OrDopRows) -> Self {
-        let Setup {
-            settings, scheme, ..
-        } = inputs.setup;
+        let Setup { settings, scheme, .. } = inputs.setup;
         Self {
             tier: inputs.executor.tier,
             columns: OrDopColumns {
@@ -71,18 +69,13 @@ impl<'a> Refine<'a> {
         let moving = posed.places.moving;
         let mut window = std::mem::take(&mut task.window);
         window.clear();
-        for (first, second) in first
-            .chunks(PAIRS_PER_STRETCH)
-            .zip(second.chunks(PAIRS_PER_STRETCH))
+        for (first, second) in first.chunks(PAIRS_PER_STRETCH).zip(second.chunks(PAIRS_PER_STRETCH))
         {
             let start = Instant::now();
             let wanted = places_of(self.tier, moving, [first, second]);
             window.cover(self.tier, posed, &self.columns.rows, wanted);
             task.update_seconds += start.elapsed().as_secs_f64();
-            let columns = OrDopColumns {
-                rows: window.rows(moving),
-                ..self.columns
-            };
+            let columns = OrDopColumns { rows: window.rows(moving), ..self.columns };
             let here = Refine { columns, ..*self };
             let pairs = [first, second];
             here.test(pairs, &mut task.refining, &mut task.seconds, &mut task.out);
@@ -104,16 +97,8 @@ fn places_of(tier: Tier, moving: usize, pairs: [&[u32]; 2]) -> [Range<usize>; 2]
             for column in self.1 {
                 for &place in column {
                     let moves = place < self.0;
-                    let [first, second] = if moves {
-                        [place, u32::MAX]
-                    } else {
-                        [u32::MAX, place]
-                    };
-                    let [end, second_end] = if moves {
-                        [place + 1, 0]
-                    } else {
-                        [0, place + 1]
-                    };
+                    let [first, second] = if moves { [place, u32::MAX] } else { [u32::MAX, place] };
+                    let [end, second_end] = if moves { [place + 1, 0] } else { [0, place + 1] };
                     moving = [moving[0].min(first), moving[1].max(end)];
                     still = [still[0].min(second), still[1].max(second_end)];
                 }
@@ -134,11 +119,7 @@ pub(super) struct Refiner<'a> {
 
 impl<'a> Refiner<'a> {
     pub fn new(inputs: Inputs<'a>, rows: &'a mut OrDopRows) -> Self {
-        Self {
-            inputs,
-            rows,
-            totals: Totals::default(),
-        }
+        Self { inputs, rows, totals: Totals::default() }
     }
 
     /// Tests all pairs of a list and appends the survivors to `out`; on all threads if `tasks` are
@@ -154,11 +135,7 @@ impl<'a> Refiner<'a> {
         }
         let refine = Refine::new(self.inputs, self.rows);
         // Tasks begin at the start of stretches, which were checked one by one.
-        let unit = if in_windows {
-            PAIRS_PER_STRETCH
-        } else {
-            MAX_WIDTH
-        };
+        let unit = if in_windows { PAIRS_PER_STRETCH } else { MAX_WIDTH };
         let work = |units: Range<usize>, task: &mut Task, _: &TaskOutput<'_, '_>| {
             let pairs = units.start * unit..(units.end * unit).min(list.len());
             let pairs = [&list.first()[pairs.clone()], &list.second()[pairs]];
@@ -180,32 +157,23 @@ impl<'a> Refiner<'a> {
     fn are_near(&self, list: &PairList) -> bool {
         let Executor { tier, pool } = self.inputs.executor;
         let moving = self.inputs.volumes.posed.places.moving;
-        pool.all(
-            list.len(),
-            STRETCHES_PER_TASK * PAIRS_PER_STRETCH,
-            |range| {
-                let [first, second] =
-                    [list.first(), list.second()].map(|column| &column[range.clone()]);
-                let mut stretches = first
-                    .chunks(PAIRS_PER_STRETCH)
-                    .zip(second.chunks(PAIRS_PER_STRETCH));
-                stretches.all(|(first, second)| {
-                    let places = places_of(tier, moving, [first, second]);
-                    places.iter().all(|places| places.len() <= MOST_ROWS)
-                })
-            },
-        )
+        pool.all(list.len(), STRETCHES_PER_TASK * PAIRS_PER_STRETCH, |range| {
+            let [first, second] =
+                [list.first(), list.second()].map(|column| &column[range.clone()]);
+            let mut stretches =
+                first.chunks(PAIRS_PER_STRETCH).zip(second.chunks(PAIRS_PER_STRETCH));
+            stretches.all(|(first, second)| {
+                let places = places_of(tier, moving, [first, second]);
+                places.iter().all(|places| places.len() <= MOST_ROWS)
+            })
+        })
     }
 
     /// Tests some pairs of a list on the calling thread and appends the survivors to `out`.
     pub fn refine_range(&mut self, list: &PairList, range: Range<usize>, out: &mut PairList) {
         self.make_rows(list, range.clone());
         let pairs = [&list.first()[range.clone()], &list.second()[range]];
-        let Totals {
-            refining,
-            refining_seconds,
-            ..
-        } = &mut self.totals;
+        let Totals { refining, refining_seconds, .. } = &mut self.totals;
         Refine::new(self.inputs, self.rows).test(pairs, refining, refining_seconds, out);
     }
 
@@ -213,12 +181,7 @@ impl<'a> Refiner<'a> {
     /// otherwise all.
     fn make_rows(&mut self, list: &PairList, range: Range<usize>) {
         let executor = self.inputs.executor;
-        let FrameVolumes {
-            posed,
-            stamp,
-            row_timing,
-            ..
-        } = self.inputs.volumes;
+        let FrameVolumes { posed, stamp, row_timing, .. } = self.inputs.volumes;
         let start = Instant::now();
         match row_timing {
             RowTiming::BeforePairs => return,
@@ -265,9 +228,7 @@ mod tests {
         }
         let (places, pool) = (Places::new(&bodies), Threads::default());
         let posed = UpdateInputs {
-            frames: &[ShapeFrame::new(&shape, &shape.ordop.basis)]
-                .into_iter()
-                .collect(),
+            frames: &[ShapeFrame::new(&shape, &shape.ordop.basis)].into_iter().collect(),
             bodies: &bodies,
             places: &places,
             balls: &[],
@@ -279,10 +240,7 @@ mod tests {
         let slots = Slots::default();
         let inputs = Inputs {
             executor,
-            setup: &Setup::new(&CullSettings {
-                updates,
-                ..CullSettings::default()
-            }),
+            setup: &Setup::new(&CullSettings { updates, ..CullSettings::default() }),
             tables: &SlabTables::new(DirectionSet::K18, [(&shape, &shape.ordop)]),
             arranged: Arrangement {
                 finder: &PairFinder::AllPairs(AllPairs::default()),
@@ -324,9 +282,8 @@ mod tests {
             refiner(Updates::Eager, |refiner| refiner.are_near(&list))
         };
         let most = MOST_ROWS as u32;
-        let mut pairs: Vec<_> = (0..40 * PAIRS_PER_STRETCH as u32)
-            .map(|pair| [pair % 3, 3 + 10 * pair])
-            .collect();
+        let mut pairs: Vec<_> =
+            (0..40 * PAIRS_PER_STRETCH as u32).map(|pair| [pair % 3, 3 + 10 * pair]).collect();
         assert!(is_near(&pairs));
         pairs[20 * PAIRS_PER_STRETCH + 7][0] = pairs[20 * PAIRS_PER_STRETCH][1] + most - 1;
         assert!(is_near(&pairs));

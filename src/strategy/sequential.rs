@@ -37,13 +37,7 @@ pub(super) fn flow(
         refine_blocks(&listing, parts, &refine, interest, task, outlet);
     };
     let units = inputs.arranged.finder.parts();
-    split_work(
-        inputs.executor.pool,
-        &mut scratch.tasks,
-        units,
-        output,
-        work,
-    )
+    split_work(inputs.executor.pool, &mut scratch.tasks, units, output, work)
 }
 
 /// Runs one task: candidates are refined whenever they fill a block.
@@ -55,25 +49,12 @@ fn refine_blocks(
     task: &mut Task,
     outlet: &TaskOutput<'_, '_>,
 ) {
-    let Task {
-        out,
-        block,
-        selected,
-        survivors,
-        first,
-        refining,
-        seconds,
-        ..
-    } = task;
+    let Task { out, block, selected, survivors, first, refining, seconds, .. } = task;
     let mut flush = |block: &mut PairList| {
         match interest {
             None => refine.test([block.first(), block.second()], refining, seconds, out),
             Some(interest) => {
-                let filter = InterestFilter {
-                    pairs: block,
-                    body: refine.body,
-                    interest,
-                };
+                let filter = InterestFilter { pairs: block, body: refine.body, interest };
                 filter.select(selected);
                 survivors.clear();
                 let pairs = [selected.first(), selected.second()];

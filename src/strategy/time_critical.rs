@@ -64,13 +64,7 @@ pub(super) fn flow(
     output: Output<'_>,
 ) -> Totals {
     let mut spender = Spender::new(inputs, rows);
-    let Scratch {
-        tasks,
-        candidates,
-        history,
-        portion,
-        ..
-    } = scratch;
+    let Scratch { tasks, candidates, history, portion, .. } = scratch;
     let order = inputs.setup.settings.order;
     let is_sorted = inputs.setup.is_canonical || order != Order::AsFound;
     let listed = match output {
@@ -80,12 +74,7 @@ pub(super) fn flow(
                 spender.report(candidates, 0..candidates.len(), portion);
                 sink(portion);
             };
-            list(
-                inputs,
-                PairNames::Places,
-                tasks,
-                Output::Portions(&mut take),
-            )
+            list(inputs, PairNames::Places, tasks, Output::Portions(&mut take))
         }
         output => {
             let listed = list(inputs, PairNames::Places, tasks, Output::List(candidates));
@@ -110,15 +99,10 @@ pub(super) fn flow(
     if order == Order::OldestAnswer {
         let tests = spender.refiner.totals.refining.tests as usize;
         let bodies = inputs.bodies_by_place();
-        let pairs = candidates
-            .iter()
-            .map(|pair| pair.map(|place| bodies[place as usize]));
+        let pairs = candidates.iter().map(|pair| pair.map(|place| bodies[place as usize]));
         history.remember(pairs, tests, inputs.volumes.stamp);
     }
-    Totals {
-        first: listed.first,
-        ..spender.refiner.totals
-    }
+    Totals { first: listed.first, ..spender.refiner.totals }
 }
 
 /// Refines pairs until the budget is spent.
@@ -134,10 +118,9 @@ impl<'a> Spender<'a> {
     fn new(inputs: Inputs<'a>, rows: &'a mut OrDopRows) -> Self {
         let (tests_left, deadline) = match inputs.setup.settings.budget {
             Some(Budget::Tests(tests)) => (usize::try_from(tests).unwrap_or(usize::MAX), None),
-            Some(Budget::Microseconds(us)) => (
-                usize::MAX,
-                Instant::now().checked_add(Duration::from_micros(us)),
-            ),
+            Some(Budget::Microseconds(us)) => {
+                (usize::MAX, Instant::now().checked_add(Duration::from_micros(us)))
+            }
             None => (usize::MAX, None),
         };
         Self {
@@ -152,17 +135,9 @@ impl<'a> Spender<'a> {
     /// test, and those that the budget leaves untested.
     fn report(&mut self, candidates: &PairList, range: Range<usize>, out: &mut PairList) {
         let limit = range.end.min(range.start.saturating_add(self.tests_left));
-        let slice = if self.deadline.is_some() {
-            TESTS_PER_CLOCK_READING
-        } else {
-            limit.max(1)
-        };
+        let slice = if self.deadline.is_some() { TESTS_PER_CLOCK_READING } else { limit.max(1) };
         let mut next = range.start;
-        while next < limit
-            && self
-                .deadline
-                .is_none_or(|deadline| Instant::now() < deadline)
-        {
+        while next < limit && self.deadline.is_none_or(|deadline| Instant::now() < deadline) {
             let end = limit.min(next + slice);
             self.refiner.refine_range(candidates, next..end, out);
             next = end;
@@ -180,9 +155,7 @@ impl<'a> Spender<'a> {
 /// Sorts the potentially colliding set into the order of refinement.
 fn arrange(inputs: Inputs<'_>, history: &mut History, candidates: &mut PairList) {
     let order = inputs.setup.settings.order;
-    let History {
-        refined, ranked, ..
-    } = history;
+    let History { refined, ranked, .. } = history;
     let body = inputs.bodies_by_place();
     let of_no_interest = |&body: &u32| !inputs.volumes.interest[body as usize];
     let rank = |bodies: [u32; 2], places: [u32; 2]| match order {
@@ -195,11 +168,7 @@ fn arrange(inputs: Inputs<'_>, history: &mut History, candidates: &mut PairList)
     ranked.clear();
     ranked.extend(candidates.iter().map(|places| {
         let bodies = places.map(|place| body[place as usize]);
-        RankedPair {
-            rank: rank(bodies, places),
-            bodies,
-            places,
-        }
+        RankedPair { rank: rank(bodies, places), bodies, places }
     }));
     ranked.sort_unstable();
     candidates.clear();
@@ -298,9 +267,6 @@ mod tests {
         history.shrink_to_fit();
         assert_eq!(history.refined, HashMap::from([([3, 4], 9), ([0, 1], 7)]));
         assert!(history.refined.capacity() < 100);
-        assert_eq!(
-            (history.before.capacity(), history.ranked.capacity()),
-            (0, 0)
-        );
+        assert_eq!((history.before.capacity(), history.ranked.capacity()), (0, 0));
     }
 }

@@ -39,17 +39,13 @@ impl AlignedRows {
 impl Deref for AlignedRows {
     type Target = [[f32; ROW]];
     fn deref(&self) -> &Self::Target {
-        self.floats[self.first..self.first + self.len * ROW]
-            .as_chunks()
-            .0
+        self.floats[self.first..self.first + self.len * ROW].as_chunks().0
     }
 }
 
 impl DerefMut for AlignedRows {
     fn deref_mut(&mut self) -> &mut Self::Target {
-        self.floats[self.first..self.first + self.len * ROW]
-            .as_chunks_mut()
-            .0
+        self.floats[self.first..self.first + self.len * ROW].as_chunks_mut().0
     }
 }
 

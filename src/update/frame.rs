@@ -107,11 +107,7 @@ impl ShapeFrame {
     #[must_use]
     pub fn with_radius(self, radius: f32) -> Self {
         let centred = self.centre == [0.0; 3];
-        Self {
-            radius,
-            inflated: centred.then(|| inflate_radius(radius)),
-            ..self
-        }
+        Self { radius, inflated: centred.then(|| inflate_radius(radius)), ..self }
     }
 
     /// The frame with the number of the hull to which world-aligned volumes are fitted.
@@ -130,11 +126,7 @@ impl ShapeFrame {
     pub fn grown(&self, margin: f32) -> Self {
         let grow = |size: f32| up(f64::from(size) + f64::from(margin));
         let frame = Self {
-            margin: if self.margin == 0.0 {
-                margin
-            } else {
-                grow(self.margin)
-            },
+            margin: if self.margin == 0.0 { margin } else { grow(self.margin) },
             reach: grow(self.reach),
             ..*self
         };

@@ -44,8 +44,7 @@ impl Intervals {
 
     /// Sets the hull of this number to that of a shape: replaces one, or appends the next.
     pub(crate) fn set(&mut self, hull: usize, shape: &Shape) {
-        self.hulls
-            .resize_with(self.hulls.len().max(hull + 1), Vec::new);
+        self.hulls.resize_with(self.hulls.len().max(hull + 1), Vec::new);
         self.hulls[hull] = hull_in_eights(shape);
     }
 
@@ -86,13 +85,7 @@ impl Intervals {
         let (first, hulls) = (range.start, &self.hulls);
         let ends = &mut self.ends[range.start * slabs..range.end * slabs];
         pool.pieces(ends, BODIES_PER_TASK * slabs, |start, ends| {
-            let refit = Refit {
-                posed,
-                hulls,
-                coefficients,
-                first: first + start / slabs,
-                ends,
-            };
+            let refit = Refit { posed, hulls, coefficients, first: first + start / slabs, ends };
             dispatch(tier, refit);
         });
         let ends = self.ends[range.start * slabs..].chunks_exact(slabs);
@@ -144,12 +137,7 @@ impl Kernel for Refit<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
         let slabs = self.coefficients.len();
-        let UpdateInputs {
-            frames,
-            bodies,
-            places,
-            ..
-        } = self.posed;
+        let UpdateInputs { frames, bodies, places, .. } = self.posed;
         for (place, ends) in (self.first..).zip(self.ends.chunks_exact_mut(slabs)) {
             let body = places.body[place] as usize;
             let frame = &frames[places.shape[place] as usize];
@@ -303,23 +291,9 @@ mod tests {
         // A quarter turn about z, then (10, −20, 30): (x, y, z) goes to (10 − y, x − 20, z + 30).
         let turn = rotation([0.0, 0.0, 1.0, 1.0]);
         let placed = vertices.map(|[x, y, z]: [f64; 3]| [10.0 - y, x - 20.0, z + 30.0]);
-        let coefficients = [
-            [1, 0, 0],
-            [0, 1, 0],
-            [0, 0, 1],
-            [1, 1, 1],
-            [1, -1, 0],
-            [-1, 1, 1],
-        ];
+        let coefficients = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1], [1, -1, 0], [-1, 1, 1]];
         let mut ends = [[0.0; 2]; 6];
-        fit(
-            &mut ends,
-            &coefficients,
-            &[hull],
-            &turn,
-            [10.0, -20.0, 30.0],
-            5.0,
-        );
+        fit(&mut ends, &coefficients, &[hull], &turn, [10.0, -20.0, 30.0], 5.0);
         let wide = {
             let mut wide = ends;
             widen(&mut wide, &coefficients, 0.125);
@@ -328,9 +302,8 @@ mod tests {
         for (slab, c) in coefficients.iter().enumerate() {
             let along =
                 placed.map(|p| (0..3).map(|axis| f64::from(c[axis]) * p[axis]).sum::<f64>());
-            let truth = along
-                .into_iter()
-                .fold([f64::MAX, f64::MIN], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+            let truth =
+                along.into_iter().fold([f64::MAX, f64::MIN], |[lo, hi], x| [lo.min(x), hi.max(x)]);
             let out = 0.125 * f64::from(c.map(|x: i8| x * x).iter().sum::<i8>()).sqrt();
             for (ends, out) in [(ends[slab], 0.0), (wide[slab], out)] {
                 let [lo, hi] = ends.map(f64::from);

@@ -55,13 +55,8 @@ pub fn update_spheres(
 ) -> bool {
     let Executor { tier, pool } = executor;
     let (first, is_sound) = (range.start, AtomicBool::new(true));
-    let is_near = read_ahead(
-        pool,
-        &bodies.translation,
-        range.len(),
-        MOST_READ_AHEAD_BYTES,
-        |t| t[0],
-    );
+    let is_near =
+        read_ahead(pool, &bodies.translation, range.len(), MOST_READ_AHEAD_BYTES, |t| t[0]);
     let ahead = if is_near { &[] } else { &*places.body };
     pool.pieces(&mut spheres[range], BODIES_PER_TASK, |start, spheres| {
         let first = first + start;
@@ -80,14 +75,7 @@ pub fn update_spheres(
                 *sphere = [x, y, z, radius];
             }
         } else {
-            let kernel = EccentricSpheres {
-                frames,
-                bodies,
-                places,
-                ahead,
-                first,
-                spheres,
-            };
+            let kernel = EccentricSpheres { frames, bodies, places, ahead, first, spheres };
             sound = dispatch(tier, kernel);
         }
         // A centre other than the body's origin may be a little farther out than the translation.
@@ -133,10 +121,7 @@ mod tests {
         mesh.vertices
             .iter_mut()
             .for_each(|v| *v = (Vec3::from(*v) + Vec3::from(centre)).to_array());
-        let spec = ShapeSpec {
-            origin: Origin::File,
-            ..ShapeSpec::default()
-        };
+        let spec = ShapeSpec { origin: Origin::File, ..ShapeSpec::default() };
         Shape::build(&mesh, &spec).unwrap()
     }
 

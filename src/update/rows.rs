@@ -98,14 +98,7 @@ impl OrDopRows {
             }
         }
         let (places, rows) = (self.missing.as_slice(), &mut *self.rows);
-        dispatch(
-            tier,
-            ListedRows {
-                posed,
-                places,
-                rows,
-            },
-        );
+        dispatch(tier, ListedRows { posed, places, rows });
         self.missing.len() as u64
     }
 }
@@ -127,11 +120,7 @@ impl Kernel for ConsecutiveRows<'_> {
             self.posed.prefetch(first + PREFETCH_DISTANCE);
             let (count, here) = (rows.len(), first..first + rows.len());
             let (bodies, shapes) = (&places.body[here.clone()], &places.shape[here]);
-            match (
-                bodies.first_chunk(),
-                shapes.first_chunk(),
-                rows.first_chunk_mut(),
-            ) {
+            match (bodies.first_chunk(), shapes.first_chunk(), rows.first_chunk_mut()) {
                 (Some(bodies), Some(shapes), Some(rows)) => {
                     let mut buffer = [[0.0; 4]; BODIES_PER_BATCH];
                     let origins = self.posed.origins(first, bodies, &mut buffer);
@@ -271,11 +260,8 @@ impl UpdateInputs<'_> {
             for (number, entry) in shape.iter_mut().zip(record) {
                 *number = F64Lanes::of(l, entry);
             }
-            let basis = [
-                column(&shape, BASIS),
-                column(&shape, BASIS + 3),
-                column(&shape, BASIS + 6),
-            ];
+            let basis =
+                [column(&shape, BASIS), column(&shape, BASIS + 3), column(&shape, BASIS + 6)];
             let unit =
                 (shape[INVERSE_LENGTHS] + shape[INVERSE_LENGTHS + 1]) + shape[INVERSE_LENGTHS + 2];
             let turn = rotation_of(pose);
@@ -325,11 +311,7 @@ mod tests {
 
     /// A box about the origin, and one whose ball is centred elsewhere.
     fn shapes() -> Vec<Shape> {
-        let form = ProceduralShape::Box {
-            x: 1.0,
-            y: 2.5,
-            z: 0.75,
-        };
+        let form = ProceduralShape::Box { x: 1.0, y: 2.5, z: 0.75 };
         [Vec3::ZERO, Vec3::new(0.5, -3.0, 0.125)]
             .into_iter()
             .filter_map(|offset| {
@@ -351,10 +333,8 @@ mod tests {
     #[test]
     fn every_lane_matches_plain_f64() {
         let shapes = shapes();
-        let frames: ShapeFrames = shapes
-            .iter()
-            .map(|s| ShapeFrame::new(s, &s.ordop.basis))
-            .collect();
+        let frames: ShapeFrames =
+            shapes.iter().map(|s| ShapeFrame::new(s, &s.ordop.basis)).collect();
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut number = |exponent: i32| {
             let x = (random.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0;
@@ -368,12 +348,7 @@ mod tests {
             bodies.push(body as u32 % 2, true, rotation, [(); 3].map(|()| number(9)));
         }
         let places = Places::new(&bodies);
-        let posed = UpdateInputs {
-            frames: &frames,
-            bodies: &bodies,
-            places: &places,
-            balls: &[],
-        };
+        let posed = UpdateInputs { frames: &frames, bodies: &bodies, places: &places, balls: &[] };
         let expected = |body: usize| {
             let (shape, turn) = (body % 2, rotation(bodies.rotation[body]));
             let basis = shapes[shape].ordop.basis.columns;
@@ -401,16 +376,8 @@ mod tests {
             assert_eq!(lazy.update_missing(tier, posed, &wanted, 1), 61);
             for body in 0..61 {
                 let bits = |row: &[f32; ROW]| row.map(f32::to_bits);
-                assert_eq!(
-                    bits(&eager.rows[body]),
-                    bits(&expected(body)),
-                    "{tier}: {body}"
-                );
-                assert_eq!(
-                    bits(&lazy.rows[body]),
-                    bits(&expected(body)),
-                    "{tier}: {body}"
-                );
+                assert_eq!(bits(&eager.rows[body]), bits(&expected(body)), "{tier}: {body}");
+                assert_eq!(bits(&lazy.rows[body]), bits(&expected(body)), "{tier}: {body}");
             }
         }
     }

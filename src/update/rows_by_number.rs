@@ -21,12 +21,7 @@ impl<'a> RowsByNumber<'a> {
     /// One row per body.
     #[must_use]
     pub fn all(rows: &'a [[f32; ROW]]) -> Self {
-        Self {
-            rows,
-            bits: u32::MAX,
-            still: u32::MAX,
-            second: 0,
-        }
+        Self { rows, bits: u32::MAX, still: u32::MAX, second: 0 }
     }
 
     /// Two rings of equal length. Bodies with numbers below `moving` have their rows in the first
@@ -35,12 +30,7 @@ impl<'a> RowsByNumber<'a> {
     pub fn in_rings(rows: &'a [[f32; ROW]], moving: usize) -> Self {
         let ring = rows.len() / 2;
         debug_assert!(ring.is_power_of_two(), "{ring}");
-        Self {
-            rows,
-            bits: ring as u32 - 1,
-            still: moving as u32,
-            second: ring as u32,
-        }
+        Self { rows, bits: ring as u32 - 1, still: moving as u32, second: ring as u32 }
     }
 
     /// The index of a body's row.

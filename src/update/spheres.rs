@@ -71,11 +71,7 @@ fn update_eight(
             c[axis].0[lane] = f64::from(frame.centre[axis]);
         }
     }
-    let turned = if some_eccentric {
-        rotate_of(&rotation_of(q), c)
-    } else {
-        c
-    };
+    let turned = if some_eccentric { rotate_of(&rotation_of(q), c) } else { c };
     let mut sound = true;
     for (lane, sphere) in spheres.iter_mut().enumerate() {
         let t = bodies.translation[who[lane] as usize];
@@ -117,21 +113,11 @@ mod tests {
         let mesh = ProceduralShape::Box { x, y, z }.build().expect("a box");
         let frames = [0.0, 0.25, 1e5].map(|by| {
             let mut moved = mesh.clone();
-            moved
-                .vertices
-                .as_flattened_mut()
-                .iter_mut()
-                .for_each(|x| *x += by);
+            moved.vertices.as_flattened_mut().iter_mut().for_each(|x| *x += by);
             let shape = Shape::build(&moved, &ShapeSpec::default()).expect("a shape");
             ShapeFrame::new(&shape, &shape.ordop.basis)
         });
-        assert_eq!(
-            frames
-                .iter()
-                .filter(|frame| frame.inflated.is_none())
-                .count(),
-            2
-        );
+        assert_eq!(frames.iter().filter(|frame| frame.inflated.is_none()).count(), 2);
         let mut bodies = Bodies::default();
         for body in 0..29 {
             let q = [(); 4].map(|()| number(2.0));

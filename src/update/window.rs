@@ -123,15 +123,8 @@ mod tests {
             bodies.push(0, i % 2 == 0, [x, 1.0 - x, 2.0, 3.0], [x, 0.0, -x]);
         }
         let (places, pool) = (Places::new(&bodies), Threads::default());
-        let frames = [ShapeFrame::new(&shape, &shape.ordop.basis)]
-            .into_iter()
-            .collect();
-        let posed = UpdateInputs {
-            frames: &frames,
-            bodies: &bodies,
-            places: &places,
-            balls: &[],
-        };
+        let frames = [ShapeFrame::new(&shape, &shape.ordop.basis)].into_iter().collect();
+        let posed = UpdateInputs { frames: &frames, bodies: &bodies, places: &places, balls: &[] };
         // Twenty thousand and one that move, then as many less one that don't.
         let moving = places.moving;
         let mut last = 0..0;

@@ -26,10 +26,7 @@ impl Ball {
     #[must_use]
     pub fn about(centre: impl Into<[f32; 3]>, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         let centre = centre.into();
-        Self {
-            centre,
-            radius: farthest_distance(centre, vertices),
-        }
+        Self { centre, radius: farthest_distance(centre, vertices) }
     }
 
     /// The smallest enclosing ball with its centre rounded to f32. It is larger than the optimum by
@@ -52,15 +49,9 @@ impl Ball {
 /// underflow); `up` covers 2⁻²⁶.
 pub(super) fn farthest_distance(centre: [f32; 3], vertices: &[impl Into<[f32; 3]> + Copy]) -> f32 {
     let centre = in_f64(&centre);
-    let squared = vertices
-        .iter()
-        .map(|&v| in_f64(&v.into()).distance_squared(centre))
-        .fold(0.0, f64::max);
-    if squared == 0.0 {
-        0.0
-    } else {
-        up(squared.sqrt())
-    }
+    let squared =
+        vertices.iter().map(|&v| in_f64(&v.into()).distance_squared(centre)).fold(0.0, f64::max);
+    if squared == 0.0 { 0.0 } else { up(squared.sqrt()) }
 }
 
 /// Centre and radius of the smallest enclosing ball, in f64; the origin and 0 for no vertices.
@@ -107,10 +98,7 @@ fn smallest_of_few(points: &[DVec3]) -> (Vec<DVec3>, DVec3, f64) {
         let chosen = (0..points.len()).filter(|i| mask >> i & 1 == 1);
         let subset: Vec<DVec3> = chosen.map(|i| points[i]).collect();
         let centre = circumcentre(&subset);
-        let farthest = points
-            .iter()
-            .map(|p| p.distance_squared(centre))
-            .fold(0.0, f64::max);
+        let farthest = points.iter().map(|p| p.distance_squared(centre)).fold(0.0, f64::max);
         // A degenerate subset has a NaN centre, which `max` would hide.
         if centre.is_finite() && farthest < best.2 {
             best = (subset, centre, farthest);

@@ -35,9 +35,7 @@ pub struct Basis {
 
 impl Basis {
     /// The model's own axes: the identity.
-    pub const MODEL: Self = Self {
-        columns: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    };
+    pub const MODEL: Self = Self { columns: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
 
     /// The basis of the integer quaternion (x, y, z, w). `None` unless 0 < |q|² ≤ 2²².
     #[must_use]
@@ -55,21 +53,9 @@ impl Basis {
         let column = |a: i64, b: i64, c: i64| [a, b, c].map(|entry| entry as f32 * scale);
         Some(Self {
             columns: [
-                column(
-                    w * w + x * x - y * y - z * z,
-                    2 * (x * y + w * z),
-                    2 * (x * z - w * y),
-                ),
-                column(
-                    2 * (x * y - w * z),
-                    w * w - x * x + y * y - z * z,
-                    2 * (y * z + w * x),
-                ),
-                column(
-                    2 * (x * z + w * y),
-                    2 * (y * z - w * x),
-                    w * w - x * x - y * y + z * z,
-                ),
+                column(w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)),
+                column(2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x)),
+                column(2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z),
             ],
         })
     }
@@ -109,7 +95,6 @@ impl Basis {
     #[must_use]
     pub fn rotation(&self) -> [[f64; 3]; 3] {
         let norm = self.norm();
-        self.columns
-            .map(|column| column.map(|x| f64::from(x) / norm))
+        self.columns.map(|column| column.map(|x| f64::from(x) / norm))
     }
 }

@@ -10,16 +10,10 @@ use robust::{Coord, Coord3D, orient2d};
 /// The corners of the convex hull of coplanar points: indices, ascending.
 pub(super) fn corners(points: &[Coord3D<f64>]) -> Vec<u32> {
     type Projection = fn(&Coord3D<f64>) -> Coord<f64>;
-    let planes: [Projection; 3] = [
-        |p| Coord { x: p.x, y: p.y },
-        |p| Coord { x: p.y, y: p.z },
-        |p| Coord { x: p.z, y: p.x },
-    ];
+    let planes: [Projection; 3] =
+        [|p| Coord { x: p.x, y: p.y }, |p| Coord { x: p.y, y: p.z }, |p| Coord { x: p.z, y: p.x }];
     let outlines = planes.map(|plane| outline(&points.iter().map(plane).collect::<Vec<_>>()));
-    let mut corners = outlines
-        .into_iter()
-        .max_by_key(Vec::len)
-        .unwrap_or_default();
+    let mut corners = outlines.into_iter().max_by_key(Vec::len).unwrap_or_default();
     corners.sort_unstable();
     corners
 }

@@ -32,19 +32,13 @@ impl Hull {
     pub fn of(vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         let points: Vec<_> = vertices.iter().map(|&v| coordinates(v.into())).collect();
         let Some(simplex) = initial_simplex(&points) else {
-            return Self {
-                vertices: (0..vertices.len() as u32).collect(),
-                facets: Vec::new(),
-            };
+            return Self { vertices: (0..vertices.len() as u32).collect(), facets: Vec::new() };
         };
         let facets = HullBuilder::new(&points, simplex).run();
         let mut used: Vec<u32> = facets.iter().flatten().copied().collect();
         used.sort_unstable();
         used.dedup();
-        Self {
-            vertices: used,
-            facets,
-        }
+        Self { vertices: used, facets }
     }
 
     /// The positions of the hull's vertices, to which world-aligned volumes are fitted.
@@ -87,9 +81,7 @@ impl Hull {
         let origin = self.vertices.first().map_or(DVec3::ZERO, |&i| position(i));
         let facets = self.facets.iter();
         // Starts from 0, because the sum of no floats is −0.
-        facets
-            .map(|f| measure(f.map(|i| position(i) - origin)))
-            .fold(0.0, |sum, part| sum + part)
+        facets.map(|f| measure(f.map(|i| position(i) - origin))).fold(0.0, |sum, part| sum + part)
     }
 }
 
@@ -123,11 +115,7 @@ fn initial_simplex(points: &[HullPoint]) -> Option<[u32; 4]> {
     let b = farthest(&from_first)?;
     let c = farthest(&|i| off_line(points[a as usize], points[b as usize], points[i as usize]))?;
     let d = farthest(&|i| height(points, [a, b, c], i).abs())?;
-    Some(if height(points, [a, b, c], d) > 0.0 {
-        [a, c, b, d]
-    } else {
-        [a, b, c, d]
-    })
+    Some(if height(points, [a, b, c], d) > 0.0 { [a, c, b, d] } else { [a, b, c, d] })
 }
 
 /// The largest of the three projected areas of the triangle abp: 0 exactly if p is on the line ab.
@@ -184,12 +172,7 @@ impl<'a> HullBuilder<'a> {
             facet([c, b, d], [0, 1, 3]),
             facet([a, c, d], [0, 2, 1]),
         ];
-        let mut builder = Self {
-            points,
-            facets,
-            starting_at: vec![0; points.len()],
-            step: 0,
-        };
+        let mut builder = Self { points, facets, starting_at: vec![0; points.len()], step: 0 };
         builder.distribute((0..points.len() as u32).collect(), 0);
         builder
     }

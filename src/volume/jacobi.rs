@@ -59,9 +59,7 @@ mod tests {
     use super::*;
 
     fn largest(a: DMat3) -> f64 {
-        a.to_cols_array()
-            .into_iter()
-            .fold(0.0, |m, x| x.abs().max(m))
+        a.to_cols_array().into_iter().fold(0.0, |m, x| x.abs().max(m))
     }
 
     #[test]
@@ -86,10 +84,7 @@ mod tests {
             let pairs = eigen(a);
             for (value, vector) in pairs {
                 let residual = (a * vector - vector * value).length();
-                assert!(
-                    residual <= 2f64.powi(-48) * largest(a),
-                    "{residual:e} of {a}"
-                );
+                assert!(residual <= 2f64.powi(-48) * largest(a), "{residual:e} of {a}");
                 assert!((vector.length() - 1.0).abs() < 2f64.powi(-49), "{a}");
             }
             assert!(pairs.is_sorted_by(|one, other| one.0 >= other.0));

@@ -39,12 +39,7 @@ impl OrDop {
             .iter()
             .map(|&coefficients| slab(in_f64(&basis.direction(coefficients)), vertices))
             .unzip();
-        Self {
-            directions,
-            basis,
-            lo,
-            hi,
-        }
+        Self { directions, basis, lo, hi }
     }
 
     /// The slabs moved outward by `margin`. They contain all points within `margin` of the original

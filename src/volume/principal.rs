@@ -34,9 +34,7 @@ impl Basis {
     pub fn principal(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Self {
         surface_covariance(hull, vertices)
             .and_then(principal_rotation)
-            .map_or(Self::MODEL, |rotation| {
-                Self::snapped(DQuat::from_mat3(&rotation))
-            })
+            .map_or(Self::MODEL, |rotation| Self::snapped(DQuat::from_mat3(&rotation)))
     }
 }
 
@@ -44,12 +42,7 @@ impl Basis {
 fn surface_covariance(hull: &Hull, vertices: &[impl Into<[f32; 3]> + Copy]) -> Option<DMat3> {
     let origin = in_f64(&vertices[*hull.facets.first()?.first()? as usize].into());
     let corner = |i: u32| in_f64(&vertices[i as usize].into()) - origin;
-    let scale = 1.0
-        / hull
-            .vertices
-            .iter()
-            .map(|&i| corner(i).length())
-            .fold(0.0, f64::max);
+    let scale = 1.0 / hull.vertices.iter().map(|&i| corner(i).length()).fold(0.0, f64::max);
     let (mut area, mut mean, mut moment) = (0.0, DVec3::ZERO, DMat3::ZERO);
     for facet in &hull.facets {
         let corners = facet.map(|i| corner(i) * scale);
@@ -125,10 +118,7 @@ mod tests {
             assert_eq!(axes(2.0 * size, 3.0 * size, size), Some(wanted));
             let near = 1.0 - 0.9 * EIGENVALUE_TIE;
             assert_eq!(axes(size, near * size, 0.1 * size), None);
-            assert_eq!(
-                axes(size, 0.1 * size, (0.1 - 0.9 * EIGENVALUE_TIE) * size),
-                None
-            );
+            assert_eq!(axes(size, 0.1 * size, (0.1 - 0.9 * EIGENVALUE_TIE) * size), None);
             let apart = 1.0 - 1.1 * EIGENVALUE_TIE;
             assert!(axes(size, apart * size, 0.1 * size).is_some());
         }

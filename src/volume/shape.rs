@@ -100,11 +100,8 @@ impl Shape {
 
     fn place(mesh: &TriangleMesh, spec: &ShapeSpec) -> Result<Self, VolumeError> {
         let placement = ShapePlacement::of(mesh, spec)?;
-        let vertices: Vec<[f32; 3]> = mesh
-            .vertices
-            .iter()
-            .map(|v| placement.point(v).as_vec3().to_array())
-            .collect();
+        let vertices: Vec<[f32; 3]> =
+            mesh.vertices.iter().map(|v| placement.point(v).as_vec3().to_array()).collect();
         let rounding = placement.rounding(mesh, &vertices);
         let mut ball = match spec.origin {
             Origin::File => Ball::smallest(&vertices),
@@ -114,10 +111,7 @@ impl Shape {
         let reach = grown(ball::farthest_distance([0.0; 3], &vertices), rounding);
         let within = reach <= LIMIT; // false for NaN; bounds the centre and the ball's radius too
         if !within {
-            return Err(VolumeError::TooLarge {
-                shape: mesh.name.clone(),
-                reach,
-            });
+            return Err(VolumeError::TooLarge { shape: mesh.name.clone(), reach });
         }
         Ok(Self {
             name: mesh.name.clone(),
@@ -127,12 +121,7 @@ impl Shape {
             pose_offset: placement.pose_offset.to_array(),
             rounding,
             reach,
-            ordop: slabs(
-                &vertices,
-                spec.axes.basis(&vertices),
-                spec.directions,
-                rounding,
-            ),
+            ordop: slabs(&vertices, spec.axes.basis(&vertices), spec.directions, rounding),
             ball,
             vertices,
         })
@@ -173,20 +162,12 @@ impl Shape {
 /// The or-DOP of vertices, grown by their rounding.
 fn slabs(vertices: &[[f32; 3]], basis: Basis, directions: DirectionSet, rounding: f32) -> OrDop {
     let ordop = OrDop::build(vertices, basis, directions);
-    if rounding == 0.0 {
-        ordop
-    } else {
-        ordop.grown(rounding)
-    }
+    if rounding == 0.0 { ordop } else { ordop.grown(rounding) }
 }
 
 /// A size, grown by the rounding of vertices.
 fn grown(size: f32, rounding: f32) -> f32 {
-    if rounding == 0.0 {
-        size
-    } else {
-        up(f64::from(size) + f64::from(rounding))
-    }
+    if rounding == 0.0 { size } else { up(f64::from(size) + f64::from(rounding)) }
 }
 
 /// The origin of the vertices and the scale of the mesh.
@@ -205,15 +186,8 @@ impl ShapePlacement {
         if mesh.vertices.is_empty() {
             return Err(VolumeError::Empty { shape: shape() });
         }
-        if let Some(vertex) = mesh
-            .vertices
-            .iter()
-            .position(|v| !v.iter().all(|x| x.is_finite()))
-        {
-            return Err(VolumeError::NotFinite {
-                shape: shape(),
-                vertex,
-            });
+        if let Some(vertex) = mesh.vertices.iter().position(|v| !v.iter().all(|x| x.is_finite())) {
+            return Err(VolumeError::NotFinite { shape: shape(), vertex });
         }
         if spec.origin == Origin::File && spec.radius.is_none() {
             return Ok(Self::at(mesh, spec.origin, DVec3::ZERO, 1.0));
@@ -222,16 +196,10 @@ impl ShapePlacement {
         let scale = match spec.radius {
             None => 1.0,
             Some(radius) if !(radius > 0.0 && radius <= LIMIT) => {
-                return Err(VolumeError::Radius {
-                    shape: shape(),
-                    radius,
-                });
+                return Err(VolumeError::Radius { shape: shape(), radius });
             }
             Some(radius) if size == 0.0 => {
-                return Err(VolumeError::NoExtent {
-                    shape: shape(),
-                    radius,
-                });
+                return Err(VolumeError::NoExtent { shape: shape(), radius });
             }
             Some(radius) => f64::from(radius) / size,
         };
@@ -241,22 +209,14 @@ impl ShapePlacement {
     fn at(mesh: &TriangleMesh, origin: Origin, centre: DVec3, scale: f64) -> Self {
         let base = DVec3::from_array(mesh.offset);
         match origin {
-            Origin::File => Self {
-                centre: DVec3::ZERO,
-                offset: base,
-                scale,
-                pose_offset: base * scale,
-            },
+            Origin::File => {
+                Self { centre: DVec3::ZERO, offset: base, scale, pose_offset: base * scale }
+            }
             Origin::Ball => {
                 // For a far mesh, the part of the centre that their sum keeps.
                 let offset = if mesh.is_far() { base + centre } else { centre };
                 let centre = if mesh.is_far() { offset - base } else { centre };
-                Self {
-                    centre,
-                    offset,
-                    scale,
-                    pose_offset: DVec3::ZERO,
-                }
+                Self { centre, offset, scale, pose_offset: DVec3::ZERO }
             }
         }
     }
@@ -282,17 +242,9 @@ impl ShapePlacement {
         // In f64, the difference and the product round each coordinate twice, and a scaled offset
         // rounds once.
         let size = (size + self.centre.abs().max_element()) * self.scale;
-        let scaled = if self.scale == 1.0 {
-            0.0
-        } else {
-            self.pose_offset.abs().max_element()
-        };
+        let scaled = if self.scale == 1.0 { 0.0 } else { self.pose_offset.abs().max_element() };
         let exact = self.centre == DVec3::ZERO && self.scale == 1.0;
-        let lost = if exact {
-            0.0
-        } else {
-            exp2(-50) * (size + scaled)
-        };
+        let lost = if exact { 0.0 } else { exp2(-50) * (size + scaled) };
         match f64::from(mesh.rounding) * self.scale + placed + lost {
             0.0 => 0.0,
             moved => up(moved),

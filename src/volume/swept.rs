@@ -105,21 +105,13 @@ mod tests {
         assert!(turned > 2.0 * shape.reach && turned < 2.000_001 * shape.reach);
         assert!(shape.swept_margin([f32::NAN; 3], [0.0; 3], 1.0).is_nan());
         assert!(shape.swept_margin([0.0; 3], [f32::NAN; 3], 1.0).is_nan());
-        assert!(
-            shape
-                .swept_margin([f32::MAX; 3], [0.0; 3], 9.0)
-                .is_infinite()
-        );
+        assert!(shape.swept_margin([f32::MAX; 3], [0.0; 3], 9.0).is_infinite());
     }
 
     /// Poses turn a far mesh about the origin of its file.
     #[test]
     fn far_meshes_swing() {
-        let points = [
-            [1.0e9, 0.0, 0.0],
-            [1.0e9 + 1.0, 0.0, 0.0],
-            [1.0e9, 1.0, 0.0],
-        ];
+        let points = [[1.0e9, 0.0, 0.0], [1.0e9 + 1.0, 0.0, 0.0], [1.0e9, 1.0, 0.0]];
         let mesh = TriangleMesh::from_f64(&points, &[[0, 1, 2]]).unwrap();
         let shape = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
         let margin = shape.swept_margin([0.0; 3], [0.0, 0.0, 1.0e-3], 1.0);

@@ -37,10 +37,7 @@ impl Body {
     /// This body, fixed: pairs of two fixed bodies are never tested.
     #[must_use]
     pub fn fixed(self) -> Self {
-        Self {
-            motion: Motion::Fixed,
-            ..self
-        }
+        Self { motion: Motion::Fixed, ..self }
     }
 }
 

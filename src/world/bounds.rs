@@ -30,20 +30,12 @@ pub(super) struct Cube {
 
 impl BodyBounds {
     /// The bounds of no body.
-    pub const EMPTY: Self = Self {
-        lo: [f64::INFINITY; 3],
-        hi: [f64::NEG_INFINITY; 3],
-        size: 0.0,
-        are_placed: true,
-    };
+    pub const EMPTY: Self =
+        Self { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFINITY; 3], size: 0.0, are_placed: true };
 
     pub fn of(bodies: impl Iterator<Item = PlacedBody>) -> Self {
-        let alone = |(_, t, size): PlacedBody| Self {
-            lo: t,
-            hi: t,
-            size,
-            are_placed: is_placed(t),
-        };
+        let alone =
+            |(_, t, size): PlacedBody| Self { lo: t, hi: t, size, are_placed: is_placed(t) };
         bodies.map(alone).fold(Self::EMPTY, Self::union)
     }
 
@@ -64,9 +56,7 @@ impl BodyBounds {
 
     /// Half the widest side.
     pub fn half(&self) -> f64 {
-        (0..3).fold(0.0, |half: f64, i| {
-            half.max(0.5 * self.hi[i] - 0.5 * self.lo[i])
-        })
+        (0..3).fold(0.0, |half: f64, i| half.max(0.5 * self.hi[i] - 0.5 * self.lo[i]))
     }
 
     /// Whether one origin is too coarse for all.
@@ -83,10 +73,7 @@ impl BodyBounds {
             return Region::default();
         }
         let step = power_from(0.125 * half).max(self.cell());
-        Region {
-            origin: middle.map(|x| (x / step).round() * step),
-            corner: [0.0; 3],
-        }
+        Region { origin: middle.map(|x| (x / step).round() * step), corner: [0.0; 3] }
     }
 
     /// A cube that contains all bodies and, around them, space for four of the largest. Its lowest
@@ -111,8 +98,7 @@ impl BodyBounds {
 
 /// Whether a translation can stay as it is: f32, and within the contract.
 pub(super) fn is_placed(t: [f64; 3]) -> bool {
-    t.iter()
-        .all(|&x| f64::from(x as f32) == x && x.abs() <= f64::from(LIMIT))
+    t.iter().all(|&x| f64::from(x as f32) == x && x.abs() <= f64::from(LIMIT))
 }
 
 /// The smallest power of two that is at least `x`, a positive normal number; 0 for 0.
@@ -132,10 +118,7 @@ mod tests {
     #[test]
     fn cells_are_powers_of_two() {
         let cell = |size| bounds(&[[0.0; 3]], size).cell();
-        assert_eq!(
-            [cell(1.0), cell(1.01), cell(0.0)],
-            [64.0, 128.0, LEAST_CELL]
-        );
+        assert_eq!([cell(1.0), cell(1.01), cell(0.0)], [64.0, 128.0, LEAST_CELL]);
         assert_eq!(power_from(3.0), 4.0);
         assert_eq!(power_from(0.0), 0.0);
     }
@@ -151,12 +134,9 @@ mod tests {
 
     #[test]
     fn cubes_hold_bodies_and_room() {
-        for (far, wide, size) in [
-            (0.0, 3.0, 1.0),
-            (1.0e9 + 0.1, 300.7, 0.25),
-            (-7.7e17, 1.0e5, 1.0e3),
-            (-3.3, 0.0, 0.0),
-        ] {
+        for (far, wide, size) in
+            [(0.0, 3.0, 1.0), (1.0e9 + 0.1, 300.7, 0.25), (-7.7e17, 1.0e5, 1.0e3), (-3.3, 0.0, 0.0)]
+        {
             let places = [[far; 3], [far, far + wide, far]];
             let Cube { lowest, side } = bounds(&places, size).cube();
             for place in places {

@@ -33,10 +33,7 @@ impl ChangeLog {
             Event::Persisting(_) => None,
             Event::Ended(pair) => change(pair, false),
         });
-        Self {
-            changes: changes.collect(),
-            lasting: 0,
-        }
+        Self { changes: changes.collect(), lasting: 0 }
     }
 
     pub fn push(&mut self, change: PairChange) {

@@ -35,8 +35,7 @@ impl World {
         }
         self.ids.settle();
         let pairs = self.log.pairs(&self.ids).len();
-        self.culler
-            .count_sampled(counted, pairs, start.elapsed().as_secs_f64());
+        self.culler.count_sampled(counted, pairs, start.elapsed().as_secs_f64());
         true
     }
 
@@ -50,15 +49,10 @@ impl World {
             movers.take_index(self.index_of_all());
         }
         let count = movers.put_gone_last(&self.ids);
-        let boxes = self
-            .culler
-            .boxes_of(&self.bodies, &movers.changed()[..count]);
+        let boxes = self.culler.boxes_of(&self.bodies, &movers.changed()[..count]);
         let mut boxes = boxes.into_iter();
         let box_of = |slot| self.indexed(slot, boxes.next());
-        let rules = PairRules {
-            groups: &self.groups,
-            excluded: self.culler.excluded(),
-        };
+        let rules = PairRules { groups: &self.groups, excluded: self.culler.excluded() };
         let work = movers.find(box_of, rules, most);
         if work.is_some() {
             let (changed, others, ends) = movers.found();

@@ -57,8 +57,7 @@ impl World {
         self.remodelled = false;
         if self.regrouped {
             let all = self.groups.iter().all(|&groups| groups == Groups::ALL);
-            self.culler
-                .set_groups((!all).then(|| self.groups.clone()))?;
+            self.culler.set_groups((!all).then(|| self.groups.clone()))?;
             self.regrouped = false;
         }
         self.ids.settle();

@@ -40,10 +40,7 @@ pub struct Events {
 #[derive(Clone, Debug)]
 pub(super) enum CurrentPairs {
     List(Arc<ReportedPairs>),
-    Partners {
-        slots: Arc<Partners>,
-        generation: Arc<Vec<u32>>,
-    },
+    Partners { slots: Arc<Partners>, generation: Arc<Vec<u32>> },
 }
 
 /// The difference of the former cull's pairs.
@@ -52,10 +49,7 @@ pub(super) enum PairDifference {
     /// The former pairs.
     Since(Arc<ReportedPairs>),
     /// The changes, both sorted.
-    Listed {
-        begun: Vec<[BodyId; 2]>,
-        ended: Vec<[BodyId; 2]>,
-    },
+    Listed { begun: Vec<[BodyId; 2]>, ended: Vec<[BodyId; 2]> },
 }
 
 impl Default for CurrentPairs {
@@ -91,10 +85,9 @@ impl Events {
     pub fn iter(&self) -> impl Iterator<Item = Event> + '_ {
         let now = self.now.pairs().iter().peekable();
         match &self.change {
-            PairDifference::Since(before) => EitherIterator::One(MergedEvents {
-                before: before.pairs().iter().peekable(),
-                now,
-            }),
+            PairDifference::Since(before) => {
+                EitherIterator::One(MergedEvents { before: before.pairs().iter().peekable(), now })
+            }
             PairDifference::Listed { begun, ended } => EitherIterator::Other(FormerPairs {
                 now,
                 begun: begun.iter().peekable(),
@@ -155,10 +148,7 @@ fn changes_between(before: &ReportedPairs, now: &ReportedPairs) -> Option<PairDi
         let pairs = keys.into_iter().map(pair_of);
         pairs.map(|pair| BodyId::pair_of(pair, ids)).collect()
     };
-    Some(PairDifference::Listed {
-        begun: named(begun, now),
-        ended: named(ended, before),
-    })
+    Some(PairDifference::Listed { begun: named(begun, now), ended: named(ended, before) })
 }
 
 /// The keys of the pairs that have begun and ended from one cull to a later one, each kind sorted.

@@ -60,9 +60,7 @@ impl World {
     #[must_use]
     pub fn excluded(&self) -> Vec<[BodyId; 2]> {
         let pairs = self.culler.excluded().sorted();
-        let ids = pairs
-            .into_iter()
-            .map(|pair| pair.map(|slot| self.ids.id(slot)));
+        let ids = pairs.into_iter().map(|pair| pair.map(|slot| self.ids.id(slot)));
         ids.collect()
     }
 }

@@ -31,10 +31,7 @@ impl BodyId {
     /// The id of [`Self::to_bits`]. Any other number is an id that no body has.
     #[must_use]
     pub fn from_bits(bits: u64) -> Self {
-        Self {
-            slot: bits as u32,
-            generation: (bits >> 32) as u32,
-        }
+        Self { slot: bits as u32, generation: (bits >> 32) as u32 }
     }
 }
 
@@ -42,10 +39,7 @@ impl BodyId {
     /// The bodies in two slots, at the time of these generations.
     #[inline(always)]
     pub(super) fn pair_of(slots: [u32; 2], generation: &[u32]) -> [Self; 2] {
-        slots.map(|slot| Self {
-            slot,
-            generation: generation[slot as usize],
-        })
+        slots.map(|slot| Self { slot, generation: generation[slot as usize] })
     }
 }
 
@@ -138,18 +132,13 @@ impl Ids {
 
     /// The id of the present or last body in a slot.
     pub fn id(&self, slot: u32) -> BodyId {
-        BodyId {
-            slot,
-            generation: self.generation[slot as usize],
-        }
+        BodyId { slot, generation: self.generation[slot as usize] }
     }
 
     /// The present bodies, by slot.
     pub fn iter(&self) -> impl Iterator<Item = BodyId> + Clone + '_ {
         let slots = (0..).zip(&self.present);
-        slots
-            .filter(|(_, is_present)| **is_present)
-            .map(|(slot, _)| self.id(slot))
+        slots.filter(|(_, is_present)| **is_present).map(|(slot, _)| self.id(slot))
     }
 
     /// The slot of a present body.
@@ -222,10 +211,7 @@ mod tests {
         assert_eq!((ids.shrink(), ids.len(), ids.next()), (4, 3, 1));
         assert!(!ids.take() && ids.take());
         let given = [1, 4].map(|slot| ids.id(slot));
-        let again = |slot| BodyId {
-            slot,
-            generation: 1,
-        };
+        let again = |slot| BodyId { slot, generation: 1 };
         assert_eq!(given, [1, 4].map(again), "generation 0 was another's");
         assert_eq!(ids.iter().count(), 5);
     }

@@ -68,10 +68,7 @@ impl LivePairs {
             let changes = (!log.watched.is_empty())
                 .then(|| ChangeLog::between(log.watched, log.last.clone()));
             let partners = Partners::of(log.last.slots(), ids.slots());
-            self.live = Some(PairsByBody {
-                partners: Arc::new(partners),
-                changes,
-            });
+            self.live = Some(PairsByBody { partners: Arc::new(partners), changes });
         }
     }
 
@@ -94,11 +91,7 @@ impl LivePairs {
         let live = self.live.as_mut()?;
         let partners = Arc::make_mut(&mut live.partners);
         partners.extend_to(ids.slots());
-        Some(PairChanges {
-            partners,
-            log: live.changes.as_mut(),
-            ids,
-        })
+        Some(PairChanges { partners, log: live.changes.as_mut(), ids })
     }
 
     /// Makes room for all slots.
@@ -268,11 +261,8 @@ mod tests {
     /// Changes the pairs to these.
     fn change(live: &mut LivePairs, ids: &Ids, wanted: &BTreeSet<[u32; 2]>) {
         live.keep_by_body(ids);
-        let now: BTreeSet<[u32; 2]> = live
-            .pairs(ids)
-            .iter()
-            .map(|pair| pair.map(|id| id.slot))
-            .collect();
+        let now: BTreeSet<[u32; 2]> =
+            live.pairs(ids).iter().map(|pair| pair.map(|id| id.slot)).collect();
         let mut changes = live.change(ids).unwrap();
         for &[i, j] in now.symmetric_difference(wanted) {
             let has_begun = wanted.contains(&[i, j]);
@@ -290,10 +280,8 @@ mod tests {
         for frame in 0..600 {
             let mut below = |n: u32| random.next_u32() % n;
             let pairs = if frame % 7 == 0 { 0 } else { 30 };
-            let wanted: BTreeSet<[u32; 2]> = (0..pairs)
-                .map(|_| [below(20), below(20)])
-                .filter(|[i, j]| i < j)
-                .collect();
+            let wanted: BTreeSet<[u32; 2]> =
+                (0..pairs).map(|_| [below(20), below(20)]).filter(|[i, j]| i < j).collect();
             let list = || wanted.iter().copied().collect::<PairList>();
             lists.take();
             lists.put(list(), &ids);
@@ -342,10 +330,7 @@ mod tests {
         change(&mut live, &ids, &[[0, 1], [1, 2]].into());
         let events = live.events(&ids);
         change(&mut live, &ids, &[[2, 3]].into());
-        assert_eq!(
-            (events.begun().count(), events.persisting().count()),
-            (2, 0)
-        );
+        assert_eq!((events.begun().count(), events.persisting().count()), (2, 0));
         assert_eq!(live.events(&ids).ended().count(), 2);
     }
 }

@@ -69,10 +69,7 @@ pub(super) struct Origins {
 
 impl Default for Origins {
     fn default() -> Self {
-        Self {
-            local: LocalOrigins::World,
-            bounds: None,
-        }
+        Self { local: LocalOrigins::World, bounds: None }
     }
 }
 
@@ -142,9 +139,7 @@ impl World {
         let shape = self.shape[slot] as usize;
         let (reach, margin) = (self.shapes[shape].reach, self.margin[slot]);
         let grow = |model, margin| self.culler.grow(model, margin);
-        let model = self
-            .margins
-            .model(self.models[shape], reach, margin, moved, grow);
+        let model = self.margins.model(self.models[shape], reach, margin, moved, grow);
         let is_new = self.bodies.shape[slot] != model;
         let is_moved = self.bodies.translation[slot] != place;
         self.remodelled |= is_new;
@@ -204,10 +199,7 @@ mod tests {
 
     #[test]
     fn f32_translations_stay() {
-        let far = [
-            [1.0e9, -3.5, 0.0],
-            [2.0f64.powi(50), 7.25, 2.0f64.powi(-149)],
-        ];
+        let far = [[1.0e9, -3.5, 0.0], [2.0f64.powi(50), 7.25, 2.0f64.powi(-149)]];
         let local = local(&far);
         assert_eq!(local.place(3, far[0]), ([1.0e9, -3.5, 0.0], 0.0));
         assert_eq!(local.place(4, far[1]).1, 0.0);

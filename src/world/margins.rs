@@ -39,11 +39,8 @@ impl Margins {
         if margin == 0.0 && moved == 0.0 {
             return shape; // the shape itself is a model, of its own number
         }
-        let moved = if moved > 0.0 {
-            moved.max(SHARED_ERROR_RATIO * f64::from(reach))
-        } else {
-            0.0
-        };
+        let moved =
+            if moved > 0.0 { moved.max(SHARED_ERROR_RATIO * f64::from(reach)) } else { 0.0 };
         let class = class_of(f64::from(margin) + moved);
         let number = shape as usize;
         if self.classes.len() <= number {
@@ -125,10 +122,7 @@ mod tests {
     fn class_is_within_an_eighth() {
         for margin in [1.0, 1.0e-3, 0.124_999_99, 7.5, 1.0e12, 3.0e-30] {
             let class = f64::from(f32::from_bits(class_of(margin)));
-            assert!(
-                margin < class && class <= margin * 1.1251,
-                "{margin} {class}"
-            );
+            assert!(margin < class && class <= margin * 1.1251, "{margin} {class}");
         }
         // Subnormal margins share the lowest classes.
         assert!(f32::from_bits(class_of(1.0e-44)) >= 1.0e-44);

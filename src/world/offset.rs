@@ -13,14 +13,8 @@ pub(crate) fn compose(q: [f32; 4], t: [f64; 3], offset: [f64; 3]) -> ([f64; 3], 
         return (t, 0.0);
     }
     let turned = rotate_of(&rotation(q), offset);
-    let size = offset
-        .iter()
-        .chain(&t)
-        .fold(0.0, |most: f64, x| most.max(x.abs()));
-    (
-        std::array::from_fn(|i| turned[i] + t[i]),
-        size * OFFSET_ERROR,
-    )
+    let size = offset.iter().chain(&t).fold(0.0, |most: f64, x| most.max(x.abs()));
+    (std::array::from_fn(|i| turned[i] + t[i]), size * OFFSET_ERROR)
 }
 
 #[cfg(test)]
@@ -49,21 +43,9 @@ mod tests {
         let [x, y, z, w] = q.map(i128::from);
         let n = x * x + y * y + z * z + w * w;
         let rows = [
-            [
-                x * x - y * y - z * z + w * w,
-                2 * (x * y - w * z),
-                2 * (x * z + w * y),
-            ],
-            [
-                2 * (x * y + w * z),
-                y * y - x * x - z * z + w * w,
-                2 * (y * z - w * x),
-            ],
-            [
-                2 * (x * z - w * y),
-                2 * (y * z + w * x),
-                z * z - x * x - y * y + w * w,
-            ],
+            [x * x - y * y - z * z + w * w, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), y * y - x * x - z * z + w * w, 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), z * z - x * x - y * y + w * w],
         ];
         let real = |v: [i64; 4]| [v[0] as f64, v[1] as f64, v[2] as f64];
         let (place, bound) = compose(q.map(|x| x as f32), real(t), real(o));

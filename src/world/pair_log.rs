@@ -59,10 +59,7 @@ impl<'a> WorldPairs<'a> {
             SlotPairs::ReportedPairs(reported) => SlotIter::List(in_list(reported.slots())),
             SlotPairs::Partners(partners) => SlotIter::Partners(partners.iter()),
         };
-        PairIds {
-            slots,
-            generation: self.generation,
-        }
+        PairIds { slots, generation: self.generation }
     }
 
     /// The pairs sorted by slots. The pairs of a world's cull already have this order; portions
@@ -118,10 +115,7 @@ impl ExactSizeIterator for PairIds<'_> {}
 impl ReportedPairs {
     /// The pairs with their ids.
     pub fn pairs(&self) -> WorldPairs<'_> {
-        WorldPairs {
-            slots: SlotPairs::ReportedPairs(self),
-            generation: &self.generation,
-        }
+        WorldPairs { slots: SlotPairs::ReportedPairs(self), generation: &self.generation }
     }
 }
 
@@ -140,11 +134,7 @@ pub(crate) struct PairLog {
 impl PairLog {
     /// A log of the pairs of a cull, and those of the last events.
     pub(super) fn of(last: Arc<ReportedPairs>, watched: Arc<ReportedPairs>) -> Self {
-        Self {
-            last,
-            watched,
-            ..Self::default()
-        }
+        Self { last, watched, ..Self::default() }
     }
 
     /// An empty list to cull into. There are no pairs until [`Self::put`].
@@ -178,12 +168,7 @@ impl PairLog {
 
     /// Bytes of the lists of pairs.
     pub fn bytes(&self) -> usize {
-        let Self {
-            last,
-            watched,
-            spare,
-            sorter,
-        } = self;
+        let Self { last, watched, spare, sorter } = self;
         let mut lists: Vec<_> = [last, watched].into_iter().chain(spare).collect();
         lists.sort_by_key(|list| Arc::as_ptr(list));
         lists.dedup_by_key(|list| Arc::as_ptr(list));
@@ -197,11 +182,8 @@ impl PairLog {
         (self.spare, self.sorter) = Default::default();
         let is_watched = Arc::ptr_eq(&self.last, &self.watched);
         self.last = Arc::new(self.last.compacted());
-        self.watched = if is_watched {
-            self.last.clone()
-        } else {
-            Arc::new(self.watched.compacted())
-        };
+        self.watched =
+            if is_watched { self.last.clone() } else { Arc::new(self.watched.compacted()) };
     }
 }
 
@@ -234,16 +216,10 @@ mod tests {
             let pairs = (0..2000).rev().filter(|i| i % 3 != frame % 3);
             cull(&mut log, &ids, pairs.map(|i| [i, i + 7]));
             let events = log.events();
-            assert_eq!(
-                events.now.pairs().len(),
-                events.iter().count() - events.ended().count()
-            );
+            assert_eq!(events.now.pairs().len(), events.iter().count() - events.ended().count());
             bytes.push(log.bytes());
         }
-        assert!(
-            bytes[2..].iter().all(|&later| later == bytes[2]),
-            "{bytes:?}"
-        );
+        assert!(bytes[2..].iter().all(|&later| later == bytes[2]), "{bytes:?}");
         let one = 8 * 2000;
         assert!(bytes[2] < 4 * one, "two lists and a sort: {bytes:?}");
     }
@@ -252,11 +228,7 @@ mod tests {
     #[test]
     fn crowd_memory_is_freed() {
         let (mut log, ids) = (PairLog::default(), ids(500));
-        cull(
-            &mut log,
-            &ids,
-            (0..499).flat_map(|i| (i + 1..500).map(move |j| [i, j])),
-        );
+        cull(&mut log, &ids, (0..499).flat_map(|i| (i + 1..500).map(move |j| [i, j])));
         let crowd = log.events();
         cull(&mut log, &ids, [[3, 4], [1, 2]]);
         let few = log.events();

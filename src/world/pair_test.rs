@@ -49,10 +49,7 @@ impl PairTest {
     /// A test without shapes. All shapes will have slabs along `directions`.
     #[must_use]
     pub fn new(directions: DirectionSet) -> Self {
-        Self {
-            models: Vec::new(),
-            tables: SlabTables::new(directions, []),
-        }
+        Self { models: Vec::new(), tables: SlabTables::new(directions, []) }
     }
 
     /// Adds a shape and returns its number for tests.
@@ -136,11 +133,7 @@ impl PairTest {
         let number = self.models.len() as u32;
         self.tables.push(&ordop, frame.centre(), frame.reach());
         let unturned = frame.row(number, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
-        self.models.push(Model {
-            ordop,
-            frame,
-            unturned,
-        });
+        self.models.push(Model { ordop, frame, unturned });
         number
     }
 }

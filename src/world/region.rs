@@ -32,11 +32,8 @@ impl Region {
     /// The local translation, and the bound of its error: 0 if no step is rounded.
     #[inline]
     pub fn place(&self, t: [f64; 3]) -> ([f32; 3], f64) {
-        let (far, near, is_exact) = if *self == Self::default() {
-            (t, t, true)
-        } else {
-            self.differences(t)
-        };
+        let (far, near, is_exact) =
+            if *self == Self::default() { (t, t, true) } else { self.differences(t) };
         let local = near.map(|x| x as f32);
         if is_exact && local.map(f64::from) == near {
             return (local, 0.0);
@@ -50,10 +47,7 @@ impl Region {
         let from_origin = [0, 1, 2].map(|i| difference(t[i], self.origin[i]));
         let far = from_origin.map(|(sum, _)| sum);
         let from_corner = [0, 1, 2].map(|i| difference(far[i], self.corner[i]));
-        let is_exact = from_origin
-            .iter()
-            .chain(&from_corner)
-            .all(|(_, lost)| *lost == 0.0);
+        let is_exact = from_origin.iter().chain(&from_corner).all(|(_, lost)| *lost == 0.0);
         (far, from_corner.map(|(sum, _)| sum), is_exact)
     }
 }
@@ -94,10 +88,7 @@ mod tests {
 
     #[test]
     fn exact_places_have_no_bound() {
-        let region = Region {
-            origin: [1024.0, -2048.0, 0.0],
-            corner: [-64.0, 128.0, 0.0],
-        };
+        let region = Region { origin: [1024.0, -2048.0, 0.0], corner: [-64.0, 128.0, 0.0] };
         let (place, moved) = region.place([1000.5, -2000.0, 0.25]);
         assert_eq!((place, moved), ([40.5, -80.0, 0.25], 0.0));
         assert!(region.place([1000.1, -2000.0, 0.25]).1 > 0.0);
@@ -112,43 +103,26 @@ mod tests {
             for _ in 0..50_000 {
                 // Sizes of 2⁻⁴⁰ to 2⁴⁰, or the smallest possible; halfway between two f32, and next
                 // to halfway.
-                let exponent = if least {
-                    -149
-                } else {
-                    (random() % 80) as i32 - 40
-                };
+                let exponent = if least { -149 } else { (random() % 80) as i32 - 40 };
                 let relative: [f64; 3] = std::array::from_fn(|_| {
                     let odd = f64::from(2 * (random() % 4) + 1)
                         + [0.0, 1e-9, -1e-9][random() as usize % 3];
-                    if least {
-                        odd * exp2(-150)
-                    } else {
-                        (1.0 + odd * exp2(-24)) * exp2(exponent)
-                    }
+                    if least { odd * exp2(-150) } else { (1.0 + odd * exp2(-24)) * exp2(exponent) }
                 });
                 let origin = std::array::from_fn(|_| f64::from(random() % 64) * exp2(exponent + 1));
                 let t = std::array::from_fn(|i| origin[i] + relative[i]);
-                let region = Region {
-                    origin,
-                    ..Region::default()
-                };
+                let region = Region { origin, ..Region::default() };
                 worst = worst.max(share(&region, t));
             }
             // √3/2 of the bound is reached.
-            assert!(
-                (0.86..=1.0).contains(&worst),
-                "{worst}, of the least: {least}"
-            );
+            assert!((0.86..=1.0).contains(&worst), "{worst}, of the least: {least}");
         }
     }
 
     /// A body next to the local origin and far from the region's: there the rounding of f64 counts.
     #[test]
     fn the_bound_covers_both_differences() {
-        let region = Region {
-            origin: [0.999 * exp2(-23); 3],
-            corner: [exp2(30); 3],
-        };
+        let region = Region { origin: [0.999 * exp2(-23); 3], corner: [exp2(30); 3] };
         let share = share(&region, [exp2(30) + exp2(-22); 3]);
         assert!((0.86..=1.0).contains(&share), "{share}");
     }

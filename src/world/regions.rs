@@ -144,11 +144,7 @@ fn connect(cells: &[CellNumber]) -> Vec<u32> {
     for at in 0..first.len() {
         // The first cell of a set comes before the others, so its region already has a number.
         let leads = first[at] as usize == at;
-        first[at] = if leads {
-            regions
-        } else {
-            first[first[at] as usize]
-        };
+        first[at] = if leads { regions } else { first[first[at] as usize] };
         regions += u32::from(leads);
     }
     first
@@ -215,18 +211,14 @@ mod tests {
             for (j, b) in cells.iter().enumerate() {
                 if (0..3).all(|axis| (a[axis] - b[axis]).abs() <= 1.0) {
                     let (kept, gone) = (of[i].min(of[j]), of[i].max(of[j]));
-                    of.iter_mut()
-                        .filter(|r| **r == gone)
-                        .for_each(|r| *r = kept);
+                    of.iter_mut().filter(|r| **r == gone).for_each(|r| *r = kept);
                 }
             }
         }
         let mut names: Vec<u32> = of.clone();
         names.sort_unstable();
         names.dedup();
-        of.iter()
-            .map(|r| names.binary_search(r).unwrap_or(0) as u32)
-            .collect()
+        of.iter().map(|r| names.binary_search(r).unwrap_or(0) as u32).collect()
     }
 
     #[test]
@@ -294,13 +286,7 @@ mod tests {
     #[test]
     fn small_bodies_have_smaller_cells() {
         let mut bodies: Vec<PlacedBody> = (0..40)
-            .map(|i| {
-                (
-                    i,
-                    [1.0e12 + 1.0e4 * f64::from((i / 2) as u32), 0.1, 0.0],
-                    1.0,
-                )
-            })
+            .map(|i| (i, [1.0e12 + 1.0e4 * f64::from((i / 2) as u32), 0.1, 0.0], 1.0))
             .collect();
         bodies.push((40, [0.1, 0.0, 0.0], 1.0e6));
         let whole = BodyBounds::of(bodies.iter().copied());

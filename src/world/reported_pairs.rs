@@ -51,23 +51,12 @@ impl ReportedPairs {
         generation: Arc<Vec<u32>>,
         sorter: Arc<Mutex<PairSorter>>,
     ) -> Self {
-        Self {
-            len: found.len(),
-            found: Mutex::new(found),
-            generation,
-            sorter,
-            ..Self::default()
-        }
+        Self { len: found.len(), found: Mutex::new(found), generation, sorter, ..Self::default() }
     }
 
     /// Pairs that are sorted.
     pub fn sorted(slots: PairList, generation: Arc<Vec<u32>>) -> Self {
-        Self {
-            len: slots.len(),
-            sorted: slots.into(),
-            generation,
-            ..Self::default()
-        }
+        Self { len: slots.len(), sorted: slots.into(), generation, ..Self::default() }
     }
 
     /// Number of pairs.
@@ -122,10 +111,7 @@ impl ReportedPairs {
 
     /// The memory of the list.
     pub fn into_list(self) -> PairList {
-        let found = self
-            .found
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner);
+        let found = self.found.into_inner().unwrap_or_else(PoisonError::into_inner);
         self.sorted.into_inner().unwrap_or(found)
     }
 

@@ -31,12 +31,7 @@ impl World {
         slots.map(|(slot, &model)| {
             slot.is_present.then(|| {
                 let (ordop, frame) = self.culler.volumes(model);
-                ShapeVolumes {
-                    ordop,
-                    frame,
-                    radius: slot.ball.1,
-                    pose_offset: slot.pose_offset,
-                }
+                ShapeVolumes { ordop, frame, radius: slot.ball.1, pose_offset: slot.pose_offset }
             })
         })
     }

@@ -91,13 +91,11 @@ impl World {
         if self.shapes[at].bodies > 0 {
             let mut bodies = self.ids();
             let has = bodies.find(|id| self.shape[id.slot()] == shape);
-            return Err(
-                has.map_or(WorldError::NoShape(shape), |body| WorldError::ShapeInUse {
-                    shape,
-                    name: self.shapes[at].name.clone(),
-                    body,
-                }),
-            );
+            return Err(has.map_or(WorldError::NoShape(shape), |body| WorldError::ShapeInUse {
+                shape,
+                name: self.shapes[at].name.clone(),
+                body,
+            }));
         }
         self.remove_grown(self.models[at]);
         self.culler.remove_shape(self.models[at]);
@@ -113,19 +111,15 @@ impl World {
     pub fn replace_shape(&mut self, number: u32, shape: &Shape) -> Result<(), WorldError> {
         let at = self.shape_at(number)?;
         let with_shape = self.ids.iter().map(|id| id.slot());
-        let with_shape: Vec<usize> = with_shape
-            .filter(|&slot| self.shape[slot] == number)
-            .collect();
+        let with_shape: Vec<usize> =
+            with_shape.filter(|&slot| self.shape[slot] == number).collect();
         for &slot in &with_shape {
             super::check_margin(slot, shape.reach, self.margin[slot])?;
         }
         self.culler.replace_shape(self.models[at], shape)?;
         self.remove_grown(self.models[at]);
         let bodies = self.shapes[at].bodies;
-        self.shapes[at] = ShapeSlot {
-            bodies,
-            ..ShapeSlot::new(shape)
-        };
+        self.shapes[at] = ShapeSlot { bodies, ..ShapeSlot::new(shape) };
         for slot in with_shape {
             self.movers.note(slot, &self.ids);
         }
@@ -136,9 +130,7 @@ impl World {
     /// The numbers of all shapes.
     pub fn shapes(&self) -> impl Iterator<Item = u32> + '_ {
         let slots = (0..).zip(&self.shapes);
-        slots
-            .filter(|(_, slot)| slot.is_present)
-            .map(|(number, _)| number)
+        slots.filter(|(_, slot)| slot.is_present).map(|(number, _)| number)
     }
 
     /// One more than the largest shape number.
@@ -156,8 +148,7 @@ impl World {
     /// Removes the models that were grown from this one.
     fn remove_grown(&mut self, model: u32) {
         let culler = &mut self.culler;
-        self.margins
-            .remove(model, |grown| culler.remove_grown(grown));
+        self.margins.remove(model, |grown| culler.remove_grown(grown));
     }
 
     /// Removes the models of margins that no body uses any more, if there are many. Every body
@@ -171,7 +162,6 @@ impl World {
             used[self.bodies.shape[id.slot()] as usize] = true;
         }
         let culler = &mut self.culler;
-        self.margins
-            .sweep(&used, |grown| culler.remove_grown(grown));
+        self.margins.sweep(&used, |grown| culler.remove_grown(grown));
     }
 }

@@ -75,27 +75,17 @@ impl World {
     pub fn snapshot(&self) -> WorldSnapshot {
         let bits = |number: f32| number.to_bits();
         let saved = |slot: &ShapeSlot| {
-            slot.is_present.then(|| ShapeSnapshot {
-                name: slot.name.clone(),
-                digest: slot.digest,
-            })
+            slot.is_present.then(|| ShapeSnapshot { name: slot.name.clone(), digest: slot.digest })
         };
         WorldSnapshot {
             version: Version,
-            shapes: self.shapes[..self.shape_numbers()]
-                .iter()
-                .map(saved)
-                .collect(),
+            shapes: self.shapes[..self.shape_numbers()].iter().map(saved).collect(),
             ids: IdsSnapshot::of(&self.ids),
             shape: self.shape.clone(),
             dynamic: self.bodies.dynamic.clone(),
             resting: resting_slots(&self.resting),
             rotation: self.bodies.rotation.iter().map(|q| q.map(bits)).collect(),
-            translation: self
-                .translation
-                .iter()
-                .map(|t| t.map(f64::to_bits))
-                .collect(),
+            translation: self.translation.iter().map(|t| t.map(f64::to_bits)).collect(),
             margin: self.margin.iter().copied().map(bits).collect(),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
             interest: self.interest.clone(),
@@ -133,12 +123,7 @@ impl World {
         let rotation: Vec<[f32; 4]> = rotations.collect();
         let translations = snapshot.translation.iter().map(|t| t.map(f64::from_bits));
         let translation: Vec<[f64; 3]> = translations.collect();
-        let margin: Vec<f32> = snapshot
-            .margin
-            .iter()
-            .copied()
-            .map(f32::from_bits)
-            .collect();
+        let margin: Vec<f32> = snapshot.margin.iter().copied().map(f32::from_bits).collect();
         let mut counts = vec![0; self.shapes.len()];
         for slot in 0..slots {
             check_pose(slot, &rotation[slot], &translation[slot])?;
@@ -166,9 +151,7 @@ impl World {
         (self.ids, self.log, self.resting) = (ids, log, resting);
         (self.shape, self.translation, self.margin) = (snapshot.shape.clone(), translation, margin);
         let groups = snapshot.groups.iter();
-        self.groups = groups
-            .map(|&[member, mask]| Groups { member, mask })
-            .collect();
+        self.groups = groups.map(|&[member, mask]| Groups { member, mask }).collect();
         for (shape, bodies) in self.shapes.iter_mut().zip(counts) {
             shape.bodies = bodies;
         }

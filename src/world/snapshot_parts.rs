@@ -68,9 +68,7 @@ pub(crate) fn check_length(
     if entries == slots {
         return Ok(());
     }
-    damaged(format!(
-        "`{column}` has {entries} entries for {slots} slots"
-    ))
+    damaged(format!("`{column}` has {entries} entries for {slots} slots"))
 }
 
 /// Excluded pairs of bodies, as a snapshot has them: sorted pairs of slots that have bodies, the
@@ -204,10 +202,7 @@ impl PairsSnapshot {
                 generation: watched.generation.to_vec(),
             }
         });
-        Self {
-            last: columns(log.last.slots()),
-            watched,
-        }
+        Self { last: columns(log.last.slots()), watched }
     }
 
     pub fn restored(&self, ids: &Ids) -> Result<PairLog, SnapshotError> {
@@ -216,9 +211,8 @@ impl PairsSnapshot {
         for &slot in &ids.emptied {
             is_named[slot as usize] = true;
         }
-        if let Some([i, j]) = slots
-            .iter()
-            .find(|pair| pair.iter().any(|&slot| !is_named[slot as usize]))
+        if let Some([i, j]) =
+            slots.iter().find(|pair| pair.iter().any(|&slot| !is_named[slot as usize]))
         {
             return damaged(format!("the pair {i}, {j} has a slot that was empty"));
         }
@@ -249,11 +243,7 @@ impl PairsSnapshot {
 /// Pairs of numbers below `slots`, the lower one first, sorted, each once.
 fn sorted([first, second]: &[Vec<u32>; 2], slots: usize) -> Result<PairList, SnapshotError> {
     if first.len() != second.len() {
-        return damaged(format!(
-            "{} and {} halves of pairs",
-            first.len(),
-            second.len()
-        ));
+        return damaged(format!("{} and {} halves of pairs", first.len(), second.len()));
     }
     let pairs = || first.iter().zip(second).map(|(&i, &j)| [i, j]);
     if let Some([i, j]) = pairs().find(|&[i, j]| i >= j || j as usize >= slots) {

@@ -12,11 +12,7 @@ pub struct Case {
 impl Case {
     pub fn of(name: &'static str) -> Self {
         let bits = [Vec::new(), Vec::new()];
-        Self {
-            name,
-            bits,
-            with_results: false,
-        }
+        Self { name, bits, with_results: false }
     }
 
     /// What comes from here on are results.

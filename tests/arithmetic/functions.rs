@@ -22,56 +22,33 @@ pub const FUNCTIONS: [fn(Tier, &mut Inputs) -> Case; 16] = [
     |_, inputs| outward(inputs),
     |_, inputs| {
         let radius = inputs.size();
-        Case::of("widen")
-            .f32s(&[radius])
-            .gives()
-            .f32s(&[widen(radius)])
+        Case::of("widen").f32s(&[radius]).gives().f32s(&[widen(radius)])
     },
     |_, inputs| {
         let radius = inputs.size();
-        Case::of("inflate")
-            .f32s(&[radius])
-            .gives()
-            .f32s(&[inflate_radius(radius)])
+        Case::of("inflate").f32s(&[radius]).gives().f32s(&[inflate_radius(radius)])
     },
     spheres,
     |_, inputs| {
         let q = inputs.quaternion();
-        Case::of("rotation")
-            .f32s(&q)
-            .gives()
-            .f64s(rotation(q).as_flattened())
+        Case::of("rotation").f32s(&q).gives().f64s(rotation(q).as_flattened())
     },
     |_, inputs| {
         let (q, [x, t]) = (inputs.quaternion(), [(); 2].map(|()| inputs.vector()));
         let found = transform(&rotation(q), x, t);
-        Case::of("transform")
-            .f32s(&q)
-            .f32s(&x)
-            .f32s(&t)
-            .gives()
-            .f64s(&found)
+        Case::of("transform").f32s(&q).f32s(&x).f32s(&t).gives().f64s(&found)
     },
     |_, inputs| posed_ball(inputs),
     |_, inputs| {
         let (q, basis) = (inputs.quaternion(), [(); 3].map(|()| inputs.vector()));
         let axes = world_axes(&rotation(q), basis);
-        Case::of("axes")
-            .f32s(&q)
-            .f32s(basis.as_flattened())
-            .gives()
-            .f32s(axes.as_flattened())
+        Case::of("axes").f32s(&q).f32s(basis.as_flattened()).gives().f32s(axes.as_flattened())
     },
     |_, inputs| {
         let ends = [(); 2].map(|()| f64::from(inputs.number()) + f64::from(inputs.number()));
         let (reach, t) = (inputs.size(), inputs.vector());
         let (lo, hi) = refit(ends[0], ends[1], reach, t);
-        Case::of("refit")
-            .f64s(&ends)
-            .f32s(&[reach])
-            .f32s(&t)
-            .gives()
-            .f32s(&[lo, hi])
+        Case::of("refit").f64s(&ends).f32s(&[reach]).f32s(&t).gives().f32s(&[lo, hi])
     },
     |_, inputs| slab(inputs),
     |_, inputs| cells(inputs),
@@ -97,10 +74,7 @@ fn outward(inputs: &mut Inputs) -> Case {
         2 => x.midpoint(next).next_up(),
         _ => x + f64::from(inputs.number()) * inputs.share(),
     };
-    Case::of("outward")
-        .f64s(&[x])
-        .gives()
-        .f32s(&[down(x), up(x)])
+    Case::of("outward").f64s(&[x]).gives().f32s(&[down(x), up(x)])
 }
 
 /// Whether a slot's ball hits the next one.
@@ -133,10 +107,7 @@ fn near_balls(inputs: &mut Inputs) -> [[f32; 4]; 2] {
     let distance = inputs.nearly(f64::from(radii[0]) + f64::from(radii[1]));
     let way = inputs.direction();
     let other = [0, 1, 2].map(|i| (f64::from(one[i]) + way[i] * distance) as f32);
-    [
-        [one[0], one[1], one[2], radii[0]],
-        [other[0], other[1], other[2], radii[1]],
-    ]
+    [[one[0], one[1], one[2], radii[0]], [other[0], other[1], other[2], radii[1]]]
 }
 
 fn spheres(tier: Tier, inputs: &mut Inputs) -> Case {
@@ -149,16 +120,9 @@ fn spheres(tier: Tier, inputs: &mut Inputs) -> Case {
         near_balls(inputs)
     };
     let balls = in_slots(pair.map(|[x, y, z, r]| [x, y, z, inflate_radius(r)]));
-    let slots = SlotBodies {
-        balls: &balls,
-        columns: &NO_COLUMNS,
-        names: &NAMES,
-    };
+    let slots = SlotBodies { balls: &balls, columns: &NO_COLUMNS, names: &NAMES };
     let apart = !dispatch(tier, Hit(Spheres(slots)));
-    Case::of("spheres")
-        .f32s(pair.as_flattened())
-        .gives()
-        .bit(apart)
+    Case::of("spheres").f32s(pair.as_flattened()).gives().bit(apart)
 }
 
 fn posed_ball(inputs: &mut Inputs) -> Case {
@@ -169,14 +133,8 @@ fn posed_ball(inputs: &mut Inputs) -> Case {
     };
     let radius = inputs.size();
     let (place, world_radius) = world_ball(&rotation(q), t, centre, radius);
-    let case = Case::of("world_ball")
-        .f32s(&q)
-        .f32s(&t)
-        .f32s(&centre)
-        .f32s(&[radius]);
-    case.gives()
-        .f32s(&place)
-        .f32s(&[inflate_radius(world_radius)])
+    let case = Case::of("world_ball").f32s(&q).f32s(&t).f32s(&centre).f32s(&[radius]);
+    case.gives().f32s(&place).f32s(&[inflate_radius(world_radius)])
 }
 
 fn slab(inputs: &mut Inputs) -> Case {
@@ -196,10 +154,7 @@ fn cells(inputs: &mut Inputs) -> Case {
     let scale = inputs.scale();
     let mut point = || [(); 3].map(|()| (inputs.signed() * scale) as f32);
     let [a, b] = [point(), point()];
-    let [lo, hi] = [
-        [0, 1, 2].map(|i| a[i].min(b[i])),
-        [0, 1, 2].map(|i| a[i].max(b[i])),
-    ];
+    let [lo, hi] = [[0, 1, 2].map(|i| a[i].min(b[i])), [0, 1, 2].map(|i| a[i].max(b[i]))];
     let widest = match inputs.below(3) {
         0 => inputs.size(),
         1 => (inputs.share() * scale) as f32,
@@ -224,21 +179,12 @@ fn cells(inputs: &mut Inputs) -> Case {
         _ => cells.size() * 3.0 * inputs.share(),
     };
     let [x, y, z] = centre;
-    let case = Case::of("cells")
-        .f32s(&lo)
-        .f32s(&hi)
-        .f32s(&[widest])
-        .f32s(&centre);
+    let case = Case::of("cells").f32s(&lo).f32s(&hi).f32s(&[widest]).f32s(&centre);
     let mut case = case.f64s(&[reach]).gives();
     for count in cells.count() {
         case = case.number(u64::from(count));
     }
-    for cell in cells
-        .around(&[x, y, z, 0.0], reach)
-        .iter()
-        .flatten()
-        .flatten()
-    {
+    for cell in cells.around(&[x, y, z, 0.0], reach).iter().flatten().flatten() {
         case = case.number(u64::from(*cell));
     }
     case
@@ -273,11 +219,7 @@ fn drift(tier: Tier, inputs: &mut Inputs) -> Case {
     let before = [(); 4].map(|()| (inputs.signed() * scale) as f32);
     let radius = before[3].abs();
     let most = f64::from(skin.of(radius));
-    let growth = if inputs.below(2) == 0 {
-        0.0
-    } else {
-        most * inputs.signed()
-    };
+    let growth = if inputs.below(2) == 0 { 0.0 } else { most * inputs.signed() };
     let left = inputs.nearly(most - growth.max(0.0));
     let way = inputs.direction();
     let [x, y, z] = [0, 1, 2].map(|i| (f64::from(before[i]) + way[i] * left) as f32);
@@ -308,15 +250,9 @@ fn first_of<L: Lanes>(l: L, lanes: L::F) -> f32 {
 
 fn cube(tier: Tier, inputs: &mut Inputs) -> Case {
     let [a, b] = [(); 2].map(|()| inputs.vector());
-    let ends = [
-        [0, 1, 2].map(|i| a[i].min(b[i])),
-        [0, 1, 2].map(|i| a[i].max(b[i])),
-    ];
+    let ends = [[0, 1, 2].map(|i| a[i].min(b[i])), [0, 1, 2].map(|i| a[i].max(b[i]))];
     let found = dispatch(tier, MakeCube(ends));
-    Case::of("cube")
-        .f32s(ends.as_flattened())
-        .gives()
-        .f32s(&found)
+    Case::of("cube").f32s(ends.as_flattened()).gives().f32s(&found)
 }
 
 /// Two cubes about to touch along an axis: whether they are apart, and whether boxes within them
@@ -335,25 +271,15 @@ fn cubes(tier: Tier, inputs: &mut Inputs) -> Case {
     let less = [0.0, 2.0][inputs.below(2) as usize] * f64::from(gap);
     let distance = inputs.nearly(sum - less);
     other[0] = (f64::from(one[0]) + distance) as f32;
-    let pair = [
-        [one[0], one[1], one[2], halves[0]],
-        [other[0], other[1], other[2], halves[1]],
-    ];
+    let pair = [[one[0], one[1], one[2], halves[0]], [other[0], other[1], other[2], halves[1]]];
     let balls = in_slots(pair);
-    let slots = SlotBodies {
-        balls: &balls,
-        columns: &NO_COLUMNS,
-        names: &NAMES,
-    };
+    let slots = SlotBodies { balls: &balls, columns: &NO_COLUMNS, names: &NAMES };
     let [low, high] = [0.0, 2.0].map(|at| Aabb::new([at; 3], [at + 1.0; 3]));
     let less = less_than_sure(gap);
     let hit = |boxes: &[Aabb]| dispatch(tier, Hit(CubeTest { slots, boxes, less }));
     // The boxes' own ends are asked only where the cubes don't decide.
     let (apart, surely) = (!hit(&[low, low]), hit(&[low, high]));
-    let case = Case::of("cubes")
-        .f32s(pair.as_flattened())
-        .f32s(&[gap])
-        .gives();
+    let case = Case::of("cubes").f32s(pair.as_flattened()).f32s(&[gap]).gives();
     // Of cubes that are apart nobody asks whether they surely meet.
     case.bit(apart).bit(surely)
 }

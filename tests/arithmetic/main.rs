@@ -79,16 +79,9 @@ fn cases_are_on_both_sides() {
         let outcomes = lines.lines().filter(|line| line.starts_with(name));
         let (mut yes, mut no) = (0, 0);
         for line in outcomes {
-            *(if line.ends_with('1') {
-                &mut yes
-            } else {
-                &mut no
-            }) += 1;
+            *(if line.ends_with('1') { &mut yes } else { &mut no }) += 1;
         }
-        assert!(
-            yes > CASES / 10 && no > CASES / 10,
-            "{name}: {yes} and {no}"
-        );
+        assert!(yes > CASES / 10 && no > CASES / 10, "{name}: {yes} and {no}");
     }
 }
 

@@ -41,18 +41,12 @@ impl Pairs {
     pub fn new(seed: u64) -> Self {
         let mut inputs = Inputs::new(seed);
         let sets = SETS.map(|(k, directions)| {
-            let shapes: Vec<Shape> = (0..SHAPES)
-                .map(|_| shape(&mut inputs, directions))
-                .collect();
+            let shapes: Vec<Shape> = (0..SHAPES).map(|_| shape(&mut inputs, directions)).collect();
             let tables =
                 SlabTables::new(directions, shapes.iter().map(|shape| (shape, &shape.ordop)));
             Set { k, shapes, tables }
         });
-        Self {
-            inputs,
-            sets,
-            waiting: None,
-        }
+        Self { inputs, sets, waiting: None }
     }
 
     /// The next pair: every second one is the one before, an ulp farther.
@@ -81,11 +75,7 @@ impl Pairs {
 impl Set {
     fn apart(&self, tier: Tier, overlap: Overlap, rows: [Row; 2]) -> bool {
         let rows = RowsByNumber::all(&rows);
-        let columns = OrDopColumns {
-            rows,
-            tables: &self.tables,
-            overlap,
-        };
+        let columns = OrDopColumns { rows, tables: &self.tables, overlap };
         let mut kept = PairList::default();
         columns.test_pairs(tier, &[0], &[1], &mut kept);
         kept.first().is_empty()
@@ -125,17 +115,8 @@ fn shape(inputs: &mut Inputs, directions: DirectionSet) -> Shape {
         triangles: (0..4).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         ..TriangleMesh::default()
     };
-    let origin = if away == 0.0 {
-        Origin::Ball
-    } else {
-        Origin::File
-    };
-    let spec = ShapeSpec {
-        origin,
-        radius: None,
-        directions,
-        axes: Axes::Principal,
-    };
+    let origin = if away == 0.0 { Origin::Ball } else { Origin::File };
+    let spec = ShapeSpec { origin, radius: None, directions, axes: Axes::Principal };
     Shape::build(&mesh, &spec).unwrap()
 }
 

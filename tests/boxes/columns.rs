@@ -15,23 +15,15 @@ const COUNT: usize = 1203;
 /// A world with boxes of any motion and groups.
 fn world_of(kind: Kind, world: &mut BoxWorld, random: &mut Random) -> BTreeMap<BodyId, BoxBody> {
     let all = boxes(kind, COUNT, random);
-    let bodies = all.into_iter().map(|bounds| BoxBody {
-        bounds,
-        ..drawn(random, kind)
-    });
-    bodies
-        .map(|body| (world.insert(body).unwrap(), body))
-        .collect()
+    let bodies = all.into_iter().map(|bounds| BoxBody { bounds, ..drawn(random, kind) });
+    bodies.map(|body| (world.insert(body).unwrap(), body)).collect()
 }
 
 /// Pairs and events are those of the definition, whether pairs are read in a frame or not. Some
 /// boxes keep their ends, some come twice.
 #[test]
 fn columns_move_boxes() {
-    for (kind, seed) in [Kind::Cubes, Kind::Lattice, Kind::Needles]
-        .into_iter()
-        .zip(40..)
-    {
+    for (kind, seed) in [Kind::Cubes, Kind::Lattice, Kind::Needles].into_iter().zip(40..) {
         for tier in Tier::available() {
             let random = &mut Random(seed);
             let mut world = BoxWorld::with(&BoxCuller::builder().tier(tier)).unwrap();
@@ -61,14 +53,8 @@ fn columns_move_boxes() {
                 assert!(!are_read(5) || are_wanted(&world));
                 let events = world.events();
                 let what = format!("{kind:?}, {tier}, frame {frame}");
-                assert!(
-                    events.begun().eq(wanted.difference(&before).copied()),
-                    "{what}"
-                );
-                assert!(
-                    events.ended().eq(before.difference(&wanted).copied()),
-                    "{what}"
-                );
+                assert!(events.begun().eq(wanted.difference(&before).copied()), "{what}");
+                assert!(events.ended().eq(before.difference(&wanted).copied()), "{what}");
                 assert!(!are_read(0) || are_wanted(&world), "{what}");
                 before = wanted;
             }
@@ -83,14 +69,9 @@ fn column_moves_a_fixed_box() {
     let at = |x: usize, y: f32| Aabb::new([2.0 * x as f32, y, 0.0], [2.0 * x as f32 + 1.0, y, 1.0]);
     for &finder in Finder::ALL {
         let mut world = BoxWorld::with(&BoxCuller::builder().finder(finder)).unwrap();
-        let mut ids: Vec<_> = (0..COUNT)
-            .map(|x| world.insert(at(x, 0.0)).unwrap())
-            .collect();
+        let mut ids: Vec<_> = (0..COUNT).map(|x| world.insert(at(x, 0.0)).unwrap()).collect();
         let motion = Motion::Fixed;
-        let fixed = BoxBody {
-            motion,
-            ..at(0, 99.0).into()
-        };
+        let fixed = BoxBody { motion, ..at(0, 99.0).into() };
         ids.push(world.insert(fixed).unwrap());
         for frame in 1..8 {
             let y = frame as f32 / 1024.0;
@@ -110,9 +91,7 @@ fn column_moves_a_fixed_box() {
 fn refused_boxes_end_a_column() {
     let random = &mut Random(3);
     let mut world = BoxWorld::new();
-    let ids: Vec<_> = (0..COUNT)
-        .map(|_| world.insert(Aabb::default()).unwrap())
-        .collect();
+    let ids: Vec<_> = (0..COUNT).map(|_| world.insert(Aabb::default()).unwrap()).collect();
     let gone = world.insert(Aabb::default()).unwrap();
     world.remove(gone).unwrap();
     for (number, bad) in wrong().into_iter().enumerate() {
@@ -125,10 +104,7 @@ fn refused_boxes_end_a_column() {
         } else {
             all[refused] = bad;
         }
-        let former: Vec<_> = ids
-            .iter()
-            .map(|&id| world.body(id).unwrap().bounds)
-            .collect();
+        let former: Vec<_> = ids.iter().map(|&id| world.body(id).unwrap().bounds).collect();
         match world.set_many(&named, &all).unwrap_err() {
             WorldError::Gone(id) => assert!(is_gone && id == gone),
             WorldError::Contract(error) => assert!(!is_gone && error.body == refused),
@@ -148,15 +124,10 @@ fn columns_are_of_one_length() {
     let ids = [(); 2].map(|()| world.insert(Aabb::default()).unwrap());
     let far = Aabb::new([9.0; 3], [9.0; 3]);
     let told = world.set_many(&ids, &[far; 3]).unwrap_err().to_string();
-    assert!(
-        told.contains("bounds") && told.contains("3 entries for 2"),
-        "{told}"
-    );
+    assert!(told.contains("bounds") && told.contains("3 entries for 2"), "{told}");
     world.cull().unwrap();
     assert_eq!(world.pairs().collect::<BTreeSet<_>>(), [ids].into());
-    world
-        .set_many(&ids, &[far, Aabb::new([0.0; 3], [-0.0; 3])])
-        .unwrap();
+    world.set_many(&ids, &[far, Aabb::new([0.0; 3], [-0.0; 3])]).unwrap();
     world.set_many(&[], &[]).unwrap();
     assert!(world.cull().unwrap().is_empty());
 }

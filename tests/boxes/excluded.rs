@@ -44,18 +44,12 @@ fn expected(world: &BoxWorld, excluded: &BTreeSet<[BodyId; 2]>) -> BTreeSet<[Bod
 fn exclusions_change_pairs_and_events() {
     let random = &mut Random(47);
     let mut world = BoxWorld::new();
-    let mut ids: Vec<BodyId> = (0..300)
-        .map(|_| world.insert(draw(random)).unwrap())
-        .collect();
+    let mut ids: Vec<BodyId> = (0..300).map(|_| world.insert(draw(random)).unwrap()).collect();
     let mut excluded = BTreeSet::new();
     let mut before = BTreeSet::new();
     let mut left_out = 0;
     for frame in 0..120 {
-        let changes = if frame % 20 == 7 {
-            200
-        } else {
-            random.below(5)
-        };
+        let changes = if frame % 20 == 7 { 200 } else { random.below(5) };
         for _ in 0..changes {
             let [a, b] = [(); 2].map(|()| ids[random.below(ids.len())]);
             match random.below(8) {
@@ -89,9 +83,7 @@ fn exclusions_change_pairs_and_events() {
         if frame % 30 == 19 {
             let saved = serde_json::to_string(&world.snapshot()).unwrap();
             let restored = &mut BoxWorld::new();
-            restored
-                .restore(&serde_json::from_str(&saved).unwrap())
-                .unwrap();
+            restored.restore(&serde_json::from_str(&saved).unwrap()).unwrap();
             assert_eq!(restored.excluded(), world.excluded());
             world = restored.clone();
         }
@@ -123,9 +115,7 @@ fn damaged_exclusions_are_refused() {
     for bad in [vec![[1, 0]], vec![[0, 2]], vec![[0, 1], [0, 1]]] {
         let mut damaged = saved.clone();
         damaged["excluded"] = serde_json::json!(bad);
-        let error = world
-            .restore(&serde_json::from_value(damaged).unwrap())
-            .unwrap_err();
+        let error = world.restore(&serde_json::from_value(damaged).unwrap()).unwrap_err();
         assert!(error.to_string().contains("excluded pairs"), "{error}");
     }
     assert!(world.is_excluded(a, b));

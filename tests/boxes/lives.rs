@@ -15,17 +15,10 @@ pub fn drawn(random: &mut Random, kind: Kind) -> BoxBody {
         _ => Motion::Dynamic,
     };
     let groups = match random.below(4) {
-        0 => Groups {
-            member: 1 << random.below(2),
-            mask: 1 << random.below(2),
-        },
+        0 => Groups { member: 1 << random.below(2), mask: 1 << random.below(2) },
         _ => Groups::ALL,
     };
-    BoxBody {
-        bounds,
-        motion,
-        groups,
-    }
+    BoxBody { bounds, motion, groups }
 }
 
 /// The pairs of the boxes that are there, the lower slot first.
@@ -33,15 +26,8 @@ pub fn pairs(bodies: &BTreeMap<BodyId, BoxBody>) -> BTreeSet<[BodyId; 2]> {
     let (ids, bodies): (Vec<BodyId>, Vec<BoxBody>) =
         bodies.iter().map(|(&id, &body)| (id, body)).unzip();
     let bounds: Vec<Aabb> = bodies.iter().map(|body| body.bounds).collect();
-    let found = expected(
-        &bounds,
-        |i| bodies[i].motion != Motion::Fixed,
-        |i| bodies[i].groups,
-    );
-    found
-        .into_iter()
-        .map(|pair| pair.map(|i| ids[i as usize]))
-        .collect()
+    let found = expected(&bounds, |i| bodies[i].motion != Motion::Fixed, |i| bodies[i].groups);
+    found.into_iter().map(|pair| pair.map(|i| ids[i as usize])).collect()
 }
 
 /// Inserts, removes, changes and moves boxes, and holds what the world says against the definition.
@@ -79,44 +65,26 @@ fn live(world: &mut BoxWorld, kind: Kind, seed: u64, before_frame: fn(&mut BoxWo
                 }
             }
         }
-        for (&id, body) in bodies
-            .iter_mut()
-            .filter(|(_, body)| body.motion == Motion::Dynamic)
-        {
+        for (&id, body) in bodies.iter_mut().filter(|(_, body)| body.motion == Motion::Dynamic) {
             moved(std::slice::from_mut(&mut body.bounds), 0.02, random);
             world.set_bounds(id, body.bounds).unwrap();
         }
         world.cull().unwrap();
         let wanted = pairs(&bodies);
         assert_eq!(world.len(), bodies.len());
-        assert!(
-            bodies
-                .iter()
-                .all(|(&id, &body)| world.body(id).unwrap() == body)
-        );
+        assert!(bodies.iter().all(|(&id, &body)| world.body(id).unwrap() == body));
         let listed: Vec<[BodyId; 2]> = world.pairs().collect();
         let found: BTreeSet<[BodyId; 2]> = listed.iter().copied().collect();
         assert!(listed.iter().is_sorted(), "{kind:?}, frame {frame}");
         assert!(world.ids().eq(bodies.keys().copied()));
-        assert!(
-            found == wanted && listed.len() == found.len(),
-            "{kind:?}, frame {frame}"
-        );
+        assert!(found == wanted && listed.len() == found.len(), "{kind:?}, frame {frame}");
         let events = world.events();
+        assert!(events.begun().eq(wanted.difference(&before).copied()), "{kind:?}, frame {frame}");
         assert!(
-            events.begun().eq(wanted.difference(&before).copied()),
+            events.persisting().eq(wanted.intersection(&before).copied()),
             "{kind:?}, frame {frame}"
         );
-        assert!(
-            events
-                .persisting()
-                .eq(wanted.intersection(&before).copied()),
-            "{kind:?}, frame {frame}"
-        );
-        assert!(
-            events.ended().eq(before.difference(&wanted).copied()),
-            "{kind:?}, frame {frame}"
-        );
+        assert!(events.ended().eq(before.difference(&wanted).copied()), "{kind:?}, frame {frame}");
         before = wanted;
     }
 }
@@ -127,17 +95,9 @@ fn random_histories_match_definition() {
     for (kind, seed) in Kind::ALL.into_iter().zip(10..) {
         live(&mut BoxWorld::new(), kind, seed, |_, _| ());
         for &finder in Finder::ALL {
-            let way = BoxCuller::builder()
-                .finder(finder)
-                .tier(Tier::SCALAR)
-                .threads(2)
-                .worth_waking(0);
-            live(
-                &mut BoxWorld::with(&way).unwrap(),
-                kind,
-                seed + 100,
-                |_, _| (),
-            );
+            let way =
+                BoxCuller::builder().finder(finder).tier(Tier::SCALAR).threads(2).worth_waking(0);
+            live(&mut BoxWorld::with(&way).unwrap(), kind, seed + 100, |_, _| ());
         }
     }
 }
@@ -162,10 +122,7 @@ fn restore(world: &mut BoxWorld, frame: usize) {
     }
     other.cull().unwrap();
     other.events();
-    other
-        .insert(Aabb::new([-1.0e9; 3], [1.0e9; 3]))
-        .and_then(|id| other.remove(id))
-        .unwrap();
+    other.insert(Aabb::new([-1.0e9; 3], [1.0e9; 3])).and_then(|id| other.remove(id)).unwrap();
     other.restore(&saved).unwrap();
     assert_eq!(other.snapshot(), saved);
     if frame % 5 == 4 {
@@ -185,9 +142,8 @@ fn restored_worlds_of_boxes_go_on() {
 #[test]
 fn damaged_snapshots_of_boxes_are_refused() {
     let (mut world, mut random) = (BoxWorld::new(), Random(3));
-    let ids: Vec<BodyId> = (0..20)
-        .map(|_| world.insert(drawn(&mut random, Kind::ALL[0])).unwrap())
-        .collect();
+    let ids: Vec<BodyId> =
+        (0..20).map(|_| world.insert(drawn(&mut random, Kind::ALL[0])).unwrap()).collect();
     world.cull().unwrap();
     world.events();
     world.remove(ids[3]).unwrap();
@@ -249,12 +205,7 @@ fn crowds_in_portions_or_limited() {
 fn moved_resting_box_is_found() {
     let mut world = BoxWorld::new();
     let cube = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
-    let still = world
-        .insert(BoxBody {
-            motion: Motion::Fixed,
-            ..cube(0.0).into()
-        })
-        .unwrap();
+    let still = world.insert(BoxBody { motion: Motion::Fixed, ..cube(0.0).into() }).unwrap();
     let moving = world.insert(cube(5.0)).unwrap();
     for x in [4.0, 4.5, 6.0, 6.0_f32.next_up(), 3.0] {
         world.set_bounds(still, cube(x)).unwrap();
@@ -275,19 +226,12 @@ fn resting_plate_is_no_cube() {
     for &finder in Finder::ALL {
         let mut world = BoxWorld::with(&BoxCuller::builder().finder(finder)).unwrap();
         let plate = Aabb::new([-9.0, -9.0, -0.125], [9.0, 9.0, 0.0]);
-        let plate = world
-            .insert(BoxBody {
-                motion: Motion::Fixed,
-                ..plate.into()
-            })
-            .unwrap();
+        let plate = world.insert(BoxBody { motion: Motion::Fixed, ..plate.into() }).unwrap();
         let cube = |x: u16, z: f32| {
             let x = 2.0 * f32::from(x) - 8.0;
             Aabb::new([x, x, z], [x + 1.0, x + 1.0, z + 1.0])
         };
-        let cubes: Vec<BodyId> = (0..8)
-            .map(|x| world.insert(cube(x, 0.5)).unwrap())
-            .collect();
+        let cubes: Vec<BodyId> = (0..8).map(|x| world.insert(cube(x, 0.5)).unwrap()).collect();
         for landed in 0..4 {
             for (x, &id) in (0..).zip(&cubes) {
                 let z = if x < landed { 0.0 } else { 0.0_f32.next_up() };

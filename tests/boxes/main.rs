@@ -39,10 +39,7 @@ fn assert_exact(kind: Kind, count: usize, frames: usize, step: f32, random: &mut
         let wanted = expected(&now, |_| true, |_| Groups::ALL);
         for (way, culler) in &mut ways {
             let found = culler.cull(&now).unwrap().sorted();
-            assert!(
-                found == wanted,
-                "{kind:?}, {count} boxes, frame {frame}, {way}"
-            );
+            assert!(found == wanted, "{kind:?}, {count} boxes, frame {frame}, {way}");
         }
         moved(&mut now, step, random);
     }
@@ -161,10 +158,7 @@ fn boxes_change_between_frames() {
         for count in [90, 300, 40, 0, 200] {
             let now = boxes(kind, count, random);
             let groups: Vec<Groups> = (0..count)
-                .map(|_| Groups {
-                    member: 1 << random.below(3),
-                    mask: random.below(8) as u32,
-                })
+                .map(|_| Groups { member: 1 << random.below(3), mask: random.below(8) as u32 })
                 .collect();
             culler.set_groups(Some(groups.clone()));
             assert_eq!(
@@ -196,22 +190,12 @@ fn portions_keep_list_order() {
             assert_eq!((told.unwrap(), list.next()), (pairs, None));
             assert!(culler.pairs().is_empty());
             let most = 16 * (1 << 16) * 8 * threads;
-            assert!(
-                culler.pair_bytes() < most,
-                "{} of {most}",
-                culler.pair_bytes()
-            );
+            assert!(culler.pair_bytes() < most, "{} of {most}", culler.pair_bytes());
         }
         let told = culler.cull_up_to(&now, 1000).unwrap_err().to_string();
-        assert_eq!(
-            told,
-            format!("the frame has {pairs} pairs, but at most 1000 are allowed")
-        );
+        assert_eq!(told, format!("the frame has {pairs} pairs, but at most 1000 are allowed"));
         assert!(culler.pairs().is_empty());
-        assert_eq!(
-            culler.cull_up_to(&now, pairs as usize).unwrap().len(),
-            pairs as usize
-        );
+        assert_eq!(culler.cull_up_to(&now, pairs as usize).unwrap().len(), pairs as usize);
         culler.shrink_to_fit();
         // The list itself, and a vector after it.
         assert_eq!(culler.pair_bytes(), 8 * (pairs as usize + 16));
@@ -227,12 +211,7 @@ fn cubes_have_few_candidates() {
         let now = boxes(kind, 4000, random);
         culler.cull(&now).unwrap();
         let counted = culler.counters();
-        assert!(
-            counted.tests < most * 4000,
-            "{kind:?}: {} of {}",
-            counted.tests,
-            most * 4000
-        );
+        assert!(counted.tests < most * 4000, "{kind:?}: {} of {}", counted.tests, most * 4000);
     }
 }
 
@@ -241,11 +220,7 @@ fn cubes_have_few_candidates() {
 fn small_frames_stay_on_one_thread() {
     let here = std::thread::current().id();
     let now = boxes(Kind::Nested, 90, &mut Random(6));
-    let mut culler = BoxCuller::builder()
-        .finder(Finder::Grid)
-        .threads(3)
-        .build()
-        .unwrap();
+    let mut culler = BoxCuller::builder().finder(Finder::Grid).threads(3).build().unwrap();
     for _ in 0..50 {
         let take = |_: &sdop::PairList| assert_eq!(std::thread::current().id(), here);
         assert!(culler.cull_in_portions(&now, take).unwrap() > 0);
@@ -261,28 +236,13 @@ fn pairs_are_those_of_python() {
     let of = |i: u32| {
         let min = [7, 131, 577].map(|k| sixteenth(i * k % 1021));
         let sides = [3, 11, 29].map(|k| sixteenth(i * k % 61));
-        Aabb::new(
-            min,
-            std::array::from_fn::<f32, 3, _>(|axis| min[axis] + sides[axis]),
-        )
+        Aabb::new(min, std::array::from_fn::<f32, 3, _>(|axis| min[axis] + sides[axis]))
     };
     let boxes: Vec<Aabb> = (0..3000).map(of).collect();
     let mut hash = Sha256::new();
-    for number in BoxCuller::new()
-        .cull(&boxes)
-        .unwrap()
-        .sorted()
-        .as_flattened()
-    {
+    for number in BoxCuller::new().cull(&boxes).unwrap().sorted().as_flattened() {
         hash.update(number.to_le_bytes());
     }
-    let hex: String = hash
-        .finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
-    assert_eq!(
-        hex,
-        "bf3a97d3cf6860a4eba71ead750f8e5a0928f8a2a647e078928cac46621b6769"
-    );
+    let hex: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(hex, "bf3a97d3cf6860a4eba71ead750f8e5a0928f8a2a647e078928cac46621b6769");
 }

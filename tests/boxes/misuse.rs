@@ -50,16 +50,9 @@ fn invalid_box_is_named() {
                 let told = culler.cull(&now).unwrap_err();
                 assert!(matches!(told, CullError::Contract(_)));
                 let Aabb { min, max } = bad;
-                assert_eq!(
-                    told.to_string(),
-                    format!("body {at}: box from {min:?} to {max:?}")
-                );
+                assert_eq!(told.to_string(), format!("body {at}: box from {min:?} to {max:?}"));
                 assert!(culler.pairs().is_empty());
-                assert_eq!(
-                    culler.cull(&sound).unwrap().sorted(),
-                    wanted,
-                    "{finder}, {bad:?}"
-                );
+                assert_eq!(culler.cull(&sound).unwrap().sorted(), wanted, "{finder}, {bad:?}");
             }
         }
     }
@@ -72,26 +65,14 @@ fn world_rejects_invalid_boxes() {
     let cube = Aabb::new([0.0; 3], [1.0; 3]);
     let [a, b] = [(); 2].map(|()| world.insert(cube).unwrap());
     for bad in wrong() {
-        let told = [
-            world.insert(bad).map(|_| ()),
-            world.set(a, bad),
-            world.set_bounds(a, bad),
-        ];
-        assert!(
-            told.iter()
-                .all(|told| matches!(told, Err(WorldError::Contract(_)))),
-            "{bad:?}"
-        );
+        let told = [world.insert(bad).map(|_| ()), world.set(a, bad), world.set_bounds(a, bad)];
+        assert!(told.iter().all(|told| matches!(told, Err(WorldError::Contract(_)))), "{bad:?}");
         world.cull().unwrap();
         assert!(world.len() == 2 && world.pairs().eq([[a, b]]));
     }
     world.remove(b).unwrap();
-    let told = [
-        world.remove(b),
-        world.set(b, cube),
-        world.set_bounds(b, cube),
-        world.body(b).map(|_| ()),
-    ];
+    let told =
+        [world.remove(b), world.set(b, cube), world.set_bounds(b, cube), world.body(b).map(|_| ())];
     assert!(told.iter().all(|told| *told == Err(WorldError::Gone(b))));
 }
 
@@ -103,10 +84,7 @@ fn groups_of_another_length_are_told() {
     for length in [0, 4, 6] {
         culler.set_groups(Some(vec![Groups::ALL; length]));
         let told = culler.cull(&now).unwrap_err().to_string();
-        assert!(
-            told.contains("groups") && culler.pairs().is_empty(),
-            "{told}"
-        );
+        assert!(told.contains("groups") && culler.pairs().is_empty(), "{told}");
     }
     culler.set_groups(None);
     assert!(!culler.cull(&now).unwrap().is_empty());

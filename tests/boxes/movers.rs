@@ -86,21 +86,11 @@ impl History {
         if reads_events {
             let events = self.world.events();
             let before = &self.watched;
-            assert!(
-                events.begun().eq(wanted.difference(before).copied()),
-                "{what}"
-            );
-            assert!(
-                events.ended().eq(before.difference(&wanted).copied()),
-                "{what}"
-            );
+            assert!(events.begun().eq(wanted.difference(before).copied()), "{what}");
+            assert!(events.ended().eq(before.difference(&wanted).copied()), "{what}");
             let lasting = wanted.intersection(before).copied();
             assert!(events.persisting().eq(lasting), "{what}");
-            assert_eq!(
-                events.iter().count(),
-                wanted.union(before).count(),
-                "{what}"
-            );
+            assert_eq!(events.iter().count(), wanted.union(before).count(), "{what}");
             self.watched = wanted;
         }
     }
@@ -185,10 +175,7 @@ fn cube(x: f32) -> Aabb {
 /// A world of cubes in a row, each of which meets the next, culled.
 fn row(count: u16, motion: Motion) -> (BoxWorld, Vec<BodyId>) {
     let mut world = BoxWorld::new();
-    let of = |i: u16| BoxBody {
-        motion,
-        ..cube(f32::from(i)).into()
-    };
+    let of = |i: u16| BoxBody { motion, ..cube(f32::from(i)).into() };
     let ids = (0..count).map(|i| world.insert(of(i)).unwrap()).collect();
     world.cull().unwrap();
     assert_eq!(world.events().begun().count(), usize::from(count) - 1);
@@ -252,11 +239,7 @@ fn groups_change_resting_pairs() {
     body.groups = Groups { member: 1, mask: 2 };
     world.set(ids[30], body).unwrap();
     world.cull().unwrap();
-    assert_eq!(
-        world.events().ended().count(),
-        0,
-        "others are in all groups"
-    );
+    assert_eq!(world.events().ended().count(), 0, "others are in all groups");
     body.groups = Groups { member: 1, mask: 0 };
     world.set(ids[30], body).unwrap();
     world.cull().unwrap();
@@ -275,10 +258,7 @@ fn a_frame_costs_what_changes() {
     let tests_of = |count: usize, random: &mut Random| {
         let mut world = BoxWorld::new();
         let all = boxes(Kind::Cubes, count, random);
-        let ids: Vec<BodyId> = all
-            .iter()
-            .map(|&aabb| world.insert(aabb).unwrap())
-            .collect();
+        let ids: Vec<BodyId> = all.iter().map(|&aabb| world.insert(aabb).unwrap()).collect();
         world.cull().unwrap();
         let before = *world.counters();
         for frame in 0..50 {
@@ -287,15 +267,7 @@ fn a_frame_costs_what_changes() {
             match frame % 3 {
                 0 => world.set_bounds(id, aabb).unwrap(),
                 1 => drop(world.insert(aabb).unwrap()),
-                _ => world
-                    .set(
-                        id,
-                        BoxBody {
-                            motion: Motion::Fixed,
-                            ..aabb.into()
-                        },
-                    )
-                    .unwrap(),
+                _ => world.set(id, BoxBody { motion: Motion::Fixed, ..aabb.into() }).unwrap(),
             }
             world.cull().unwrap();
         }
@@ -316,10 +288,7 @@ fn moving_giants_stay_cheap() {
     let mut world = BoxWorld::new();
     let mut bounds: Vec<Aabb> = all;
     bounds.extend((0..40).map(|_| Aabb::new([-30.0; 3], [30.0; 3])));
-    let ids: Vec<BodyId> = bounds
-        .iter()
-        .map(|&aabb| world.insert(aabb).unwrap())
-        .collect();
+    let ids: Vec<BodyId> = bounds.iter().map(|&aabb| world.insert(aabb).unwrap()).collect();
     world.cull().unwrap();
     for frame in 0..6 {
         for at in 2000..2000 + 10 * frame.min(4) {

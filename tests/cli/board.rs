@@ -63,23 +63,11 @@ fn miss_has_smallest_case() {
     let folder = tempfile::tempdir().unwrap();
     let (json, page) = board(folder.path(), r#"\"pairs\":[]"#, "");
     let cell = &json["adapters"][0]["cells"][0];
-    assert_eq!(
-        (&cell["family"], &cell["outcome"]),
-        (&"box".into(), &"fail".into())
-    );
-    assert_eq!(
-        cell["total"]["pairs"]["missed"],
-        cell["total"]["pairs"]["required"]
-    );
+    assert_eq!((&cell["family"], &cell["outcome"]), (&"box".into(), &"fail".into()));
+    assert_eq!(cell["total"]["pairs"]["missed"], cell["total"]["pairs"]["required"]);
     let case = cell["smallest"]["case"].as_str().unwrap();
-    assert!(
-        case.lines().count() == 2 && case.contains("\"claims\":[\"aabb\""),
-        "{case}"
-    );
-    assert!(
-        page.contains("id=\"picture-none-box\"") && page.contains("sdop-header"),
-        "no picture"
-    );
+    assert!(case.lines().count() == 2 && case.contains("\"claims\":[\"aabb\""), "{case}");
+    assert!(page.contains("id=\"picture-none-box\"") && page.contains("sdop-header"), "no picture");
 }
 
 #[test]
@@ -98,10 +86,7 @@ fn unclaimed_misses_are_no_failure() {
     let unclaimed = "unclaimed = [{ cases = \"box/*\", why = \"its page says so\" }]";
     let (json, _) = board(folder.path(), r#"\"pairs\":[]"#, unclaimed);
     assert_eq!(json["adapters"][0]["outcome"], "does-not-claim");
-    assert_eq!(
-        json["adapters"][0]["cells"][0]["reasons"]["its page says so"],
-        1
-    );
+    assert_eq!(json["adapters"][0]["cells"][0]["reasons"]["its page says so"], 1);
 }
 
 /// The page shows the times of an adapter and ours, each with its recall.
@@ -119,12 +104,7 @@ fn times_are_on_the_page() {
     let times: Vec<Value> = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
     let recalls: Vec<(&str, f64)> = times
         .iter()
-        .map(|time| {
-            (
-                time["name"].as_str().unwrap(),
-                time["recall"].as_f64().unwrap(),
-            )
-        })
+        .map(|time| (time["name"].as_str().unwrap(), time["recall"].as_f64().unwrap()))
         .collect();
     assert_eq!(recalls, [("sdop BoxCuller", 1.0), ("none", 0.0)]);
     run(&["--case", "box/grid/0000", "--times", text(&file)]);

@@ -50,10 +50,7 @@ fn interrupted_run_keeps_former_record() {
             let start = Instant::now();
             while unfinished(&record) < 100_000 {
                 assert!(child.try_wait().unwrap().is_none(), "it runs for days");
-                assert!(
-                    start.elapsed() < Duration::from_secs(120),
-                    "no record is begun"
-                );
+                assert!(start.elapsed() < Duration::from_secs(120), "no record is begun");
                 std::thread::sleep(Duration::from_millis(5));
             }
             let pid = child.id().to_string();
@@ -89,11 +86,7 @@ fn truths_go_to_user_cache() {
     let [here, cache] = ["here", "cache"].map(|name| directory.path().join(name));
     fs::create_dir(&here).unwrap();
     let study = ["tradeoff", text(&scene), "--quick", "--seeds", "1"];
-    let output = command(&study)
-        .current_dir(&here)
-        .env("XDG_CACHE_HOME", &cache)
-        .output()
-        .unwrap();
+    let output = command(&study).current_dir(&here).env("XDG_CACHE_HOME", &cache).output().unwrap();
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{message}");
     assert_eq!(fs::read_dir(&here).unwrap().count(), 0);
@@ -119,11 +112,7 @@ fn endless_device_ends_at_limit() {
         path
     };
     let [mesh, scene] = ["mesh.obj", "scene.toml"].map(link);
-    for args in [
-        ["mesh", text(&mesh)],
-        ["run", text(&scene)],
-        ["verify", text(&scene)],
-    ] {
+    for args in [["mesh", text(&mesh)], ["run", text(&scene)], ["verify", text(&scene)]] {
         let message = refusal(&[&args[..], &["--max-file-size", "1"]].concat());
         assert!(message.contains("more than 1048576 bytes"), "{message}");
         assert!(message.contains("--max-file-size"), "{message}");

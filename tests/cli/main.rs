@@ -24,9 +24,7 @@ use serde_json::Value;
 /// `sdop` with these arguments, in the root of the repository.
 fn command(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sdop"));
-    command
-        .args(args)
-        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    command.args(args).current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     command
 }
 
@@ -83,9 +81,7 @@ fn every_command_has_an_example() {
     let mut number = 0;
     for name in listed {
         let help = stdout(&[name, "--help"]);
-        let (_, examples) = help
-            .split_once("\nExample")
-            .unwrap_or_else(|| panic!("{help}"));
+        let (_, examples) = help.split_once("\nExample").unwrap_or_else(|| panic!("{help}"));
         assert!(examples.contains(&format!(": sdop {name}")), "{help}");
         number += 1;
     }

@@ -12,10 +12,7 @@ fn spot_volumes_exceed_its_hull() {
     assert_eq!(report["triangles"], 5856);
     assert_eq!(report["closed_components"], report["components"]);
     let volumes = report["volumes"].as_array().unwrap();
-    let names: Vec<&str> = volumes
-        .iter()
-        .map(|v| v["name"].as_str().unwrap())
-        .collect();
+    let names: Vec<&str> = volumes.iter().map(|v| v["name"].as_str().unwrap()).collect();
     #[rustfmt::skip]
     assert_eq!(names, [
         "sphere", "aabb", "k-dop-14", "k-dop-18", "k-dop-26", "obb",
@@ -26,10 +23,7 @@ fn spot_volumes_exceed_its_hull() {
         let found = volumes.iter().find(|v| v["name"] == name);
         found.unwrap()["over_hull"].as_f64().unwrap()
     };
-    assert!(
-        names.iter().all(|name| over_hull(name) > 1.0),
-        "{volumes:?}"
-    );
+    assert!(names.iter().all(|name| over_hull(name) > 1.0), "{volumes:?}");
     for finer in ["14", "18", "26"] {
         assert!(over_hull(&format!("or-dop-{finer}-model")) < over_hull("or-dop-6-model"));
     }
@@ -110,11 +104,7 @@ fn facts_are_of_the_used_vertices() {
     let path = directory.path().join("square.obj");
     let square = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 1 0\n";
     let faces = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
-    std::fs::write(
-        &path,
-        format!("{square}v 9 9 9\nv 0 0 0\n{faces}f 1 5 3\nf 1 2 7\n"),
-    )
-    .unwrap();
+    std::fs::write(&path, format!("{square}v 9 9 9\nv 0 0 0\n{faces}f 1 5 3\nf 1 2 7\n")).unwrap();
     let report = json(&["mesh", text(&path)]);
     assert_eq!(report["hull_vertices"], 4);
     assert_eq!(report["hull_volume"].to_string(), "0.0");
@@ -123,8 +113,5 @@ fn facts_are_of_the_used_vertices() {
     let radius = report["ball"][3].as_f64().unwrap();
     assert!((radius - 2_f64.sqrt()).abs() < 1e-6, "{radius}");
     let shown = stdout(&["mesh", text(&path)]);
-    assert!(
-        shown.contains("culled shapes contain all vertices"),
-        "{shown}"
-    );
+    assert!(shown.contains("culled shapes contain all vertices"), "{shown}");
 }

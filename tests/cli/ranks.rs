@@ -7,10 +7,7 @@ use super::command;
 #[test]
 fn unsharable_command_rejects_many_ranks() {
     for size in ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"] {
-        let output = command(&["mesh", "data/meshes/spot.tri"])
-            .env(size, "3")
-            .output()
-            .unwrap();
+        let output = command(&["mesh", "data/meshes/spot.tri"]).env(size, "3").output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{stderr}");
         assert_eq!(output.stdout, b"");

@@ -96,9 +96,7 @@ fn record(flags: &[&str]) -> (Header, Vec<Frame>) {
     stdout(&args);
     let recorded = std::fs::read_to_string(&path).unwrap();
     let (header, frames) = recorded.split_once('\n').unwrap();
-    let frames = frames
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap());
+    let frames = frames.lines().map(|line| serde_json::from_str(line).unwrap());
     (serde_json::from_str(header).unwrap(), frames.collect())
 }
 
@@ -121,36 +119,25 @@ fn recording_reads_back_exactly() {
         assert_eq!(recorded.name, shape.name);
         assert_eq!(bits(&recorded.vertices), bits(&shape.vertices));
         assert_eq!(recorded.triangles, shape.triangles);
-        assert_eq!(
-            bits(&[recorded.ball]),
-            bits(&[[x, y, z, shape.ball.radius]])
-        );
+        assert_eq!(bits(&[recorded.ball]), bits(&[[x, y, z, shape.ball.radius]]));
         assert_eq!(recorded.ordop.k, shape.ordop.directions.k());
-        assert_eq!(
-            recorded.ordop.basis.map(f32::to_bits).as_slice(),
-            bits(&basis).as_flattened()
-        );
+        assert_eq!(recorded.ordop.basis.map(f32::to_bits).as_slice(), bits(&basis).as_flattened());
         assert_eq!(recorded.ordop.lo, shape.ordop.lo);
         assert_eq!(recorded.ordop.hi, shape.ordop.hi);
     }
     let mut next = 0;
-    simulate::run(
-        &scene,
-        Tier::SCALAR,
-        |frame| -> Result<(), SimulationError> {
-            let recorded = &frames[next];
-            let poses = frame.bodies.rotation.iter().zip(&frame.bodies.translation);
-            let poses: Vec<[f32; 7]> = poses
-                .map(|(q, t)| [q[0], q[1], q[2], q[3], t[0], t[1], t[2]])
-                .collect();
-            let pairs: Vec<_> = frame.pairs.sorted().iter().map(|&[i, j]| (i, j)).collect();
-            assert_eq!(recorded.frame, frame.number);
-            assert_eq!(bits(&recorded.poses), bits(&poses));
-            assert_eq!(recorded.pairs, pairs);
-            next += 1;
-            Ok(())
-        },
-    )
+    simulate::run(&scene, Tier::SCALAR, |frame| -> Result<(), SimulationError> {
+        let recorded = &frames[next];
+        let poses = frame.bodies.rotation.iter().zip(&frame.bodies.translation);
+        let poses: Vec<[f32; 7]> =
+            poses.map(|(q, t)| [q[0], q[1], q[2], q[3], t[0], t[1], t[2]]).collect();
+        let pairs: Vec<_> = frame.pairs.sorted().iter().map(|&[i, j]| (i, j)).collect();
+        assert_eq!(recorded.frame, frame.number);
+        assert_eq!(bits(&recorded.poses), bits(&poses));
+        assert_eq!(recorded.pairs, pairs);
+        next += 1;
+        Ok(())
+    })
     .unwrap();
     assert_eq!(next, frames.len());
     assert_eq!(frames.len(), 6);
@@ -174,34 +161,18 @@ fn frame_counters_add_up() {
             ("hits", sum(volume, |v| v.hits)),
         ];
         for (name, counted) in counters {
-            assert_eq!(
-                run["counters"][format!("{key}_{name}")],
-                counted,
-                "{volume}, {name}"
-            );
+            assert_eq!(run["counters"][format!("{key}_{name}")], counted, "{volume}, {name}");
             assert!(counted > 0, "{volume}, {name}");
         }
     }
-    let order = |frame: &Frame| {
-        frame
-            .counters
-            .iter()
-            .map(|v| v.volume.clone())
-            .collect::<Vec<_>>()
-    };
-    assert!(
-        frames
-            .iter()
-            .all(|frame| order(frame) == ["sphere", "or-dop"])
-    );
+    let order = |frame: &Frame| frame.counters.iter().map(|v| v.volume.clone()).collect::<Vec<_>>();
+    assert!(frames.iter().all(|frame| order(frame) == ["sphere", "or-dop"]));
 }
 
 /// A record that was not finished leaves no file.
 #[test]
 fn unfinished_record_leaves_no_file() {
-    let far = SCENE
-        .replace("dt = 0.1", "dt = 1e18")
-        .replace("walls = \"specular\"\n", "");
+    let far = SCENE.replace("dt = 0.1", "dt = 1e18").replace("walls = \"specular\"\n", "");
     let (directory, scene) = scene_file(&far);
     let path = directory.path().join("run.ndjson");
     let message = crate::refusal(&["run", text(&scene), "--record", text(&path)]);
@@ -253,10 +224,7 @@ fn recording_has_every_exact_pair() {
 
 fn judged_shape(shape: &Shape) -> reference::Shape {
     let [x, y, z, radius] = shape.ball;
-    let ball = reference::Ball {
-        centre: [x, y, z],
-        radius,
-    };
+    let ball = reference::Ball { centre: [x, y, z], radius };
     let column = |i: usize| [0, 1, 2].map(|axis| shape.ordop.basis[3 * i + axis]);
     let directions = match shape.ordop.k {
         6 => reference::DirectionSet::K6,

@@ -39,10 +39,7 @@ fn template(root: &Path, name: &str, text: &str) {
 /// Exit code and output of `sdop report --check`.
 fn check(root: &Path) -> (Option<i32>, String) {
     let output = sdop(&["report", "--check", "--root", text(root)]);
-    (
-        output.status.code(),
-        String::from_utf8_lossy(&output.stdout).into_owned(),
-    )
+    (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 fn edit(path: &Path, from: &str, to: &str) {
@@ -94,11 +91,7 @@ fn changed_record_digit_is_found() {
     let manifest = root.path().join("data/record/other/times/record.json");
     edit(&manifest, "\"version\": 1", "\"version\":  1");
     assert_eq!(check(root.path()).0, Some(0), "spacing is no content");
-    edit(
-        &manifest,
-        "\"experiment\": \"times\"",
-        "\"experiment\": \"rimes\"",
-    );
+    edit(&manifest, "\"experiment\": \"times\"", "\"experiment\": \"rimes\"");
     assert_eq!(check(root.path()).0, Some(1));
 }
 
@@ -106,11 +99,7 @@ fn changed_record_digit_is_found() {
 #[test]
 fn whole_page_follows_its_template() {
     let root = repository();
-    template(
-        root.path(),
-        "pages/paper/report.typ",
-        &format!("= Report\n{BLOCK}"),
-    );
+    template(root.path(), "pages/paper/report.typ", &format!("= Report\n{BLOCK}"));
     assert_eq!(check(root.path()).0, Some(1), "it isn't made yet");
     sdop(&["report", "--root", text(root.path())]);
     let page = root.path().join("paper/report.typ");
@@ -138,10 +127,7 @@ fn inconsistent_numbers_are_found() {
     let rendered = sdop(&["report", "--quantities", "--root", text(root.path())]);
     let said = String::from_utf8_lossy(&rendered.stdout).into_owned();
     assert_eq!(rendered.status.code(), Some(0), "{said}");
-    assert!(
-        said.contains("0.21") && said.contains("paper/many-ranks.md"),
-        "{said}"
-    );
+    assert!(said.contains("0.21") && said.contains("paper/many-ranks.md"), "{said}");
     template(root.path(), "pages/paper/many-ranks.md", &page(1));
     sdop(&["report", "--root", text(root.path())]);
     let (code, said) = check(root.path());
@@ -248,15 +234,7 @@ fn fresh_results_make_their_pages() {
     let [reproduced, compared] = ["reproduce", "tradeoff"].map(|name| records.join(name));
     let cache = root.join("cache");
     for arguments in [
-        &[
-            "reproduce",
-            "--seeds",
-            "2",
-            "--frames",
-            "3",
-            "--out",
-            text(&reproduced),
-        ][..],
+        &["reproduce", "--seeds", "2", "--frames", "3", "--out", text(&reproduced)][..],
         &[
             "tradeoff",
             text(&scene),
@@ -291,20 +269,16 @@ fn fresh_results_make_their_pages() {
     let made = sdop(&["report", "--root", text(root)]);
     let said = String::from_utf8_lossy(&made.stderr);
     assert_eq!(made.status.code(), Some(0), "{said}");
-    for (page, last) in [
-        ("summary.md", "## References"),
-        ("tradeoff.md", "## The price of safety"),
-    ] {
+    for (page, last) in [("summary.md", "## References"), ("tradeoff.md", "## The price of safety")]
+    {
         let made = std::fs::read_to_string(root.join("paper").join(page)).unwrap();
         assert!(made.contains(last), "{page}");
         assert!(!made.contains("NaN"), "{page}");
     }
     // Figures are drawn from the records' numbers: here by the program that has just drawn them.
-    for (record, name) in [
-        (&reproduced, "costs.svg"),
-        (&reproduced, "useful_tests.svg"),
-        (&compared, "tradeoff.svg"),
-    ] {
+    for (record, name) in
+        [(&reproduced, "costs.svg"), (&reproduced, "useful_tests.svg"), (&compared, "tradeoff.svg")]
+    {
         let own = std::fs::read_to_string(record.join("figures").join(name)).unwrap();
         let drawn = std::fs::read_to_string(root.join("paper/figures").join(name)).unwrap();
         assert_eq!(own, drawn, "{name}");
@@ -345,22 +319,13 @@ fn record_compares_with_a_commit() {
     adopt(root.path(), "times", "box");
     let compared = |first| {
         let arguments = ["cmp", first, "data/record/box/times"];
-        command(&arguments)
-            .current_dir(root.path())
-            .output()
-            .unwrap()
+        command(&arguments).current_dir(root.path()).output().unwrap()
     };
     let output = compared("HEAD:data/record/box/times");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(
-        said.contains("DIFFERS times.csv: a, bodies 500, hits: 7 and 8"),
-        "{said}"
-    );
-    assert_eq!(
-        compared("HEAD:data/record/box/rimes").status.code(),
-        Some(2)
-    );
+    assert!(said.contains("DIFFERS times.csv: a, bodies 500, hits: 7 and 8"), "{said}");
+    assert_eq!(compared("HEAD:data/record/box/rimes").status.code(), Some(2));
 }
 
 /// Every record of the repository names its command.
@@ -392,12 +357,7 @@ fn record_names_the_tier() {
     let record = |arguments: &[&str]| sdop(&[&out, arguments].concat());
     let short = ["--quick", "--seeds", "1", "--frames", "2"];
     let run = record(&[&["reproduce", "--simd", "scalar", "--"][..], &short].concat());
-    assert_eq!(
-        run.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&run.stderr)
-    );
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
     for file in ["results.json", "record.json"] {
         let read = std::fs::read(place.path().join("here/reproduce").join(file)).unwrap();
         let read: serde_json::Value = serde_json::from_slice(&read).unwrap();
@@ -408,14 +368,8 @@ fn record_names_the_tier() {
 
     // What chooses its own levels takes none, and none is slipped past the record.
     let wrong = [
-        (
-            &["kernels/tiers", "--simd", "scalar"][..],
-            "chooses its SIMD levels",
-        ),
-        (
-            &["reproduce", "--", "--simd", "scalar"],
-            "--simd after the --",
-        ),
+        (&["kernels/tiers", "--simd", "scalar"][..], "chooses its SIMD levels"),
+        (&["reproduce", "--", "--simd", "scalar"], "--simd after the --"),
     ];
     for (arguments, told) in wrong {
         let run = record(arguments);
@@ -430,10 +384,7 @@ fn record_names_the_tier() {
 fn records_say_what_they_need() {
     let list = stdout(&["record"]);
     let head = list.lines().find(|line| line.contains("experiment"));
-    assert!(
-        head.is_some_and(|line| line.contains("takes") && line.contains("needs")),
-        "{list}"
-    );
+    assert!(head.is_some_and(|line| line.contains("takes") && line.contains("needs")), "{list}");
     assert!(list.contains("valgrind"), "{list}");
     let elsewhere = tempfile::tempdir().unwrap();
     let output = command(&["record", "reproduce", "--name", "here"])

@@ -4,15 +4,7 @@ use std::path::Path;
 
 use super::{json, refusal, scene_file, sdop, stdout, text};
 
-const TINY: [&str; 7] = [
-    "reproduce",
-    "--quick",
-    "--seeds",
-    "2",
-    "--frames",
-    "3",
-    "--out",
-];
+const TINY: [&str; 7] = ["reproduce", "--quick", "--seeds", "2", "--frames", "3", "--out"];
 
 /// SHA-256 of what all machines count.
 const COUNTS: &str = "6a826ee5bcc855a5c769231e5e964cfffdecb0d6d4af1d5d0f6462914135ae34";
@@ -22,49 +14,23 @@ fn reproduce_writes_tables_and_figures() {
     let directory = tempfile::tempdir().unwrap();
     let [out, paper] = ["tables", "paper"].map(|name| directory.path().join(name));
     let brief = stdout(&[&TINY[..], &[text(&out), "--paper", text(&paper)]].concat());
-    assert!(
-        brief.contains("Collisions in percent of tests, 2 seeds of 3 frames"),
-        "{brief}"
-    );
+    assert!(brief.contains("Collisions in percent of tests, 2 seeds of 3 frames"), "{brief}");
     let read = |path: &Path| std::fs::read_to_string(path).unwrap();
     let counts = read(&out.join("counts.csv"));
     assert_eq!(counts.lines().count(), 1 + 2 * 6 * 6);
-    for name in [
-        "frame_rates",
-        "useful_tests",
-        "costs",
-        "residuals",
-        "sphere",
-    ] {
+    for name in ["frame_rates", "useful_tests", "costs", "residuals", "sphere"] {
         let svg = read(&paper.join("figures").join(name).with_extension("svg"));
-        assert!(
-            svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"),
-            "{name}"
-        );
+        assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{name}");
     }
-    for name in [
-        "times",
-        "table_1",
-        "frame_rates",
-        "costs",
-        "prices",
-        "survival",
-        "claims",
-    ] {
-        assert!(
-            read(&out.join(name).with_extension("csv")).lines().count() > 1,
-            "{name}"
-        );
+    for name in ["times", "table_1", "frame_rates", "costs", "prices", "survival", "claims"] {
+        assert!(read(&out.join(name).with_extension("csv")).lines().count() > 1, "{name}");
     }
     let results: serde_json::Value =
         serde_json::from_str(&read(&out.join("results.json"))).unwrap();
     assert_eq!(results["seeds"], serde_json::json!([1, 2]));
     // Equal on every machine: the counts' hash says so for all of them.
     assert_eq!(results["counts_sha256"], COUNTS);
-    assert!(
-        !results.to_string().contains(text(directory.path())),
-        "a path of this machine"
-    );
+    assert!(!results.to_string().contains(text(directory.path())), "a path of this machine");
     assert_eq!(results["claims"][0]["checks"].as_array().unwrap().len(), 20);
 }
 
@@ -80,10 +46,7 @@ fn sharded_reproduce_counts_alike() {
         shards.push(out.join(format!("reproduce-{index}-of-2.units")));
     }
     let shards = shards.iter().map(|path| text(path));
-    let merge = ["merge"]
-        .into_iter()
-        .chain(shards)
-        .chain(["-o", text(&merged)]);
+    let merge = ["merge"].into_iter().chain(shards).chain(["-o", text(&merged)]);
     let brief = stdout(&merge.collect::<Vec<_>>());
     assert!(brief.contains("2 seeds of 3 frames"), "{brief}");
     let results = std::fs::read_to_string(merged.join("results.json")).unwrap();
@@ -91,10 +54,7 @@ fn sharded_reproduce_counts_alike() {
     assert_eq!(results["seeds"], serde_json::json!([1, 2]));
     // Equal on every machine: the counts' hash says so for all of them.
     assert_eq!(results["counts_sha256"], COUNTS);
-    assert!(
-        !results.to_string().contains(text(directory.path())),
-        "a path of this machine"
-    );
+    assert!(!results.to_string().contains(text(directory.path())), "a path of this machine");
     let command = "cargo run --release -- reproduce --quick --seeds 2 --frames 3 --out DIR";
     assert_eq!(results["command"], command);
     assert_eq!(results["counts_sha256"], COUNTS);
@@ -108,23 +68,13 @@ fn reproduce_says_what_it_needs() {
             && elsewhere.contains("--scenes DIR"),
         "{elsewhere}"
     );
-    assert_eq!(
-        sdop(&["reproduce", "--shard", "half"]).status.code(),
-        Some(2)
-    );
+    assert_eq!(sdop(&["reproduce", "--shard", "half"]).status.code(), Some(2));
 }
 
 /// Cost predicts every term of the strategies asked for.
 #[test]
 fn cost_predicts_every_term() {
-    let arguments = [
-        "cost",
-        "data/scenes/paper-50.toml",
-        "--frames",
-        "3",
-        "--seeds",
-        "2",
-    ];
+    let arguments = ["cost", "data/scenes/paper-50.toml", "--frames", "3", "--seeds", "2"];
     let one = json(&[&arguments[..], &["--strategy", "s-dop-batch"]].concat());
     assert_eq!((&one["bodies"], &one["frames"]), (&50.into(), &3.into()));
     let costs = one["costs"].as_array().unwrap();
@@ -132,19 +82,14 @@ fn cost_predicts_every_term() {
     assert_eq!(regimes, ["warm", "cold"]);
     let names = |list: &serde_json::Value| {
         let names = list.as_array().unwrap().iter();
-        names
-            .map(|item| item["name"].as_str().unwrap().to_owned())
-            .collect::<Vec<_>>()
+        names.map(|item| item["name"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
     };
     assert_eq!(names(&costs[0]["terms"]), ["sphere", "or-dop"]);
     assert_eq!(one["prices"].as_array().unwrap().len(), 2 * 2);
     assert!(one["conditions"]["of"].is_number(), "{one}");
     let terms = costs[0]["terms"].as_array().unwrap().iter();
     let recurring = |term: &serde_json::Value| {
-        ["update", "finding", "test"]
-            .map(|key| term[key].as_f64().unwrap())
-            .iter()
-            .sum::<f64>()
+        ["update", "finding", "test"].map(|key| term[key].as_f64().unwrap()).iter().sum::<f64>()
     };
     let sum: f64 = terms.map(recurring).sum();
     let predicted = costs[0]["frame"]["predicted"]["mean"].as_f64().unwrap();
@@ -158,9 +103,7 @@ fn scenes_of_one_kind_share_prices() {
     let out = directory.path().to_str().unwrap();
     let paper = |bodies: u32| format!("data/scenes/paper-{bodies}.toml");
     let (few, more, crowd) = (paper(50), paper(150), "data/scenes/uniform-10k.toml");
-    let both = [
-        "cost", &few, "--also", &more, "--frames", "2", "--seeds", "2",
-    ];
+    let both = ["cost", &few, "--also", &more, "--frames", "2", "--seeds", "2"];
     let strategy = ["--strategy", "s-dop-batch", "--out", out];
     let printed = json(&[&both[..], &strategy].concat());
     let [one, other] = &printed.as_array().unwrap()[..] else {
@@ -170,10 +113,7 @@ fn scenes_of_one_kind_share_prices() {
     assert_eq!(one["prices"], other["prices"]);
     assert_ne!(one["costs"][0]["terms"], other["costs"][0]["terms"]);
     let written = std::fs::read_to_string(directory.path().join("paper-150.json")).unwrap();
-    assert_eq!(
-        &serde_json::from_str::<serde_json::Value>(&written).unwrap(),
-        other
-    );
+    assert_eq!(&serde_json::from_str::<serde_json::Value>(&written).unwrap(), other);
     let refused = refusal(&["cost", &few, "--also", crowd]);
     assert!(refused.contains("can't have the same prices"), "{refused}");
 }

@@ -14,12 +14,7 @@ fn run(flags: &[&str]) -> Value {
 }
 
 fn keys(value: &Value) -> Vec<&str> {
-    value
-        .as_object()
-        .unwrap()
-        .keys()
-        .map(String::as_str)
-        .collect()
+    value.as_object().unwrap().keys().map(String::as_str).collect()
 }
 
 #[test]
@@ -36,14 +31,7 @@ fn json_is_the_documented_object() {
         "sphere_updates", "ordop_updates", "sphere_tests", "sphere_hits", "ordop_tests", "ordop_hits", "untested",
         "reported",
     ]);
-    let stages = [
-        "construct",
-        "effects",
-        "update",
-        "pair_finding",
-        "ordop",
-        "total",
-    ];
+    let stages = ["construct", "effects", "update", "pair_finding", "ordop", "total"];
     assert_eq!(keys(&report["seconds"]), stages);
     assert_eq!(keys(&report["frame_seconds"]), ["p50", "p99", "most"]);
     assert_eq!(keys(&report["effects"][0]), ["name", "steps", "seconds"]);
@@ -82,17 +70,9 @@ fn threads_and_finders_keep_pairs() {
             let report = run(&flags);
             assert_eq!(report["threads"], 3);
             assert_eq!(report["pairs"], finder);
-            let picked = if finder == "auto" {
-                "all-pairs"
-            } else {
-                finder
-            };
+            let picked = if finder == "auto" { "all-pairs" } else { finder };
             assert_eq!(report["finder"], picked);
-            let same = if strategy == "sphere" {
-                &expected
-            } else {
-                &one
-            };
+            let same = if strategy == "sphere" { &expected } else { &one };
             assert_eq!(report["pairs_sha256"], same["pairs_sha256"], "{flags:?}");
             for count in ["sphere_hits", "reported"] {
                 let (seen, expected) = (&report["counters"][count], &same["counters"][count]);
@@ -110,14 +90,8 @@ fn counters_follow_from_the_scene() {
     // 50 bodies, 10 of them static: 50·49/2 − 10·9/2 pairs and 40 updates a frame.
     assert_eq!(count(&sequential, "sphere_tests"), 20 * (1225 - 45));
     assert_eq!(count(&sequential, "sphere_updates"), 20 * 40);
-    assert_eq!(
-        count(&sequential, "ordop_tests"),
-        count(&sequential, "sphere_hits")
-    );
-    assert_eq!(
-        count(&sequential, "reported"),
-        count(&sequential, "ordop_hits")
-    );
+    assert_eq!(count(&sequential, "ordop_tests"), count(&sequential, "sphere_hits"));
+    assert_eq!(count(&sequential, "reported"), count(&sequential, "ordop_hits"));
     let batch = run(&["--strategy", "s-dop-batch"]);
     assert_eq!(batch["counters"], sequential["counters"]);
     assert_eq!(batch["pairs_sha256"], sequential["pairs_sha256"]);
@@ -137,11 +111,7 @@ fn single_volumes_have_own_counters() {
         for (what, expected) in [("updates", 20 * 40), ("tests", 20 * (1225 - 45))] {
             assert_eq!(counters[format!("{volume}_{what}")], expected, "{strategy}");
         }
-        assert_eq!(
-            counters[format!("{volume}_hits")],
-            counters["reported"],
-            "{strategy}"
-        );
+        assert_eq!(counters[format!("{volume}_hits")], counters["reported"], "{strategy}");
         assert_eq!(counters["sphere_tests"], 0, "{strategy}");
     }
 }
@@ -162,12 +132,7 @@ fn unlisted_effects_are_not_simulated() {
         assert_eq!(steps(unlisted), 0, "{unlisted}");
     }
     let table = stdout(&FAST);
-    let line = |name: &str| {
-        table
-            .lines()
-            .find(|line| line.trim_start().starts_with(name))
-            .unwrap()
-    };
+    let line = |name: &str| table.lines().find(|line| line.trim_start().starts_with(name)).unwrap();
     assert!(line("gravity").contains("not simulated"), "{table}");
     assert!(line("motion").contains("19"), "{table}");
 }
@@ -219,10 +184,7 @@ fn csv_has_the_same_values() {
     let report = run(&[]);
     assert_eq!(cell("scene"), "paper-50");
     assert_eq!(cell("pairs_sha256"), report["pairs_sha256"]);
-    assert_eq!(
-        cell("counters.sphere_hits"),
-        report["counters"]["sphere_hits"].to_string()
-    );
+    assert_eq!(cell("counters.sphere_hits"), report["counters"]["sphere_hits"].to_string());
     assert_eq!(cell("effects.motion.steps"), "19");
     assert_eq!(cell("budget"), "");
 }
@@ -231,30 +193,15 @@ fn csv_has_the_same_values() {
 #[test]
 fn invalid_flags_name_valid_ones() {
     for (flags, messages) in [
-        (
-            &["--simd", "sse9"][..],
-            &["unknown SIMD level `sse9`", "avx512, neon"][..],
-        ),
-        (
-            &["--strategy", "s-dop-batsh"],
-            &["invalid value 's-dop-batsh'", "'s-dop-batch'"],
-        ),
-        (
-            &["--strategy", "s-dop-time-critical"],
-            &["needs `budget`", "tests = 1000"],
-        ),
-        (
-            &["--interest", "50"],
-            &["body 50 of a scene of 50", "counted from 0"],
-        ),
+        (&["--simd", "sse9"][..], &["unknown SIMD level `sse9`", "avx512, neon"][..]),
+        (&["--strategy", "s-dop-batsh"], &["invalid value 's-dop-batsh'", "'s-dop-batch'"]),
+        (&["--strategy", "s-dop-time-critical"], &["needs `budget`", "tests = 1000"]),
+        (&["--interest", "50"], &["body 50 of a scene of 50", "counted from 0"]),
         (&["--interest", "1,x"], &["body indices as in 0,5,7"]),
         (&["--threads", "0"], &["0 is not in 1..=1024"]),
         (&["--threads", "100000"], &["100000 is not in 1..=1024"]),
         (&["--k", "8"], &["invalid value '8'", "6, 14, 18, 26"]),
-        (
-            &["--budget-tests", "5", "--budget-us", "5"],
-            &["cannot be used with"],
-        ),
+        (&["--budget-tests", "5", "--budget-us", "5"], &["cannot be used with"]),
         (&["--seed", "-1"], &["'-1'"]),
     ] {
         let message = refusal(&[&FAST, flags].concat());
@@ -283,19 +230,11 @@ fn scene_errors_name_place_and_remedy() {
     for (body, messages) in [
         (
             "[[bodies]]\nshape = \"box\"\ncuont = 3\n",
-            &[
-                "scene.toml:5:1:",
-                "unknown field `cuont`",
-                "did you mean `count`?",
-            ][..],
+            &["scene.toml:5:1:", "unknown field `cuont`", "did you mean `count`?"][..],
         ),
         (
             "[[bodies]]\nmesh = \"nowhere.tri\"\ncount = 1\n",
-            &[
-                "scene.toml:4:8",
-                "nowhere.tri",
-                "relative to the scene file",
-            ],
+            &["scene.toml:4:8", "nowhere.tri", "relative to the scene file"],
         ),
         (
             "[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 0, 1, 2, 3]]\n",
@@ -322,10 +261,7 @@ fn leaving_body_is_named_with_frame() {
     );
     let message = refusal(&["run", text(&path)]);
     // 10¹⁸ + 2·10¹⁷ is beyond 2⁶⁰ ≈ 1.15·10¹⁸.
-    assert!(
-        message.contains("frame 2: body 1: translation"),
-        "{message}"
-    );
+    assert!(message.contains("frame 2: body 1: translation"), "{message}");
     assert!(message.contains("at most 2^60"), "{message}");
 }
 
@@ -343,16 +279,10 @@ fn far_poses_are_culled_exactly() {
     let report = json(&["run", text(&path), "--record", text(&record), "--truth"]);
     assert_eq!(report["counters"]["reported"], 1);
     let frame = std::fs::read_to_string(&record).unwrap();
-    assert!(
-        frame.contains("\"translations\":[[1000000031.5,0.0,0.0],"),
-        "{frame}"
-    );
+    assert!(frame.contains("\"translations\":[[1000000031.5,0.0,0.0],"), "{frame}");
     assert!(frame.contains("\"meets\":[[0,1]]"), "{frame}");
     let study = refusal(&["cost", text(&path)]);
-    assert!(
-        study.contains("`sdop run` culls f64 translations"),
-        "{study}"
-    );
+    assert!(study.contains("`sdop run` culls f64 translations"), "{study}");
 }
 
 /// A recording that cannot be written is refused.
@@ -361,8 +291,5 @@ fn unwritable_recording_is_an_error() {
     let output = sdop(&[&FAST[..], &["--record", "no/such/directory/x.ndjson"]].concat());
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        message.contains("cannot write no/such/directory/x.ndjson"),
-        "{message}"
-    );
+    assert!(message.contains("cannot write no/such/directory/x.ndjson"), "{message}");
 }

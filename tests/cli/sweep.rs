@@ -116,10 +116,7 @@ fn shards_merged_are_the_whole() {
         (&[three, one][..], "1 of 3 shards are missing: 2"),
         (&[one], "2 of 3 shards are missing: 2, 3"),
         (&[one, two, two, three], "are both shard 2/3"),
-        (
-            &[one, two, alone.as_path()],
-            "there are 3 shards here and 1 there",
-        ),
+        (&[one, two, alone.as_path()], "there are 3 shards here and 1 there"),
     ] {
         let message = merge_refused(shards);
         assert!(message.contains(told), "{message}");
@@ -160,10 +157,7 @@ fn different_work_is_not_merged() {
     let one = place.shard(1, 2, &NO_SEED);
     let told = |other: &Path, told: &str| {
         let message = merge_refused(&[&one, other]);
-        assert!(
-            message.contains("are shards of different runs"),
-            "{message}"
-        );
+        assert!(message.contains("are shards of different runs"), "{message}");
         assert!(message.contains(told), "{message}");
     };
     let other = place.shard(2, 2, &[&NO_SEED[..], &["--first-seed", "7"]].concat());
@@ -180,10 +174,7 @@ fn different_work_is_not_merged() {
     let rest = lines(&other)[1..].concat();
     fs::write(&other, format!("{header}\n{rest}")).unwrap();
     let message = merge_refused(&[&one, &other]);
-    assert!(
-        message.contains("the digest at its end does not match its lines"),
-        "{message}"
-    );
+    assert!(message.contains("the digest at its end does not match its lines"), "{message}");
     reseal(&other);
     told(&other, "and 0.0.9 0123456789abcdef there");
 }

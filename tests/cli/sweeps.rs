@@ -205,10 +205,7 @@ fn shards_equal_one_process(sweep: &Sweep) {
     let (directory, scene) = scene_file(SCENE);
     let [alone, out] = ["alone", "out"].map(|name| directory.path().join(name));
     let whole = sweep.facts(&sweep.run(&scene, &alone, &[]), &alone);
-    assert!(
-        whole.iter().all(|fact| fact.to_string().len() > 100),
-        "{whole:?}"
-    );
+    assert!(whole.iter().all(|fact| fact.to_string().len() > 100), "{whole:?}");
     let mut shards = Vec::new();
     for part in ["2/3", "1/3", "3/3"] {
         let said = sweep.run(&scene, &out, &["--shard", part]);
@@ -217,10 +214,7 @@ fn shards_equal_one_process(sweep: &Sweep) {
         shards.push(PathBuf::from(path));
     }
     let place = out.join(sweep.shards);
-    assert!(
-        shards.iter().all(|path| path.starts_with(&place)),
-        "{shards:?}"
-    );
+    assert!(shards.iter().all(|path| path.starts_with(&place)), "{shards:?}");
     assert_eq!(sweep.merged(&scene, &out, &shards), whole, "{}", sweep.name);
 }
 
@@ -258,10 +252,7 @@ fn shards_of_other_scenes_are_rejected() {
         }
         let shards = shards.iter().map(|path| text(path));
         let message = refusal(&["merge"].into_iter().chain(shards).collect::<Vec<_>>());
-        assert!(
-            message.contains("are shards of different runs: the input scene"),
-            "{message}"
-        );
+        assert!(message.contains("are shards of different runs: the input scene"), "{message}");
     }
 }
 
@@ -280,15 +271,9 @@ fn record_uses_only_its_shards() {
     assert!(none.contains("sdop record reproduce --shard 1/n"), "{none}");
     sweep.run(&scene, &out, &["--shard", "2/2"]);
     let other = refused(&["--", "--quick"]);
-    assert!(
-        other.contains("its command is sdop record reproduce -- --quick --seeds 1"),
-        "{other}"
-    );
+    assert!(other.contains("its command is sdop record reproduce -- --quick --seeds 1"), "{other}");
     let missing = refused(sweep.last);
-    assert!(
-        missing.contains("1 of 2 shards are missing: 1"),
-        "{missing}"
-    );
+    assert!(missing.contains("1 of 2 shards are missing: 1"), "{missing}");
     assert!(!out.join("box/reproduce").exists());
     let file = out.join("box/reproduce.shards/reproduce-2-of-2.units");
     let lines = fs::read_to_string(&file).unwrap();
@@ -299,10 +284,7 @@ fn record_uses_only_its_shards() {
     let rest = rest.rsplit_once("end ").unwrap().0;
     fs::write(&file, format!("{header}\n{rest}")).unwrap();
     let other = refused(sweep.last);
-    assert!(
-        other.contains("its code is 0.0.9 0123, and this one's"),
-        "{other}"
-    );
+    assert!(other.contains("its code is 0.0.9 0123, and this one's"), "{other}");
 }
 
 #[test]
@@ -321,26 +303,14 @@ fn an_interrupted_record_is_made_anew() {
 #[test]
 fn work_without_units_is_rejected() {
     for (arguments, told) in [
-        (
-            &["record", "effects", "--shard", "1/2"][..],
-            "effects is measured in one process",
-        ),
-        (
-            &["record", "cost", "--merge"],
-            "cost/quiet is measured in one process",
-        ),
+        (&["record", "effects", "--shard", "1/2"][..], "effects is measured in one process"),
+        (&["record", "cost", "--merge"], "cost/quiet is measured in one process"),
         (
             &["record", "verify", "reproduce", "--share-cores"],
             "several experiments can't be shared at once",
         ),
-        (
-            &["record", "verify", "--", "--shard", "1/2"],
-            "--shard after the --",
-        ),
-        (
-            &["tradeoff", "earlier.json", "--shard", "1/2"],
-            "an earlier run has no work to share",
-        ),
+        (&["record", "verify", "--", "--shard", "1/2"], "--shard after the --"),
+        (&["tradeoff", "earlier.json", "--shard", "1/2"], "an earlier run has no work to share"),
     ] {
         let message = refusal(arguments);
         assert!(message.contains(told), "{message}");

@@ -45,10 +45,7 @@ fn block(page: &Path, name: &str) -> (u64, usize) {
     let page = std::fs::read_to_string(page).unwrap();
     let (_, rest) = page.split_once(&format!("id=\"block-{name}\">")).unwrap();
     let (coded, _) = rest.split_once("</script>").unwrap();
-    (
-        listed["length"].as_u64().unwrap(),
-        coded.len() / 4 * 3 - coded.matches('=').count(),
-    )
+    (listed["length"].as_u64().unwrap(), coded.len() / 4 * 3 - coded.matches('=').count())
 }
 
 /// Writes the scene's record, with `--truth` or without.
@@ -76,21 +73,14 @@ fn scene_page_contains_its_run() {
         (&header["bodies"], &header["moving"], &header["frames"]),
         (&16.into(), &12.into(), &5.into())
     );
-    assert_eq!(
-        (&header["truth"], &header["side"]),
-        (&true.into(), &4.0.into())
-    );
+    assert_eq!((&header["truth"], &header["side"]), (&true.into(), &4.0.into()));
     let runs = header["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 1);
     assert_eq!(runs[0]["name"], "s-dop-sequential");
     assert_eq!(runs[0]["volumes"], serde_json::json!(["sphere", "or-dop"]));
     assert_eq!(runs[0]["construct"], Value::Null);
     let on = |name: &str| {
-        header["effects"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .any(|e| e["name"] == name && e["on"] == true)
+        header["effects"].as_array().unwrap().iter().any(|e| e["name"] == name && e["on"] == true)
     };
     assert!(on("motion") && on("walls") && !on("gravity"));
     let pairs = header["pairs"].as_u64().unwrap();
@@ -102,11 +92,7 @@ fn scene_page_contains_its_run() {
         ("pairs", 2 * pairs, 2),
         ("counters-0", 3 * 2 * 5, 8),
     ] {
-        assert_eq!(
-            block(&page, name),
-            (length, length as usize * bytes),
-            "{name}"
-        );
+        assert_eq!(block(&page, name), (length, length as usize * bytes), "{name}");
     }
 }
 
@@ -118,9 +104,7 @@ fn record_page_equals_scene_page() {
     let record = record(directory.path(), &scene, "run.ndjson", &[]);
     view(&[text(&scene), "--out", text(&pages[0])]);
     view(&[text(&record), "--out", text(&pages[1])]);
-    let [of_scene, of_record] = pages
-        .each_ref()
-        .map(|page| std::fs::read_to_string(page).unwrap());
+    let [of_scene, of_record] = pages.each_ref().map(|page| std::fs::read_to_string(page).unwrap());
     assert!(
         of_scene == of_record.replace("\"source\":\"run.ndjson\"", "\"source\":\"scene.toml\"")
     );
@@ -140,18 +124,12 @@ fn recorded_truth_is_used() {
     let mut frame: Value = serde_json::from_str(&lines[2]).unwrap();
     let met = frame["meets"][0].clone();
     assert!(met.is_array(), "nothing meets in frame 1");
-    frame["pairs"]
-        .as_array_mut()
-        .unwrap()
-        .retain(|pair| *pair != met);
+    frame["pairs"].as_array_mut().unwrap().retain(|pair| *pair != met);
     lines[2] = frame.to_string();
     std::fs::write(&record, lines.join("\n") + "\n").unwrap();
     view(&[text(&record), "--no-truth", "--out", text(&pages[1])]);
     assert_eq!(header(&pages[0])["pairs"], header(&pages[1])["pairs"]);
-    assert_ne!(
-        std::fs::read(&pages[0]).unwrap(),
-        std::fs::read(&pages[1]).unwrap()
-    );
+    assert_ne!(std::fs::read(&pages[0]).unwrap(), std::fs::read(&pages[1]).unwrap());
 }
 
 /// Two strategies or two records stand side by side.
@@ -160,29 +138,17 @@ fn two_runs_are_shown_together() {
     let (directory, scene) = scene_file(SCENE);
     let page = directory.path().join("page.html");
     let first = record(directory.path(), &scene, "first.ndjson", &[]);
-    let spheres = record(
-        directory.path(),
-        &scene,
-        "spheres.ndjson",
-        &["--strategy", "sphere"],
-    );
+    let spheres = record(directory.path(), &scene, "spheres.ndjson", &["--strategy", "sphere"]);
     let mut sizes = Vec::new();
     for beside in ["sphere", text(&spheres)] {
         view(&[text(&first), "--beside", beside, "--out", text(&page)]);
         let header = header(&page);
-        let names: Vec<_> = header["runs"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|run| run["name"].clone())
-            .collect();
+        let names: Vec<_> =
+            header["runs"].as_array().unwrap().iter().map(|run| run["name"].clone()).collect();
         assert_eq!(names, ["s-dop-sequential", "sphere"]);
         sizes.push(std::fs::read(&page).unwrap());
     }
-    assert!(
-        sizes[0] == sizes[1],
-        "a strategy's pairs and its record's differ"
-    );
+    assert!(sizes[0] == sizes[1], "a strategy's pairs and its record's differ");
     let other = record(directory.path(), &scene, "other.ndjson", &["--seed", "2"]);
     let message = refusal(&["view", text(&first), "--beside", text(&other)]);
     assert!(message.contains("not the frames of"), "{message}");
@@ -217,10 +183,7 @@ fn broken_record_makes_a_page() {
     let cut = directory.path().join("cut.ndjson");
     std::fs::write(&cut, &whole[..whole.len() - 40]).unwrap();
     let (message, header) = broken(&cut);
-    assert!(
-        message.contains("cut.ndjson:6: the file ends inside this line"),
-        "{message}"
-    );
+    assert!(message.contains("cut.ndjson:6: the file ends inside this line"), "{message}");
     assert_eq!(header["frames"], 4);
     let shown = header["messages"][0].as_str().unwrap();
     assert!(
@@ -236,16 +199,8 @@ fn broken_record_makes_a_page() {
         message.contains("the record has version 3; this program reads version 1"),
         "{message}"
     );
-    assert_eq!(
-        (&header["frames"], &header["source"]),
-        (&0.into(), &"newer.ndjson".into())
-    );
-    assert!(
-        header["messages"][0]
-            .as_str()
-            .unwrap()
-            .contains("write it again")
-    );
+    assert_eq!((&header["frames"], &header["source"]), (&0.into(), &"newer.ndjson".into()));
+    assert!(header["messages"][0].as_str().unwrap().contains("write it again"));
 
     let other = directory.path().join("other.ndjson");
     std::fs::write(&other, "{\"format\":\"glTF\",\"version\":2}\n").unwrap();
@@ -261,26 +216,17 @@ fn older_record_lacks_only_counters() {
     let mut lines = Vec::new();
     for line in std::fs::read_to_string(&record).unwrap().lines() {
         let mut line: Value = serde_json::from_str(line).unwrap();
-        let known = [
-            "format", "version", "scene", "seed", "shapes", "bodies", "frame", "poses", "pairs",
-        ];
-        line.as_object_mut()
-            .unwrap()
-            .retain(|key, _| known.contains(&key.as_str()));
+        let known =
+            ["format", "version", "scene", "seed", "shapes", "bodies", "frame", "poses", "pairs"];
+        line.as_object_mut().unwrap().retain(|key, _| known.contains(&key.as_str()));
         lines.push(line.to_string());
     }
     std::fs::write(&old, lines.join("\n") + "\n").unwrap();
     let page = directory.path().join("old.html");
     view(&[text(&old), "--out", text(&page)]);
     let header = header(&page);
-    assert_eq!(
-        (&header["frames"], &header["truth"]),
-        (&5.into(), &true.into())
-    );
-    assert_eq!(
-        (&header["effects"], &header["runs"][0]["volumes"]),
-        (&Value::Null, &Value::Null)
-    );
+    assert_eq!((&header["frames"], &header["truth"]), (&5.into(), &true.into()));
+    assert_eq!((&header["effects"], &header["runs"][0]["volumes"]), (&Value::Null, &Value::Null));
     let message = refusal(&["view", text(&old), "--strategy", "sphere"]);
     assert!(message.contains("--beside STRATEGY"), "{message}");
 }

@@ -13,10 +13,7 @@ fn tetrahedron(corners: [[f64; 3]; 4], directions: DirectionSet) -> Shape {
     });
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let mesh = TriangleMesh::from_f32(&corners, &faces).unwrap();
-    let spec = ShapeSpec {
-        directions,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { directions, ..ShapeSpec::default() };
     Shape::build(&mesh, &spec).unwrap()
 }
 
@@ -49,11 +46,7 @@ impl TurnedParts {
                 [end, end.map(|x| -x), [0; 3], [0; 3]]
             });
         }
-        let (most, factor) = if kind.are_far {
-            (1 << 22, 1 << 22)
-        } else {
-            (60, 1)
-        };
+        let (most, factor) = if kind.are_far { (1 << 22, 1 << 22) } else { (60, 1) };
         let moved = [(); 2].map(|()| [(); 3].map(|()| factor * whole(most)));
         let at = at.map(|x| x + whole(1 << 16) as f64 * STEP);
         let [inner, other, outer] = [(); 3].map(|()| whole_rotation(random));
@@ -108,10 +101,7 @@ fn touching_corners_are_reported() {
         for at in [[0.0; 3], [1.0e6, -1.0e9, 0.0]] {
             for kind in [(false, false), (false, true), (true, false), (true, true)] {
                 let (are_segments, are_far) = kind;
-                let kind = Kind {
-                    are_segments,
-                    are_far,
-                };
+                let kind = Kind { are_segments, are_far };
                 let (count, mut left) = (60, 0);
                 for _ in 0..count {
                     left += usize::from(is_left(directions, at, kind, &mut random));
@@ -132,11 +122,8 @@ fn is_left(directions: DirectionSet, at: [f64; 3], kind: Kind, random: &mut Rand
     } else {
         ([(); 3].map(|()| random.below(4001) as f64 - 2000.0), 64.0)
     };
-    let (part, corner) = if kind.are_segments {
-        turned.corners[0]
-    } else {
-        turned.extreme(direction)
-    };
+    let (part, corner) =
+        if kind.are_segments { turned.corners[0] } else { turned.extreme(direction) };
     let cone = cone(direction, width, directions);
     let mut world = World::new(vec![turned.compound.shape().clone(), cone]).unwrap();
     let robot = world.insert(turned.body).unwrap();
@@ -144,10 +131,7 @@ fn is_left(directions: DirectionSet, at: [f64; 3], kind: Kind, random: &mut Rand
     world.cull().unwrap();
     let compounds = [(0, turned.compound)];
     let found = afresh(&world, &compounds);
-    assert!(
-        found.contains(&pair(robot, touching, [part, 0])),
-        "{corner:?} {direction:?} {kind:?}"
-    );
+    assert!(found.contains(&pair(robot, touching, [part, 0])), "{corner:?} {direction:?} {kind:?}");
     let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
     let distance = if kind.are_segments { 0.02 } else { 16.0 };
     let away = [0, 1, 2].map(|axis| corner[axis] + distance * direction[axis] / length);

@@ -22,11 +22,8 @@ fn followed_world_gives_fresh_pairs() {
     let mut build = |count| Compound::build("t", &shapes, &tree(count, 4, &mut random)).unwrap();
     let mut compounds = vec![(0, build(5)), (1, build(12))];
     let others = [build(9), build(3)];
-    let all = vec![
-        compounds[0].1.shape().clone(),
-        compounds[1].1.shape().clone(),
-        shapes[2].clone(),
-    ];
+    let all =
+        vec![compounds[0].1.shape().clone(), compounds[1].1.shape().clone(), shapes[2].clone()];
     let mut world = World::new(all).unwrap();
     let mut culler = PartCuller::new();
     for (number, compound) in &compounds {
@@ -90,10 +87,7 @@ fn followed_world_gives_fresh_pairs() {
         assert!(culler.body_pairs().eq(bodies), "round {round}");
     }
     assert!(kept > 1000 && most > 100, "{kept} kept, {most} at most");
-    assert!(
-        fewer > 20,
-        "{fewer} rounds with pairs of bodies without parts"
-    );
+    assert!(fewer > 20, "{fewer} rounds with pairs of bodies without parts");
 }
 
 /// A removed body is in no pair, though the world has not been culled since.
@@ -108,8 +102,5 @@ fn removed_bodies_have_no_parts() {
     assert_eq!(afresh(&world, &compounds).len(), 3 * 4);
     world.remove(a).unwrap();
     let all = [[0, 0], [0, 1], [1, 0], [1, 1]];
-    assert_eq!(
-        afresh(&world, &compounds),
-        all.map(|parts| pair(b, c, parts))
-    );
+    assert_eq!(afresh(&world, &compounds), all.map(|parts| pair(b, c, parts)));
 }

@@ -29,12 +29,8 @@ const SQUARE: i64 = 105;
 /// A step of all translations.
 const STEP: f64 = 1.0 / 1024.0;
 
-const DIRECTIONS: [DirectionSet; 4] = [
-    DirectionSet::K6,
-    DirectionSet::K14,
-    DirectionSet::K18,
-    DirectionSet::K26,
-];
+const DIRECTIONS: [DirectionSet; 4] =
+    [DirectionSet::K6, DirectionSet::K14, DirectionSet::K18, DirectionSet::K26];
 
 /// A quaternion of whole numbers with the squared norm [`SQUARE`].
 fn whole_rotation(random: &mut Random) -> [i64; 4] {
@@ -85,11 +81,7 @@ fn composed(body: &Body, part: &Part) -> (WidePose, [f64; 3]) {
     let turned = apply(turn(whole), steps);
     let t = [0, 1, 2].map(|axis| {
         let sum = body.translation[axis] + turned[axis] as f64 * STEP;
-        assert_eq!(
-            sum - body.translation[axis],
-            turned[axis] as f64 * STEP,
-            "exact"
-        );
+        assert_eq!(sum - body.translation[axis], turned[axis] as f64 * STEP, "exact");
         sum
     });
     (WidePose::new(q, t).unwrap(), t)
@@ -98,27 +90,13 @@ fn composed(body: &Body, part: &Part) -> (WidePose, [f64; 3]) {
 /// Meshes of all kinds: with faces on the axes, round, thin, and with a dent.
 fn shapes(directions: DirectionSet) -> Vec<Shape> {
     let forms = [
-        ProceduralShape::Box {
-            x: 1.0,
-            y: 2.0,
-            z: 1.5,
-        },
-        ProceduralShape::Icosphere {
-            radius: 0.75,
-            subdivisions: 1,
-        },
-        ProceduralShape::Needle {
-            length: 3.0,
-            radius: 0.25,
-            sides: 8,
-        },
+        ProceduralShape::Box { x: 1.0, y: 2.0, z: 1.5 },
+        ProceduralShape::Icosphere { radius: 0.75, subdivisions: 1 },
+        ProceduralShape::Needle { length: 3.0, radius: 0.25, sides: 8 },
         ProceduralShape::default_of("l-shape").unwrap(),
     ];
     let build = |form: ProceduralShape| {
-        let spec = ShapeSpec {
-            directions,
-            ..ShapeSpec::default()
-        };
+        let spec = ShapeSpec { directions, ..ShapeSpec::default() };
         Shape::build(&form.build().unwrap(), &spec).unwrap()
     };
     forms.map(build).into()
@@ -161,15 +139,9 @@ fn afresh(world: &World, compounds: &[(u32, Compound)]) -> Vec<PartPair> {
 
 fn pair(a: BodyId, b: BodyId, parts: [u32; 2]) -> PartPair {
     if a < b {
-        PartPair {
-            bodies: [a, b],
-            parts,
-        }
+        PartPair { bodies: [a, b], parts }
     } else {
         let [i, j] = parts;
-        PartPair {
-            bodies: [b, a],
-            parts: [j, i],
-        }
+        PartPair { bodies: [b, a], parts: [j, i] }
     }
 }

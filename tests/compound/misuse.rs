@@ -15,46 +15,24 @@ fn invalid_parts_are_named() {
     let part = Part::default();
     assert_eq!(refusal(&[]), "compound `arm` has no parts");
     let shape = Part { shape: 4, ..part };
-    assert_eq!(
-        refusal(&[part, shape]),
-        "part 1 of compound `arm`: shape 4 of 4"
-    );
+    assert_eq!(refusal(&[part, shape]), "part 1 of compound `arm`: shape 4 of 4");
     let rotation = [0.0; 4];
     let still = Part { rotation, ..part };
     let said = refusal(&[part, part, still]);
-    assert!(
-        said.starts_with("part 2 of compound `arm`: rotation"),
-        "{said}"
-    );
+    assert!(said.starts_with("part 2 of compound `arm`: rotation"), "{said}");
     let translation = [0.0, f64::NAN, 0.0];
-    let nowhere = Part {
-        translation,
-        ..part
-    };
+    let nowhere = Part { translation, ..part };
     let said = refusal(&[nowhere]);
-    assert!(
-        said.starts_with("part 0 of compound `arm`: translation"),
-        "{said}"
-    );
+    assert!(said.starts_with("part 0 of compound `arm`: translation"), "{said}");
     let translation = [2.0_f64.powi(60), 0.0, 0.0];
-    let far = Part {
-        translation,
-        ..part
-    };
-    assert!(
-        refusal(&[part, far]).contains("2⁶⁰"),
-        "{}",
-        refusal(&[part, far])
-    );
+    let far = Part { translation, ..part };
+    assert!(refusal(&[part, far]).contains("2⁶⁰"), "{}", refusal(&[part, far]));
 }
 
 #[test]
 fn other_shapes_are_refused() {
     let shapes = shapes(DirectionSet::K18);
-    let along = |x| Part {
-        translation: [x, 0.0, 0.0],
-        ..Part::default()
-    };
+    let along = |x| Part { translation: [x, 0.0, 0.0], ..Part::default() };
     let compound = Compound::build("arm", &shapes, &[along(0.0), along(1.5)]).unwrap();
     assert_eq!(compound.parts(), 2);
     let mut world = World::new(vec![shapes[0].clone(), compound.shape().clone()]).unwrap();

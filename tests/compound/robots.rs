@@ -34,10 +34,7 @@ impl Scene {
             .collect();
         let mut all: Vec<Shape> = compounds.iter().map(|(_, c)| c.shape().clone()).collect();
         all.push(shapes[0].clone());
-        let settings = CullSettings {
-            strategy,
-            ..CullSettings::default()
-        };
+        let settings = CullSettings { strategy, ..CullSettings::default() };
         let mut world = World::with(all, &Culler::builder().settings(&settings)).unwrap();
         for number in 0..40 {
             world.insert(body(number, at, random)).unwrap();
@@ -90,11 +87,7 @@ fn body(number: usize, at: [f64; 3], random: &mut Random) -> Body {
     let near = |x: f64, random: &mut Random| x + (random.below(16_384) as f64 - 8_192.0) * STEP;
     Body {
         shape: (number % 3) as u32,
-        motion: if number.is_multiple_of(5) {
-            Motion::Fixed
-        } else {
-            Motion::Dynamic
-        },
+        motion: if number.is_multiple_of(5) { Motion::Fixed } else { Motion::Dynamic },
         rotation: whole_rotation(random).map(|x| x as f32),
         translation: at.map(|x| near(x, random)),
         ..Body::default()
@@ -111,17 +104,10 @@ fn check(scene: &Scene) {
     let found = afresh(&scene.world, &scene.compounds);
     assert!(found.is_sorted_by(|a, b| a < b), "sorted, and each once");
     let wanted = scene.truth();
-    let missed = wanted
-        .iter()
-        .find(|pair| found.binary_search(pair).is_err());
+    let missed = wanted.iter().find(|pair| found.binary_search(pair).is_err());
     assert_eq!(missed, None, "missed");
     assert!(wanted.len() > 100, "{} pairs", wanted.len());
-    assert!(
-        found.len() <= 2 * wanted.len(),
-        "{} of {}",
-        wanted.len(),
-        found.len()
-    );
+    assert!(found.len() <= 2 * wanted.len(), "{} of {}", wanted.len(), found.len());
 }
 
 /// Parts that meet are reported, and few others.

@@ -13,14 +13,8 @@ fn volumes(shape: &Shape) -> ([Ball; 2], Slabs) {
         DirectionSet::K18 => sdop_reference::DirectionSet::K18,
         DirectionSet::K26 => sdop_reference::DirectionSet::K26,
     };
-    let ball = Ball {
-        centre: shape.ball.centre,
-        radius: shape.ball.radius,
-    };
-    let reach = Ball {
-        centre: [0.0; 3],
-        radius: shape.reach,
-    };
+    let ball = Ball { centre: shape.ball.centre, radius: shape.ball.radius };
+    let reach = Ball { centre: [0.0; 3], radius: shape.reach };
     let slabs = Slabs {
         directions,
         basis: shape.ordop.basis.columns,
@@ -72,37 +66,20 @@ fn margins_grow_all_parts() {
         ..ShapeSpec::default()
     };
     let cube = Shape::build(&cube, &spec).unwrap();
-    let away = Part {
-        translation: [-8.0; 3],
-        ..Part::default()
-    };
+    let away = Part { translation: [-8.0; 3], ..Part::default() };
     let parts = [away, Part::default()];
     let compound = Compound::build("two", std::slice::from_ref(&cube), &parts).unwrap();
-    for (margins, is_met) in [
-        ([0.25, 0.25], true),
-        ([0.5, 0.0], true),
-        ([0.1, 0.1], false),
-    ] {
+    for (margins, is_met) in [([0.25, 0.25], true), ([0.5, 0.0], true), ([0.1, 0.1], false)] {
         let mut world = World::new(vec![compound.shape().clone(), cube.clone()]).unwrap();
         let [margin, other_margin] = margins;
-        let body = Body {
-            margin,
-            ..Body::default()
-        };
+        let body = Body { margin, ..Body::default() };
         let two = world.insert(body).unwrap();
         // The corners are 0.25·√3 apart, 0.43.
-        let body = Body {
-            margin: other_margin,
-            ..Body::at(1, UNTURNED, [1.25; 3])
-        };
+        let body = Body { margin: other_margin, ..Body::at(1, UNTURNED, [1.25; 3]) };
         let one = world.insert(body).unwrap();
         world.cull().unwrap();
         let found = afresh(&world, &[(0, compound.clone())]);
-        let wanted: &[PartPair] = if is_met {
-            &[pair(two, one, [1, 0])]
-        } else {
-            &[]
-        };
+        let wanted: &[PartPair] = if is_met { &[pair(two, one, [1, 0])] } else { &[] };
         assert_eq!(found, wanted, "{margins:?}");
     }
 }

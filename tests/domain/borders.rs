@@ -35,37 +35,21 @@ fn bodies(of: impl IntoIterator<Item = (u32, [f32; 3])>) -> Bodies {
 /// nothing that meets is missing.
 fn judge(what: &str, shapes: &[Shape], frames: &[Bodies]) {
     let judge = ExactJudge::new(shapes).unwrap();
-    let truth: Vec<_> = frames
-        .iter()
-        .map(|poses| judge.meetings(poses, None).unwrap())
-        .collect();
+    let truth: Vec<_> = frames.iter().map(|poses| judge.meetings(poses, None).unwrap()).collect();
     // Every strategy and finder on eight ranks, and each on one more number of them in turn.
     let mut others = [2, 13, 3, 1].into_iter().cycle();
-    for &strategy in Strategy::ALL
-        .iter()
-        .filter(|s| s.scheme().culls() && !s.scheme().has_budget())
+    for &strategy in Strategy::ALL.iter().filter(|s| s.scheme().culls() && !s.scheme().has_budget())
     {
         for &finder in Finder::ALL {
-            let base = CullSettings {
-                pairs: finder,
-                ..CullSettings::default()
-            };
+            let base = CullSettings { pairs: finder, ..CullSettings::default() };
             let settings = settings(strategy, &base, frames[0].len());
             let alone = pairs_alone(shapes, frames, &settings);
             for ranks in [8].into_iter().chain(others.next()) {
                 let shared = pairs_on(ranks, shapes, frames, &settings);
-                assert_eq!(
-                    shared, alone,
-                    "{what}: {strategy} over {finder} on {ranks} ranks"
-                );
+                assert_eq!(shared, alone, "{what}: {strategy} over {finder} on {ranks} ranks");
                 for (shared, truth) in shared.iter().zip(&truth) {
-                    let missed = truth
-                        .iter()
-                        .find(|pair| shared.binary_search(pair).is_err());
-                    assert_eq!(
-                        missed, None,
-                        "{what}: {strategy} over {finder} on {ranks} ranks"
-                    );
+                    let missed = truth.iter().find(|pair| shared.binary_search(pair).is_err());
+                    assert_eq!(missed, None, "{what}: {strategy} over {finder} on {ranks} ranks");
                 }
             }
         }
@@ -80,11 +64,7 @@ fn touching_across_a_cut() {
     let (step, n) = (2.0 * ball.ball.radius, 24);
     for axis in 0..3 {
         let at = |i: i32| std::array::from_fn(|k| if k == axis { step * i as f32 } else { 0.0 });
-        judge(
-            "touching",
-            std::slice::from_ref(&ball),
-            &[bodies((0..n).map(|i| (0, at(i))))],
-        );
+        judge("touching", std::slice::from_ref(&ball), &[bodies((0..n).map(|i| (0, at(i))))]);
     }
 }
 
@@ -94,12 +74,8 @@ fn touching_across_a_cut() {
 fn at_a_corner_of_eight() {
     let half = 0.5_f32;
     let cube = shape("box", libm::sqrtf(3.0) * half);
-    let lattice = (0..64).map(|i| {
-        (
-            0,
-            [i % 4, i / 4 % 4, i / 16].map(|x| (2.0 * x as f32 - 3.0) * half),
-        )
-    });
+    let lattice =
+        (0..64).map(|i| (0, [i % 4, i / 4 % 4, i / 16].map(|x| (2.0 * x as f32 - 3.0) * half)));
     judge("corners", &[cube], &[bodies(lattice)]);
 }
 
@@ -107,18 +83,10 @@ fn at_a_corner_of_eight() {
 /// some.
 #[test]
 fn a_giant_over_all_domains() {
-    let shapes = [
-        shape("icosphere", 0.5),
-        shape("l-shape", 40.0),
-        shape("box", 9.0),
-    ];
+    let shapes = [shape("icosphere", 0.5), shape("l-shape", 40.0), shape("box", 9.0)];
     let small = support::random_bodies(3, 120, 40.0, 1);
     let small = small.translation.into_iter().map(|at| (0, at));
-    let giants = [
-        (1, [20.0, 20.0, 20.0]),
-        (2, [3.0, 20.0, 20.0]),
-        (2, [37.0, 20.0, 20.0]),
-    ];
+    let giants = [(1, [20.0, 20.0, 20.0]), (2, [3.0, 20.0, 20.0]), (2, [37.0, 20.0, 20.0])];
     let first = bodies(small.clone().chain(giants));
     let last = bodies(giants.into_iter().chain(small));
     judge("the giant has the highest number", &shapes, &[first]);
@@ -133,16 +101,8 @@ fn empty_ranks_are_fine() {
     judge("one point", &shapes, &[bodies(one_point)]);
     let on_a_plane =
         (0..30).map(|i| (i % 2, [if i < 20 { 1.0 } else { 2.0 }, 0.0, i as f32 * 0.1]));
-    judge(
-        "equal coordinates at the cut",
-        &shapes,
-        &[bodies(on_a_plane)],
-    );
-    judge(
-        "three bodies",
-        &shapes,
-        &[bodies([(0, [0.0; 3]), (0, [0.5; 3]), (1, [9.0; 3])])],
-    );
+    judge("equal coordinates at the cut", &shapes, &[bodies(on_a_plane)]);
+    judge("three bodies", &shapes, &[bodies([(0, [0.0; 3]), (0, [0.5; 3]), (1, [9.0; 3])])]);
     judge("one body", &shapes, &[bodies([(0, [0.0; 3])])]);
 }
 
@@ -204,17 +164,9 @@ fn near_touching_pairs_on_either_side() {
     };
     let all: Vec<_> = (0..96).flat_map(pair).collect();
     // A crowd on either side keeps the plane between 0 and 2.
-    let crowd = (0..200).map(|i| {
-        (
-            0,
-            [if i % 2 == 0 { -90.0 } else { 90.0 }, 0.3 * i as f32, 40.0],
-        )
-    });
-    judge(
-        "near-touching",
-        &[ball],
-        &[bodies(all.into_iter().chain(crowd))],
-    );
+    let crowd =
+        (0..200).map(|i| (0, [if i % 2 == 0 { -90.0 } else { 90.0 }, 0.3 * i as f32, 40.0]));
+    judge("near-touching", &[ball], &[bodies(all.into_iter().chain(crowd))]);
 }
 /// Pairs that stand as far apart as the skin lets them be forgotten, and then come to touch, each
 /// by a little less than a skin: the ghosts found before must have been those that are needed now.
@@ -228,27 +180,11 @@ fn pairs_approach_by_a_skin() {
         let pair = |i: usize| {
             let (y, z) = ((i % 8) as f32 * 5.0, (i / 8) as f32 * 5.0);
             let (left, right) = ((0, [-reach - apart, y, z]), (0, [reach + apart, y, z]));
-            if i.is_multiple_of(2) {
-                [left, right]
-            } else {
-                [right, left]
-            }
+            if i.is_multiple_of(2) { [left, right] } else { [right, left] }
         };
-        let crowd = |i: usize| {
-            (
-                0,
-                [
-                    if i.is_multiple_of(2) { -90.0 } else { 90.0 },
-                    0.3 * i as f32,
-                    40.0,
-                ],
-            )
-        };
+        let crowd =
+            |i: usize| (0, [if i.is_multiple_of(2) { -90.0 } else { 90.0 }, 0.3 * i as f32, 40.0]);
         bodies((0..24).flat_map(pair).chain((0..200).map(crowd)))
     };
-    judge(
-        "a skin each",
-        std::slice::from_ref(&ball),
-        &[frame(step), frame(0.0)],
-    );
+    judge("a skin each", std::slice::from_ref(&ball), &[frame(step), frame(0.0)]);
 }

@@ -22,10 +22,7 @@ fn hard_cases_match_on_ranks() {
         let cases = group.cases(DirectionSet::K18, Axes::Principal).unwrap();
         for frames in &cases.runs {
             for (strategy, finder) in ways {
-                let base = CullSettings {
-                    pairs: finder,
-                    ..CullSettings::default()
-                };
+                let base = CullSettings { pairs: finder, ..CullSettings::default() };
                 let settings = settings(strategy, &base, frames[0].len());
                 let shapes = &cases.shapes.built;
                 let alone = pairs_alone(shapes, frames, &settings);

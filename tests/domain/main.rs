@@ -58,10 +58,7 @@ fn scene_of(shapes: &[Shape], bodies: &Bodies, settings: &CullSettings) -> Scene
         dt: 1.0,
         side: None,
         shapes: shapes.to_vec(),
-        velocities: Velocities {
-            linear: still.clone(),
-            angular: still,
-        },
+        velocities: Velocities { linear: still.clone(), angular: still },
         bodies: bodies.clone(),
         fine: Default::default(),
         share: None,
@@ -76,12 +73,7 @@ fn share_of(scene: &Scene, rank: usize, ranks: usize) -> Scene {
     let all = scene.share();
     let share = Share::of_rank(rank, ranks, all.all, all.moving);
     let held = share.held.clone();
-    let Bodies {
-        shape,
-        dynamic,
-        rotation,
-        translation,
-    } = &scene.bodies;
+    let Bodies { shape, dynamic, rotation, translation } = &scene.bodies;
     Scene {
         bodies: Bodies {
             shape: shape[held.clone()].to_vec(),
@@ -110,9 +102,7 @@ fn pairs_on(
     let each = on_ranks(ranks, |net| {
         let share = share_of(&scene, net.rank(), ranks);
         let mut rank = Rank::new(net, share, Tier::detect(), 1).unwrap();
-        let frames = frames
-            .iter()
-            .map(|poses| rank.frame_at(poses).unwrap().pairs.to_vec());
+        let frames = frames.iter().map(|poses| rank.frame_at(poses).unwrap().pairs.to_vec());
         frames.collect::<Vec<_>>()
     });
     let sorted = |frame: usize| {
@@ -125,9 +115,7 @@ fn pairs_on(
 
 /// The same in one process.
 fn pairs_alone(shapes: &[Shape], frames: &[Bodies], settings: &CullSettings) -> Vec<Vec<[u32; 2]>> {
-    let culler = Culler::builder()
-        .settings(settings)
-        .build(shapes, &frames[0]);
+    let culler = Culler::builder().settings(settings).build(shapes, &frames[0]);
     let mut culler = culler.unwrap();
     let cull = |poses: &Bodies| culler.cull(poses).unwrap().sorted();
     frames.iter().map(cull).collect()

@@ -55,10 +55,7 @@ fn scenes() -> [(&'static str, Scene); 5] {
     let plane = "{ plane = { thickness = 1.0 } }";
     [
         ("uniform", scene("1.0", "\"uniform\"", "partners = 2.5")),
-        (
-            "mixed",
-            scene("[0.25, 4.0]", "\"uniform\"", "partners = 2.5"),
-        ),
+        ("mixed", scene("[0.25, 4.0]", "\"uniform\"", "partners = 2.5")),
         ("clustered", scene("0.5", clusters, "side = 40.0")),
         ("plane", scene("0.5", plane, "side = 20.0")),
         ("straddling", straddling()),
@@ -130,10 +127,7 @@ fn view_cone_matches_on_ranks() {
         let text = format!("interest = {cone}");
         scene.cull.interest = toml::from_str::<CullSettings>(&text).unwrap().interest;
         let whole = alone(&scene);
-        assert!(
-            whole.counters.ordop.tests < whole.counters.sphere.hits,
-            "some are of no interest"
-        );
+        assert!(whole.counters.ordop.tests < whole.counters.sphere.hits, "some are of no interest");
         for ranks in RANKS {
             let shared = on(ranks, &scene).unwrap().whole;
             assert_eq!(shared.pairs_sha256, whole.pairs_sha256, "{cone} on {ranks}");
@@ -189,14 +183,8 @@ fn shares_partition_the_bodies() {
                 assert_eq!(part.bodies.shape, whole.bodies.shape[held.clone()]);
                 assert_eq!(part.bodies.dynamic, whole.bodies.dynamic[held.clone()]);
                 assert_eq!(part.bodies.rotation, whole.bodies.rotation[held.clone()]);
-                assert_eq!(
-                    part.bodies.translation,
-                    whole.bodies.translation[held.clone()]
-                );
-                assert_eq!(
-                    part.velocities.linear,
-                    whole.velocities.linear[held.clone()]
-                );
+                assert_eq!(part.bodies.translation, whole.bodies.translation[held.clone()]);
+                assert_eq!(part.velocities.linear, whole.velocities.linear[held.clone()]);
                 assert_eq!(part.velocities.angular, whole.velocities.angular[held]);
                 assert_eq!(part.shapes.len(), whole.shapes.len());
                 assert_eq!(part.side, whole.side);
@@ -217,12 +205,8 @@ fn seeding_by_body_is_independent() {
     let (few, many) = (file(10).build().unwrap(), file(100).build().unwrap());
     assert_eq!(few.bodies.translation, many.bodies.translation[..10]);
     assert_eq!(few.velocities.linear, many.velocities.linear[..10]);
-    let mut different: Vec<_> = many
-        .bodies
-        .translation
-        .iter()
-        .map(|t| t.map(f32::to_bits))
-        .collect();
+    let mut different: Vec<_> =
+        many.bodies.translation.iter().map(|t| t.map(f32::to_bits)).collect();
     different.sort_unstable();
     different.dedup();
     assert_eq!(different.len(), 100);
@@ -237,10 +221,9 @@ fn global_orders_are_rejected_on_ranks() {
     scene.cull.budget = Some(sdop::settings::Budget::Tests(10));
     assert_eq!(refusal(&scene), "strategy s-dop-time-critical on 2 ranks");
     assert!(on(1, &scene).is_ok());
-    for (name, line) in [
-        ("response", "response = \"elastic\""),
-        ("rest", "rest = { speed = 1, after = 1 }"),
-    ] {
+    for (name, line) in
+        [("response", "response = \"elastic\""), ("rest", "rest = { speed = 1, after = 1 }")]
+    {
         let scene = build(&format!(
             "name = \"r\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0]]\n[effects]\n{line}\n",
         ));

@@ -14,9 +14,7 @@ use sdop_bench::scene::{Scene, SceneFile};
 fn scene(text: &str) -> Scene {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
     let text = format!("name = \"e\"\nframes = 10\ndt = 0.125\n{text}");
-    SceneFile::parse(&text, "e.toml", &directory)
-        .and_then(|file| file.build())
-        .unwrap()
+    SceneFile::parse(&text, "e.toml", &directory).and_then(|file| file.build()).unwrap()
 }
 
 /// Forty moving and ten static bodies of two sizes in a box of side 12, with the given `[effects]`.
@@ -51,11 +49,7 @@ fn after(scene: &Scene, steps: usize) -> (Bodies, Velocities) {
 /// there; the walls of a crowd that stays inside change nothing, and none of it is slow enough to
 /// rest.
 const EACH: &[(&str, &str, Option<Column>)] = &[
-    (
-        "gravity",
-        "acceleration = [0, 0, -1]",
-        Some(Column::Velocity),
-    ),
+    ("gravity", "acceleration = [0, 0, -1]", Some(Column::Velocity)),
     ("brownian", "share = 0.5, speed = 1", Some(Column::Velocity)),
     ("response", "\"elastic\"", Some(Column::Velocity)),
     ("rest", "speed = 0.5, after = 0.5", None),
@@ -124,10 +118,7 @@ fn only_listed_effects_run() {
         for (column, is_changed) in [
             (Column::Translation, bodies.translation != start.translation),
             (Column::Rotation, bodies.rotation != start.rotation),
-            (
-                Column::Velocity,
-                velocities.linear != scene.velocities.linear,
-            ),
+            (Column::Velocity, velocities.linear != scene.velocities.linear),
         ] {
             assert_eq!(is_changed, changes == Some(column), "{name}: {column:?}");
         }
@@ -143,12 +134,7 @@ fn nothing_listed_is_nothing_done() {
     effects.step(&mut bodies).unwrap();
     assert_eq!(bodies, scene.bodies);
     assert_eq!(*effects.velocities(), scene.velocities);
-    assert!(
-        effects
-            .reports()
-            .iter()
-            .all(|r| !r.listed && r.steps == 0 && r.seconds == 0.0)
-    );
+    assert!(effects.reports().iter().all(|r| !r.listed && r.steps == 0 && r.seconds == 0.0));
 }
 
 #[test]
@@ -172,10 +158,7 @@ fn static_bodies_stay_to_the_bit() {
 #[test]
 fn motion_adds_dt_times_velocity() {
     let scene = single("[0, 0, 0, 1, 1, 2, 3]", "[0.5, -8, 0.1]", "motion = true");
-    assert_eq!(
-        after(&scene, 1).0.translation[0],
-        [1.0625, 1.0, 3.0 + 0.125 * 0.1]
-    );
+    assert_eq!(after(&scene, 1).0.translation[0], [1.0625, 1.0, 3.0 + 0.125 * 0.1]);
 }
 
 #[test]
@@ -186,10 +169,7 @@ fn walls_mirror_and_turn() {
     let specular = single(pose, "[8, -4, 2]", "motion = true\nwalls = \"specular\"");
     let w = limit(&specular);
     let (bodies, velocities) = after(&specular, 1);
-    assert_eq!(
-        bodies.translation[0],
-        [2.0 * w - 4.5, -2.0 * w + 4.25, 1.25]
-    );
+    assert_eq!(bodies.translation[0], [2.0 * w - 4.5, -2.0 * w + 4.25, 1.25]);
     assert_eq!(velocities.linear[0], [-8.0, 4.0, 2.0]);
     let reverse = single(pose, "[8, -1, 2]", "motion = true\nwalls = \"reverse\"");
     let (bodies, velocities) = after(&reverse, 1);
@@ -206,9 +186,7 @@ fn walls_mirror_and_turn() {
 #[test]
 fn walls_keep_spheres_and_speeds() {
     for walls in ["specular", "reverse"] {
-        let scene = crowd(&format!(
-            "motion = true\nwalls = \"{walls}\"\nspin = {{ rate = 2 }}"
-        ));
+        let scene = crowd(&format!("motion = true\nwalls = \"{walls}\"\nspin = {{ rate = 2 }}"));
         let mut bodies = scene.bodies.clone();
         let mut effects = scene.start_effects().unwrap();
         for step in 0..400 {
@@ -251,21 +229,15 @@ fn spin_keeps_rate_and_norm() {
         let angle = 2.0 * (0.5 * 0.125 * rate.length()).atan();
         let expected = glam::DQuat::from_axis_angle(rate.normalize(), angle);
         assert!(turn.dot(expected).abs() > 1.0 - 1e-12, "body {body}");
-        let norm: f64 = bodies.rotation[body]
-            .iter()
-            .map(|x| f64::from(*x).powi(2))
-            .sum();
+        let norm: f64 = bodies.rotation[body].iter().map(|x| f64::from(*x).powi(2)).sum();
         assert!((norm - 1.0).abs() < 2e-7, "body {body}: {norm}");
     }
 }
 
 #[test]
 fn gravity_accelerates_and_turns() {
-    let constant = single(
-        "[0, 0, 0, 1, 0, 0, 0]",
-        "[1, 0, 0]",
-        "gravity = { acceleration = [0, 0, -8] }",
-    );
+    let constant =
+        single("[0, 0, 0, 1, 0, 0, 0]", "[1, 0, 0]", "gravity = { acceleration = [0, 0, -8] }");
     assert_eq!(after(&constant, 5).1.linear[0], [1.0, 0.0, -5.0]);
     let short = single("[0, 0, 0, 1, 0, 0, 0]", "[1, 0, 0]", "gravity = [0, 0, -8]");
     assert_eq!(after(&short, 5).1.linear[0], [1.0, 0.0, -5.0]);
@@ -276,18 +248,12 @@ fn gravity_accelerates_and_turns() {
         "gravity = { acceleration = [0, 0, -8], period = 1, axis = [3, 0, 0] }",
     );
     let gain = |step: usize| {
-        let (a, b) = (
-            after(&turning, step).1.linear[0],
-            after(&turning, step + 1).1.linear[0],
-        );
+        let (a, b) = (after(&turning, step).1.linear[0], after(&turning, step + 1).1.linear[0]);
         [0, 1, 2].map(|axis| b[axis] - a[axis])
     };
-    for (step, expected) in [
-        (0, [0.0, 0.0, -1.0]),
-        (2, [0.0, 1.0, 0.0]),
-        (4, [0.0, 0.0, 1.0]),
-        (6, [0.0, -1.0, 0.0]),
-    ] {
+    for (step, expected) in
+        [(0, [0.0, 0.0, -1.0]), (2, [0.0, 1.0, 0.0]), (4, [0.0, 0.0, 1.0]), (6, [0.0, -1.0, 0.0])]
+    {
         let found = gain(step);
         assert!(
             (0..3).all(|axis| (found[axis] - expected[axis]).abs() < 1e-6),
@@ -295,10 +261,7 @@ fn gravity_accelerates_and_turns() {
         );
     }
     let round = after(&turning, 8).1.linear[0];
-    assert!(
-        round.iter().all(|v| v.abs() < 1e-6),
-        "a full turn adds up to nothing: {round:?}"
-    );
+    assert!(round.iter().all(|v| v.abs() < 1e-6), "a full turn adds up to nothing: {round:?}");
 }
 
 #[test]
@@ -315,25 +278,14 @@ fn brownian_kicks_its_share() {
         "{}",
         report(&effects, "brownian").changed
     );
-    for (body, v) in effects
-        .velocities()
-        .linear
-        .iter()
-        .enumerate()
-        .filter(|(body, _)| !(25..35).contains(body))
+    for (body, v) in
+        effects.velocities().linear.iter().enumerate().filter(|(body, _)| !(25..35).contains(body))
     {
         let speed = v.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
-        assert!(
-            (4.999..6.001).contains(&speed),
-            "body {body} was kicked: {speed}"
-        );
+        assert!((4.999..6.001).contains(&speed), "body {body} was kicked: {speed}");
     }
-    let kicked = |v: &[[f32; 3]]| {
-        v.iter()
-            .zip(&scene.velocities.linear)
-            .filter(|(a, b)| a != b)
-            .count()
-    };
+    let kicked =
+        |v: &[[f32; 3]]| v.iter().zip(&scene.velocities.linear).filter(|(a, b)| a != b).count();
     assert!((1..=4).contains(&kicked(&after(&scene, 1).1.linear)));
 }
 
@@ -346,17 +298,10 @@ fn leaving_body_is_named() {
     let mut effects = scene.start_effects().unwrap();
     let error = effects.step(&mut bodies).unwrap_err();
     assert_eq!(error.body, 37);
-    assert!(
-        error.to_string().starts_with("body 37: translation ["),
-        "{error}"
-    );
+    assert!(error.to_string().starts_with("body 37: translation ["), "{error}");
     let runaway = single("[0, 0, 0, 1, 0, 0, 0]", "[1e18, 0, 0]", "motion = true");
     let mut bodies = runaway.bodies.clone();
     let mut effects = runaway.start_effects().unwrap();
     let failed = (1..=20).find(|_| effects.step(&mut bodies).is_err());
-    assert_eq!(
-        failed,
-        Some(10),
-        "2^60 lies between nine and ten steps of 1.25e17"
-    );
+    assert_eq!(failed, Some(10), "2^60 lies between nine and ten steps of 1.25e17");
 }

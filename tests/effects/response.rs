@@ -13,10 +13,7 @@ fn respond(scene: &Scene) -> (Vec<[f32; 3]>, usize) {
     let sphere = |bodies: &Bodies, body: usize| {
         let ball = scene.shapes[bodies.shape[body] as usize].ball;
         assert_eq!(ball.centre, [0.0; 3]);
-        (
-            glam::DVec3::from(bodies.translation[body].map(f64::from)),
-            f64::from(ball.radius),
-        )
+        (glam::DVec3::from(bodies.translation[body].map(f64::from)), f64::from(ball.radius))
     };
     let mut exchanges = 0;
     for i in 0..bodies.len() {
@@ -32,11 +29,7 @@ fn respond(scene: &Scene) -> (Vec<[f32; 3]>, usize) {
                 continue;
             }
             let mass = |body: usize, r: f64| {
-                if bodies.dynamic[body] {
-                    r.powi(3)
-                } else {
-                    1e300
-                }
+                if bodies.dynamic[body] { r.powi(3) } else { 1e300 }
             };
             let (mi, mj) = (mass(i, ri), mass(j, rj));
             let impulse = 2.0 * approach / n.dot(n) / (1.0 / mi + 1.0 / mj) * n;
@@ -102,12 +95,6 @@ fn response_keeps_momentum_and_energy() {
     // Each exchange rounds six velocities by 2⁻²⁴ of their size; roundings add up like a random
     // walk at most.
     let scale = changed as f64 * 2.0_f64.powi(-24);
-    assert!(
-        (momentum_now - momentum).length() < scale * 10.0,
-        "{momentum} {momentum_now}"
-    );
-    assert!(
-        (energy_now / energy - 1.0).abs() < scale,
-        "{energy} {energy_now}"
-    );
+    assert!((momentum_now - momentum).length() < scale * 10.0, "{momentum} {momentum_now}");
+    assert!((energy_now / energy - 1.0).abs() < scale, "{energy} {energy_now}");
 }

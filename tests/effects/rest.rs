@@ -17,11 +17,7 @@ struct Expected {
 
 impl Expected {
     fn new(scene: &Scene, speed: f64, steps: u32) -> Self {
-        let mut expected = Self {
-            speed,
-            steps,
-            slow_steps: vec![0; scene.bodies.len()],
-        };
+        let mut expected = Self { speed, steps, slow_steps: vec![0; scene.bodies.len()] };
         for body in 0..scene.bodies.len() {
             expected.slow_steps[body] =
                 u32::from(expected.is_slow(&scene.velocities, body)) * steps;
@@ -38,19 +34,15 @@ impl Expected {
         let sphere = |body: usize| {
             let ball = scene.shapes[bodies.shape[body] as usize].ball;
             assert_eq!(ball.centre, [0.0; 3]);
-            (
-                DVec3::from(bodies.translation[body].map(f64::from)),
-                f64::from(ball.radius),
-            )
+            (DVec3::from(bodies.translation[body].map(f64::from)), f64::from(ball.radius))
         };
         let touch = |i: usize, j: usize| {
             let ((ci, ri), (cj, rj)) = (sphere(i), sphere(j));
             (ci - cj).length_squared() <= (ri + rj) * (ri + rj)
         };
         let dynamic: Vec<usize> = (0..bodies.len()).filter(|&b| bodies.dynamic[b]).collect();
-        let (slow, fast): (Vec<usize>, Vec<usize>) = dynamic
-            .iter()
-            .partition(|&&body| self.is_slow(velocities, body));
+        let (slow, fast): (Vec<usize>, Vec<usize>) =
+            dynamic.iter().partition(|&&body| self.is_slow(velocities, body));
         let mut moves = vec![false; bodies.len()];
         for &body in &fast {
             self.slow_steps[body] = 0;
@@ -130,10 +122,7 @@ fn slowing_body_falls_asleep() {
     );
     // Speeds 2.75, 2.25 … 0.75, 0.25, −0.25, −0.75: the fourth slow step is the eighth of all.
     let z = |steps: usize| after(&scene, steps).0.translation[0][2];
-    assert_eq!(
-        z(7),
-        0.125 * (2.75 + 2.25 + 1.75 + 1.25 + 0.75 + 0.25 - 0.25)
-    );
+    assert_eq!(z(7), 0.125 * (2.75 + 2.25 + 1.75 + 1.25 + 0.75 + 0.25 - 0.25));
     for steps in [8, 9, 50] {
         let (bodies, velocities) = after(&scene, steps);
         assert_eq!(bodies.translation[0][2].to_bits(), z(7).to_bits());

@@ -45,11 +45,7 @@ fn judge(scene: &Scene, strategies: &[Strategy], what: &str) {
         for &finder in Finder::ALL {
             for tier in Tier::available() {
                 let found = [pairs(scene, strategy, finder, tier)];
-                compare(
-                    &found,
-                    &wanted,
-                    &format!("{what}, {strategy}, {finder}, {tier}"),
-                );
+                compare(&found, &wanted, &format!("{what}, {strategy}, {finder}, {tier}"));
             }
         }
     }

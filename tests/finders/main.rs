@@ -81,16 +81,9 @@ fn advance(bodies: &mut Bodies, step: f32, rng: &mut ChaCha8Rng) {
 /// The sorted pairs of some frames.
 fn found(scene: &Scene, strategy: Strategy, finder: Finder, frames: usize) -> Vec<Vec<[u32; 2]>> {
     let mut found = Vec::new();
-    run(
-        scene,
-        &settings(strategy, finder),
-        Tier::detect(),
-        1,
-        frames,
-        |culler| {
-            found.push(culler.pairs().sorted());
-        },
-    );
+    run(scene, &settings(strategy, finder), Tier::detect(), 1, frames, |culler| {
+        found.push(culler.pairs().sorted());
+    });
     found
 }
 
@@ -104,11 +97,7 @@ fn compare(found: &[Vec<[u32; 2]>], wanted: &[Vec<[u32; 2]>], what: &str) {
             "{what}, frame {frame}: lost {count} of {}: {some:?}",
             wanted.len()
         );
-        assert_eq!(
-            found.len(),
-            wanted.len(),
-            "{what}, frame {frame}: reported twice"
-        );
+        assert_eq!(found.len(), wanted.len(), "{what}, frame {frame}: reported twice");
     }
 }
 
@@ -120,11 +109,7 @@ fn every_finder_matches_all_pairs() {
             let wanted = found(&scene, strategy, Finder::AllPairs, 4);
             for &finder in Finder::ALL {
                 let found = found(&scene, strategy, finder, 4);
-                compare(
-                    &found,
-                    &wanted,
-                    &format!("{}, {strategy}, {finder}", scene.name),
-                );
+                compare(&found, &wanted, &format!("{}, {strategy}, {finder}", scene.name));
             }
         }
     }
@@ -143,11 +128,7 @@ fn near_touching_pairs_are_found() {
             let found = |scene| found(scene, Strategy::Sphere, finder, 1);
             compare(&found(&scene), &wanted, &format!("{finder}, seed {seed}"));
             let wanted = self::found(&unequal, Strategy::Sphere, Finder::AllPairs, 1);
-            compare(
-                &found(&unequal),
-                &wanted,
-                &format!("{finder}, unequal, seed {seed}"),
-            );
+            compare(&found(&unequal), &wanted, &format!("{finder}, unequal, seed {seed}"));
         }
     }
 }
@@ -197,11 +178,7 @@ fn pairs_at_table_end_are_found() {
                 let along = [1.9 * k + 1.2 * second, 1.5 * second];
                 let by = uniform(rng, if i < 3 * rows { 0.01 } else { 1.2 });
                 let start = starts[i % 3];
-                [
-                    start[0] + along[0] + by[0],
-                    start[1] + along[1] + by[1],
-                    start[2] + by[2],
-                ]
+                [start[0] + along[0] + by[0], start[1] + along[1] + by[1], start[2] + by[2]]
             });
             scene.bodies.dynamic.fill(true);
             for (i, shape) in scene.bodies.shape.iter_mut().enumerate() {
@@ -251,12 +228,8 @@ fn groups_filter_every_list() {
     let scene = Scene::new("groups", &[0.5, 1.0, 4.0], 500, |_, rng| uniform(rng, 22.0));
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     let mut bits = || rng.random_range(0..16u32) & rng.random_range(0..16u32);
-    let groups: Vec<Groups> = (0..500)
-        .map(|_| Groups {
-            member: bits(),
-            mask: bits() | 1,
-        })
-        .collect();
+    let groups: Vec<Groups> =
+        (0..500).map(|_| Groups { member: bits(), mask: bits() | 1 }).collect();
     let may = |&[a, b]: &[u32; 2]| {
         let (a, b) = (groups[a as usize], groups[b as usize]);
         a.member & b.mask != 0 && b.member & a.mask != 0
@@ -327,28 +300,17 @@ fn auto_equals_its_choice() {
 /// Lists and counts are the same in every tier and on every number of threads.
 #[test]
 fn tiers_and_threads_match() {
-    for scene in hard_scenes()
-        .iter()
-        .filter(|scene| scene.bodies.shape.len() >= 300)
-    {
+    for scene in hard_scenes().iter().filter(|scene| scene.bodies.shape.len() >= 300) {
         for &finder in Finder::ALL {
             for &strategy in Strategy::ALL {
                 let settings = settings(strategy, finder);
                 let wanted = trace(scene, &settings, Tier::SCALAR, 1);
                 for tier in Tier::available() {
                     let found = trace(scene, &settings, tier, 1);
-                    assert!(
-                        found == wanted,
-                        "{}, {finder}, {strategy}, {tier}",
-                        scene.name
-                    );
+                    assert!(found == wanted, "{}, {finder}, {strategy}, {tier}", scene.name);
                 }
                 let found = trace(scene, &settings, Tier::detect(), 3);
-                assert!(
-                    found == wanted,
-                    "{}, {finder}, {strategy}, threads",
-                    scene.name
-                );
+                assert!(found == wanted, "{}, {finder}, {strategy}, threads", scene.name);
             }
         }
     }
@@ -367,10 +329,7 @@ fn gathering_bodies_lose_no_pair() {
     let start = scene.bodies.translation.clone();
     let cullers = [Finder::AllPairs].iter().chain(Finder::ALL).map(|&finder| {
         let settings = settings(Strategy::SDopSequential, finder);
-        Culler::builder()
-            .settings(&settings)
-            .build(&scene.shapes, &scene.bodies)
-            .unwrap()
+        Culler::builder().settings(&settings).build(&scene.shapes, &scene.bodies).unwrap()
     });
     let mut cullers: Vec<Culler> = cullers.collect();
     for frame in 0..120 {
@@ -384,11 +343,7 @@ fn gathering_bodies_lose_no_pair() {
         let wanted = first.cull(&scene.bodies).unwrap().sorted();
         for culler in rest {
             let found = culler.cull(&scene.bodies).unwrap().sorted();
-            compare(
-                &[found],
-                std::slice::from_ref(&wanted),
-                &format!("frame {frame}"),
-            );
+            compare(&[found], std::slice::from_ref(&wanted), &format!("frame {frame}"));
         }
     }
 }

@@ -91,12 +91,7 @@ fn skin_moves_lose_no_pair() {
                     for (body, (t, home)) in bodies.translation.iter_mut().zip(home).enumerate() {
                         let sign = [1.0, -1.0][body % 2];
                         let away = [0.0, 1.0, 0.0, -1.0, 1.0, 1.0, 0.0, 1.0][frame];
-                        t[0] = home[0]
-                            + if bodies.dynamic[body] {
-                                sign * away * by
-                            } else {
-                                0.0
-                            };
+                        t[0] = home[0] + if bodies.dynamic[body] { sign * away * by } else { 0.0 };
                     }
                 });
                 assert!(share < 0.999 || pairs > 300, "{share}, {nudge}: {pairs}");
@@ -161,11 +156,7 @@ fn fly(
         for body in 0..bodies.len() {
             let pace = paces[bodies.shape[body] as usize];
             for (x, by) in bodies.translation[body].iter_mut().zip(course[body]) {
-                *x += if bodies.dynamic[body] {
-                    sign * pace * by
-                } else {
-                    0.0
-                };
+                *x += if bodies.dynamic[body] { sign * pace * by } else { 0.0 };
             }
         }
     }
@@ -176,30 +167,20 @@ fn fly(
 fn any_speed_loses_no_pair() {
     let scenes = [
         Scene::new("uniform", &[1.0], 500, |_, rng| uniform(rng, 20.0)),
-        Scene::new("radii 1:16", &[0.25, 1.0, 4.0], 300, |_, rng| {
-            uniform(rng, 30.0)
-        }),
-        Scene::new("far off", &[0.7], 300, |_, rng| {
-            uniform(rng, 14.0).map(|x| x - 3e4)
-        }),
+        Scene::new("radii 1:16", &[0.25, 1.0, 4.0], 300, |_, rng| uniform(rng, 30.0)),
+        Scene::new("far off", &[0.7], 300, |_, rng| uniform(rng, 14.0).map(|x| x - 3e4)),
     ];
     for scene in &scenes {
-        for strategy in [
-            Strategy::Sphere,
-            Strategy::Aabb,
-            Strategy::SDopSequential,
-            Strategy::OrDop,
-        ] {
+        for strategy in
+            [Strategy::Sphere, Strategy::Aabb, Strategy::SDopSequential, Strategy::OrDop]
+        {
             for speed in [0.0, 0.003, 0.03, 0.3, 3.0] {
                 let what = format!("{}, {speed} r a frame", scene.name);
                 let fly = fly(scene, |radius| radius, speed, 5);
                 let (pairs, [lists, grid]) = judge(scene, strategy, 40, &what, fly);
                 assert!(pairs > 500, "{what}: {pairs} pairs");
                 let slow = speed < 0.1 && scene.name == "uniform" && strategy == Strategy::Sphere;
-                assert!(
-                    !slow || 2 * lists < grid,
-                    "{what}: {lists} tests, {grid} by the grid"
-                );
+                assert!(!slow || 2 * lists < grid, "{what}: {lists} tests, {grid} by the grid");
             }
         }
     }
@@ -208,9 +189,7 @@ fn any_speed_loses_no_pair() {
 /// All bodies are equally fast, so that a share of their radius wouldn't last for the small ones.
 #[test]
 fn fast_small_bodies_lose_nothing() {
-    let scene = Scene::new("radii 1:16", &[0.25, 1.0, 4.0], 400, |_, rng| {
-        uniform(rng, 60.0)
-    });
+    let scene = Scene::new("radii 1:16", &[0.25, 1.0, 4.0], 400, |_, rng| uniform(rng, 60.0));
     for strategy in [Strategy::Sphere, Strategy::Aabb, Strategy::OrDop] {
         for speed in [0.03, 0.1] {
             let what = format!("{speed} a frame");

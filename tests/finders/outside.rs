@@ -61,10 +61,8 @@ fn invalid_numbers_never_hang() {
                 for i in 0..n {
                     bodies.push(0, i % 3 > 0, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
                 }
-                let (mut found, pool) = (
-                    PairFinder::new(finder, &population),
-                    Threads::new(threads).unwrap(),
-                );
+                let (mut found, pool) =
+                    (PairFinder::new(finder, &population), Threads::new(threads).unwrap());
                 let (mut places, mut order) = (Places::new(&bodies), Vec::new());
                 let mut balls: Vec<[f32; 4]> = Vec::new();
                 for frame in 0..frames {

@@ -53,11 +53,7 @@ fn shift(scene: &Scene, frame: usize, home: [f32; 3], now: [f32; 3]) -> [f32; 3]
     match scene.name {
         "gathering" => home.map(|x| x * (0.02 + (frame as f32 / 20.0 - 1.0).abs())),
         "turning" => {
-            let stretch = [
-                1.0,
-                1.0 + 0.1 * frame as f32,
-                1.0 + 0.02 * (frame * frame) as f32,
-            ];
+            let stretch = [1.0, 1.0 + 0.1 * frame as f32, 1.0 + 0.02 * (frame * frame) as f32];
             std::array::from_fn(|axis| home[axis] * stretch[axis])
         }
         _ => now,
@@ -90,12 +86,7 @@ fn lived(scene: &Scene, finder: Finder) -> String {
 fn parts(scene: &Scene, finder: Finder) -> usize {
     let ball = |body: usize| {
         let [x, y, z] = scene.bodies.translation[body];
-        [
-            x,
-            y,
-            z,
-            scene.shapes[scene.bodies.shape[body] as usize].ball.radius,
-        ]
+        [x, y, z, scene.shapes[scene.bodies.shape[body] as usize].ball.radius]
     };
     let mut places = Places::new(&scene.bodies);
     let population = Population {
@@ -112,13 +103,7 @@ fn parts(scene: &Scene, finder: Finder) -> usize {
         places.body = order;
     }
     let pool = Threads::default();
-    finder.arrange(
-        pool.executor(Tier::detect()),
-        &places,
-        &balls(&places),
-        &places.body,
-        None,
-    );
+    finder.arrange(pool.executor(Tier::detect()), &places, &balls(&places), &places.body, None);
     finder.parts()
 }
 
@@ -131,14 +116,8 @@ fn plans_are_as_recorded() {
             found += &format!("{}, {finder}: {parts} parts {lived}\n", scene.name);
         }
     }
-    let other = found
-        .lines()
-        .zip(RECORDED.lines())
-        .find(|(found, recorded)| found != recorded);
-    assert!(
-        found == RECORDED,
-        "{other:?} is the first that differs of\n{found}"
-    );
+    let other = found.lines().zip(RECORDED.lines()).find(|(found, recorded)| found != recorded);
+    assert!(found == RECORDED, "{other:?} is the first that differs of\n{found}");
 }
 
 /// Bodies stand as given or those that move first.
@@ -152,9 +131,6 @@ fn plan_is_independent_of_order() {
     assert!(!given.is_empty() && Places::new(&hard_scenes()[0].bodies).is_empty());
     let moves = |&body: &u32| scene.bodies.dynamic[body as usize];
     let (moving, fixed): (Vec<u32>, Vec<u32>) = everyone.iter().partition(|&body| moves(body));
-    assert_eq!(
-        (sorted.moving, sorted.len()),
-        (moving.len(), everyone.len())
-    );
+    assert_eq!((sorted.moving, sorted.len()), (moving.len(), everyone.len()));
     assert_eq!(sorted.body, [moving, fixed].concat());
 }

@@ -20,11 +20,7 @@ pub struct Scene {
 /// A boxy shape with the bounding radius asked for.
 fn shape_of_radius(radius: f32) -> Shape {
     let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
-    let spec = ShapeSpec {
-        origin: Origin::Ball,
-        radius: Some(radius),
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { origin: Origin::Ball, radius: Some(radius), ..ShapeSpec::default() };
     Shape::build(&mesh, &spec).unwrap()
 }
 
@@ -73,21 +69,11 @@ pub fn hard_scenes() -> Vec<Scene> {
         Scene::new("half a cell off", &[1.0], 500, |i, _| {
             [i % 8, i / 8 % 8, i / 64].map(|k| k as f32 * 2.0 + 1.0)
         }),
-        Scene::new("line along x", &[1.0], 300, |_, rng| {
-            [rng.random_range(0.0..900.0), 1.0, 2.0]
-        }),
-        Scene::new("line along z", &[1.0], 300, |_, rng| {
-            [1.0, 2.0, rng.random_range(0.0..900.0)]
-        }),
-        Scene::new("diagonal line", &[1.0], 300, |_, rng| {
-            [rng.random_range(0.0..600.0); 3]
-        }),
+        Scene::new("line along x", &[1.0], 300, |_, rng| [rng.random_range(0.0..900.0), 1.0, 2.0]),
+        Scene::new("line along z", &[1.0], 300, |_, rng| [1.0, 2.0, rng.random_range(0.0..900.0)]),
+        Scene::new("diagonal line", &[1.0], 300, |_, rng| [rng.random_range(0.0..600.0); 3]),
         Scene::new("plane", &[1.0], 500, |_, rng| {
-            [
-                rng.random_range(0.0..40.0),
-                3.0,
-                rng.random_range(0.0..40.0),
-            ]
+            [rng.random_range(0.0..40.0), 3.0, rng.random_range(0.0..40.0)]
         }),
         Scene::new("slanted plane", &[1.0], 500, |_, rng| {
             let [x, y, _] = uniform(rng, 60.0);
@@ -109,29 +95,20 @@ pub fn hard_scenes() -> Vec<Scene> {
             [0, 1, 2].map(|k| if i >> k & 1 == 1 { 1.1e18 } else { -1.1e18 })
         }),
         Scene::new("tiny", &[1e-30], 300, |_, rng| uniform(rng, 1e-29)),
-        Scene::new("radii 1:16", &[1.0, 2.3, 5.1, 16.0], 400, |_, rng| {
-            uniform(rng, 60.0)
+        Scene::new("radii 1:16", &[1.0, 2.3, 5.1, 16.0], 400, |_, rng| uniform(rng, 60.0)),
+        Scene::new("radii 1:1000", &[0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0], 600, |_, rng| {
+            uniform(rng, 25.0)
         }),
-        Scene::new(
-            "radii 1:1000",
-            &[0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0],
-            600,
-            |_, rng| uniform(rng, 25.0),
-        ),
         Scene::new("points", &[1e-6, 1.0], 400, |_, rng| uniform(rng, 12.0)),
     ];
-    let mut giant = Scene::new("a giant among tiny ones", &[0.05, 40.0], 600, |_, rng| {
-        uniform(rng, 5.0)
-    });
+    let mut giant =
+        Scene::new("a giant among tiny ones", &[0.05, 40.0], 600, |_, rng| uniform(rng, 5.0));
     giant.bodies.shape.iter_mut().for_each(|shape| *shape = 0);
     giant.bodies.shape[5] = 1;
     scenes.push(giant);
-    let mut nested = Scene::new(
-        "tiny cluster beside giants",
-        &[0.01, 10.0],
-        400,
-        |i, rng| uniform(rng, if i % 2 == 0 { 0.1 } else { 200.0 }),
-    );
+    let mut nested = Scene::new("tiny cluster beside giants", &[0.01, 10.0], 400, |i, rng| {
+        uniform(rng, if i % 2 == 0 { 0.1 } else { 200.0 })
+    });
     nested.step = 0.001;
     scenes.push(nested);
     let mut all_static = Scene::new("all static", &[1.0], 100, |_, rng| uniform(rng, 6.0));
@@ -146,12 +123,7 @@ pub fn hard_scenes() -> Vec<Scene> {
 fn random_scene() -> Scene {
     let shapes = shapes(DirectionSet::K18, sdop::volume::Axes::Principal);
     let bodies = support::random_bodies(5, 300, 9.0, shapes.len());
-    Scene {
-        name: "every shape",
-        shapes,
-        bodies,
-        step: 0.1,
-    }
+    Scene { name: "every shape", shapes, bodies, step: 0.1 }
 }
 
 /// Pairs of equal balls whose distance is that of touching up to a few roundings, in any direction

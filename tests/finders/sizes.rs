@@ -20,14 +20,8 @@ fn exponents() -> impl Iterator<Item = i32> {
 /// How radii are mixed: all alike, every fifth one of ordinary size, and every third one a speck.
 const MIXES: [(&str, [i32; 15]); 3] = [
     ("uniform", [0; 15]),
-    (
-        "some wide",
-        [0, 0, 0, 0, 50, 0, 0, 0, 0, 50, 0, 0, 0, 0, 50],
-    ),
-    (
-        "some specks",
-        [0, 0, -80, 1, 0, -90, 2, 0, -20, 3, 0, -70, 0, 0, -80],
-    ),
+    ("some wide", [0, 0, 0, 0, 50, 0, 0, 0, 0, 50, 0, 0, 0, 0, 50]),
+    ("some specks", [0, 0, -80, 1, 0, -90, 2, 0, -20, 3, 0, -70, 0, 0, -80]),
 ];
 
 /// Numbers in [0, 1).
@@ -35,10 +29,7 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(0x5851_f42d_4c95_7f2d)
-            .wrapping_add(0x1405_7b7e_f767_814f);
+        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 }
@@ -65,10 +56,7 @@ fn radius(exponent: i32, mix: &[i32; 15], body: usize) -> i32 {
 /// Holds the tests of a frame against those of the grid.
 fn assert_bounded(what: &str, frame: usize, tests: u64, of_grid: u64) {
     let most = 4 * of_grid + 64 * N as u64;
-    assert!(
-        tests <= most,
-        "{what}, frame {frame}: {tests} tests, {of_grid} by the grid"
-    );
+    assert!(tests <= most, "{what}, frame {frame}: {tests} tests, {of_grid} by the grid");
 }
 
 fn shapes(mix: &[i32; 15], exponent: i32) -> Vec<Shape> {
@@ -176,10 +164,7 @@ fn searches_count_alike_on_any_threads() {
                 .collect();
             counts.push(counted);
         }
-        assert!(
-            counts.windows(2).all(|two| two[0] == two[1]),
-            "2^{exponent}"
-        );
+        assert!(counts.windows(2).all(|two| two[0] == two[1]), "2^{exponent}");
     }
 }
 

@@ -8,24 +8,11 @@ fn cases_are_answered_elsewhere_and_checked() {
     let directory = tempfile::tempdir().unwrap();
     let (output, _) = sdop(
         directory.path(),
-        &[
-            "cases",
-            "--out",
-            "c",
-            "--claims",
-            "aabb",
-            "--case",
-            "box/flat/*",
-        ],
+        &["cases", "--out", "c", "--claims", "aabb", "--case", "box/flat/*"],
     );
     assert!(output.status.success());
     let case = "c/box/flat/0000.ndjson";
-    assert_eq!(
-        std::fs::read_dir(directory.path().join("c/box/flat"))
-            .unwrap()
-            .count(),
-        8
-    );
+    assert_eq!(std::fs::read_dir(directory.path().join("c/box/flat")).unwrap().count(), 8);
     let answer = |pairs: &str| {
         std::fs::write(
             directory.path().join("answers"),
@@ -33,14 +20,9 @@ fn cases_are_answered_elsewhere_and_checked() {
         )
         .unwrap()
     };
-    let every: Vec<String> = (0..48)
-        .flat_map(|j| (0..j).map(move |i| format!("[{i},{j}]")))
-        .collect();
-    for (pairs, code) in [
-        (every.join(","), 0),
-        (String::new(), 1),
-        ("[0,0]".to_owned(), 1),
-    ] {
+    let every: Vec<String> =
+        (0..48).flat_map(|j| (0..j).map(move |i| format!("[{i},{j}]"))).collect();
+    for (pairs, code) in [(every.join(","), 0), (String::new(), 1), ("[0,0]".to_owned(), 1)] {
         answer(&pairs);
         let (output, text) = sdop(directory.path(), &["check", case, "--pairs", "answers"]);
         assert_eq!(output.status.code(), Some(code), "{text}");
@@ -49,13 +31,7 @@ fn cases_are_answered_elsewhere_and_checked() {
     let (output, _) = sdop(directory.path(), &["check", case]);
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(
-        sdop(
-            directory.path(),
-            &["cases", "--out", "c", "--case", "no/such"]
-        )
-        .0
-        .status
-        .code(),
+        sdop(directory.path(), &["cases", "--out", "c", "--case", "no/such"]).0.status.code(),
         Some(2)
     );
 }
@@ -96,9 +72,8 @@ fn broadmarks_recordings_are_cases_of_boxes() {
     assert!(sdop(directory.path(), &written).0.status.success());
     let bytes = std::fs::read(directory.path().join("c/box/grid/0000.aabbs")).unwrap();
     assert_eq!(bytes.len(), 304 + 48 * 32);
-    let every: Vec<String> = (0..48)
-        .flat_map(|j| (0..j).map(move |i| format!("[{i},{j}]")))
-        .collect();
+    let every: Vec<String> =
+        (0..48).flat_map(|j| (0..j).map(move |i| format!("[{i},{j}]"))).collect();
     for (pairs, code) in [(every.join(","), 0), (String::new(), 1)] {
         let answer = format!("{{\"frame\":0,\"pairs\":[{pairs}]}}\n");
         std::fs::write(directory.path().join("answers"), answer).unwrap();
@@ -106,16 +81,6 @@ fn broadmarks_recordings_are_cases_of_boxes() {
         let (output, text) = sdop(directory.path(), &check);
         assert_eq!(output.status.code(), Some(code), "{text}");
     }
-    std::fs::write(
-        directory.path().join("short.aabbs"),
-        &bytes[..bytes.len() - 1],
-    )
-    .unwrap();
-    assert_eq!(
-        sdop(directory.path(), &["check", "short.aabbs"])
-            .0
-            .status
-            .code(),
-        Some(2)
-    );
+    std::fs::write(directory.path().join("short.aabbs"), &bytes[..bytes.len() - 1]).unwrap();
+    assert_eq!(sdop(directory.path(), &["check", "short.aabbs"]).0.status.code(), Some(2));
 }

@@ -14,17 +14,10 @@ fn names_and_seeds_determine_cases() {
     let mut names = BTreeSet::new();
     for group in groups().unwrap() {
         let first = group.case(0, None).unwrap();
-        let (again, seeded) = (
-            group.case(0, None).unwrap(),
-            group.case(0, Some(9)).unwrap(),
-        );
+        let (again, seeded) = (group.case(0, None).unwrap(), group.case(0, Some(9)).unwrap());
         assert_eq!(first.frames, again.frames, "{}", group.name);
         assert_eq!(first.shapes, again.shapes, "{}", group.name);
-        assert!(
-            names.insert(first.name.clone()),
-            "{}: a name twice",
-            first.name
-        );
+        assert!(names.insert(first.name.clone()), "{}: a name twice", first.name);
         assert_eq!(seeded.name, format!("{}@9", first.name));
         let empty = first.frames.iter().all(|frame| frame.bodies.is_empty());
         assert!(
@@ -38,12 +31,7 @@ fn names_and_seeds_determine_cases() {
         }
         assert!(!first.claims.is_empty() && !first.flag.is_empty() && !first.source.is_empty());
     }
-    assert!(
-        names.len() > 60
-            && names
-                .iter()
-                .any(|name| matches("touch/edge-edge/0000", name))
-    );
+    assert!(names.len() > 60 && names.iter().any(|name| matches("touch/edge-edge/0000", name)));
 }
 
 /// Cases read back from their files to the bit.

@@ -65,9 +65,9 @@ impl Subject for Cheat {
             Self::None => right,
             Self::LastFrame => vec![right[last].clone(); right.len()],
             Self::FirstFrame => vec![right[0].clone(); right.len()],
-            Self::FrameBefore => (0..=last)
-                .map(|n: usize| right[n.saturating_sub(1)].clone())
-                .collect(),
+            Self::FrameBefore => {
+                (0..=last).map(|n: usize| right[n.saturating_sub(1)].clone()).collect()
+            }
             Self::FirstBodies => exact(&with_first_bodies(case)),
             Self::BothFrames => (0..=last)
                 .map(|n| {
@@ -107,11 +107,7 @@ impl Subject for OtherCase {
 }
 
 fn run(subject: &dyn Subject, claim: Claim, pattern: &str) -> Verdict {
-    let options = Options {
-        claim,
-        pattern: pattern.to_owned(),
-        ..Options::default()
-    };
+    let options = Options { claim, pattern: pattern.to_owned(), ..Options::default() };
     examine(subject, &options, |_, _| {}).unwrap()
 }
 

@@ -17,9 +17,8 @@ pub(super) fn sdop(directory: &Path, arguments: &[&str]) -> (Output, String) {
 }
 
 fn example(name: &str) -> String {
-    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "examples", "judge", name]
-        .iter()
-        .collect();
+    let path: PathBuf =
+        [env!("CARGO_MANIFEST_DIR"), "..", "examples", "judge", name].iter().collect();
     path.display().to_string()
 }
 
@@ -32,29 +31,15 @@ fn python_example_and_its_flaw() {
     }
     let directory = tempfile::tempdir().unwrap();
     let right = format!("python3 {}", example("boxes.py"));
-    let cases = [
-        "--claims",
-        "aabb",
-        "--case",
-        "b*",
-        "--timeout",
-        "60",
-        "--no-fresh",
-    ];
+    let cases = ["--claims", "aabb", "--case", "b*", "--timeout", "60", "--no-fresh"];
     let run = |command: &str, more: &[&str]| {
-        sdop(
-            directory.path(),
-            &[&["judge", command], &cases[..], more].concat(),
-        )
+        sdop(directory.path(), &[&["judge", command], &cases[..], more].concat())
     };
     let (output, text) = run(&right, &[]);
     assert!(output.status.success() && text.contains("PASS"), "{text}");
     let (output, text) = run(&format!("{right} --full-buffer"), &[]);
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(
-        text.contains("buffer/growth") && text.contains("exactly"),
-        "{text}"
-    );
+    assert!(text.contains("buffer/growth") && text.contains("exactly"), "{text}");
     let case = std::fs::read_to_string(directory.path().join("missed-pair.ndjson")).unwrap();
     assert!(case.contains("\"scene\":\"missed-pair/b"), "{case}");
     assert!(case.matches("\"static\"").count() < 96, "{case}");
@@ -75,16 +60,8 @@ fn python_example_and_its_flaw() {
     ];
     assert_eq!(sdop(directory.path(), &again).0.status.code(), Some(1));
     // And the right program passes it.
-    let again = [
-        "judge",
-        &right,
-        "--claims",
-        "aabb",
-        "--timeout",
-        "60",
-        "--replay",
-        "missed-pair.ndjson",
-    ];
+    let again =
+        ["judge", &right, "--claims", "aabb", "--timeout", "60", "--replay", "missed-pair.ndjson"];
     assert!(sdop(directory.path(), &again).0.status.success());
 }
 
@@ -118,15 +95,9 @@ fn box_misses_name_meeting_ends() {
     assert!(!text.contains("ulp") && !text.contains(".toml"), "{text}");
     // One line says why the exit code is 1.
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(
-        said.starts_with("sdop: 8 of 8 cases failed, first box/grid/0000 misses"),
-        "{said}"
-    );
+    assert!(said.starts_with("sdop: 8 of 8 cases failed, first box/grid/0000 misses"), "{said}");
     assert_eq!(said.lines().count(), 1, "{said}");
-    let (_, json) = silence(
-        directory.path(),
-        &[&cases[..], &["--format", "json"]].concat(),
-    );
+    let (_, json) = silence(directory.path(), &[&cases[..], &["--format", "json"]].concat());
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let why = json["why"].as_str().unwrap();
     assert!(said.contains(why), "{why}");
@@ -139,14 +110,8 @@ fn failed_groups_are_printed_first() {
     let (_, text) = silence(directory.path(), &["--claims", "aabb", "--case", "*/0000"]);
     let table = text.split("\nclaim aabb: ").next().unwrap();
     let last = table.lines().last().unwrap();
-    assert!(
-        last.ends_with("cases") && last.contains(" groups passed all of their "),
-        "{table}"
-    );
-    assert!(
-        table.contains("box/grid") && table.lines().count() > 5,
-        "{table}"
-    );
+    assert!(last.ends_with("cases") && last.contains(" groups passed all of their "), "{table}");
+    assert!(table.contains("box/grid") && table.lines().count() > 5, "{table}");
 }
 
 /// A miss of meshes becomes a scene where a scene can state it.
@@ -155,15 +120,9 @@ fn mesh_misses_become_scenes() {
     let directory = tempfile::tempdir().unwrap();
     let scene = directory.path().join("missed-pair.toml");
     let (_, text) = silence(directory.path(), &["--case", "exact/face-to-face/0000"]);
-    assert!(
-        text.contains("missed-pair.toml") && text.contains("\n  depth: "),
-        "{text}"
-    );
+    assert!(text.contains("missed-pair.toml") && text.contains("\n  depth: "), "{text}");
     let (output, run) = sdop(directory.path(), &["run", "missed-pair.toml"]);
-    assert!(
-        output.status.success() && run.contains("reported 1 pairs"),
-        "{run}"
-    );
+    assert!(output.status.success() && run.contains("reported 1 pairs"), "{run}");
     // Balls that aren't those of the meshes, and a miss that takes two frames, are in no scene.
     std::fs::remove_file(&scene).unwrap();
     let spheres = ["--claims", "sphere", "--case", "hard/touch-by-quadruples/*"];
@@ -197,10 +156,7 @@ fn as_test(language: &str, claim: &str, case: &str) {
     }
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    let (_, text) = silence(
-        here,
-        &["--claims", claim, "--case", case, "--as-test", language],
-    );
+    let (_, text) = silence(here, &["--claims", claim, "--case", case, "--as-test", language]);
     let ending = match language {
         "python" => "py",
         "rust" => "rs",
@@ -210,20 +166,10 @@ fn as_test(language: &str, claim: &str, case: &str) {
     assert!(text.contains(&test), "{text}");
     let name = test.split("reports_").nth(1).unwrap();
     let name = format!("reports_{}", name.split('(').next().unwrap());
-    let name = if language == "python" {
-        format!("test_{name}")
-    } else {
-        name
-    };
+    let name = if language == "python" { format!("test_{name}") } else { name };
     for (pairs, passes) in [("1", true), ("0", false)] {
         let culler = if language == "rust" {
-            let given = test
-                .split("your_culler(&")
-                .nth(1)
-                .unwrap()
-                .split(')')
-                .next()
-                .unwrap();
+            let given = test.split("your_culler(&").nth(1).unwrap().split(')').next().unwrap();
             let count = given.split(", ").count();
             let types = ["A", "B", "C", "D", "E", "F", "G"];
             let list: Vec<String> = types[..count].iter().map(|t| format!("_: &{t}")).collect();
@@ -285,9 +231,7 @@ fn known_failures_must_still_fail() {
         ];
         sdop(directory.path(), &[&["judge", &silent], &case[..]].concat())
     };
-    let all: String = (0..8)
-        .map(|n| format!("box/grid/000{n} # says nothing\n"))
-        .collect();
+    let all: String = (0..8).map(|n| format!("box/grid/000{n} # says nothing\n")).collect();
     // Known failures alone: nothing was shown to be right.
     assert_eq!(run(&all, "table").0.status.code(), Some(1));
     let (output, _) = run(&format!("{all}box/grid/0009\n"), "json");
@@ -324,16 +268,8 @@ fn no_success_without_a_reason() {
     let silent = answering(RIGHT);
     for (program, code, says) in [
         (&skips, 3, "0 of 8 cases were judged: 8 skipped, 0 not run"),
-        (
-            &silent,
-            1,
-            "8 of 8 cases failed, first box/grid/0000 misses ",
-        ),
-        (
-            &"false".to_owned(),
-            1,
-            "8 of 8 cases failed, first box/grid/0000 crashed",
-        ),
+        (&silent, 1, "8 of 8 cases failed, first box/grid/0000 misses "),
+        (&"false".to_owned(), 1, "8 of 8 cases failed, first box/grid/0000 crashed"),
     ] {
         let case = ["--claims", "aabb", "--case", "box/grid/*", "--no-fresh"];
         let more = ["--timeout", "60", "--format", "json"];
@@ -344,23 +280,14 @@ fn no_success_without_a_reason() {
             (reason(&output), serde_json::from_str(&text).unwrap());
         assert!(why.starts_with(says), "{why}");
         assert_eq!(found["why"], why.as_str());
-        let word = if code == 3 {
-            "incomplete"
-        } else {
-            "not-passed"
-        };
-        assert_eq!(
-            (&found["conclusion"], &found["asked"]),
-            (&word.into(), &8.into())
-        );
+        let word = if code == 3 { "incomplete" } else { "not-passed" };
+        assert_eq!((&found["conclusion"], &found["asked"]), (&word.into(), &8.into()));
     }
     // A timing's rows say it themselves.
     let scene =
         "name = \"one\"\nframes = 2\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0]]\n";
     std::fs::write(directory.path().join("one.toml"), scene).unwrap();
-    let timing = [
-        "bench", "one.toml", "--exec", &skips, "--frames", "2", "--rounds", "1",
-    ];
+    let timing = ["bench", "one.toml", "--exec", &skips, "--frames", "2", "--rounds", "1"];
     let (output, _) = sdop(directory.path(), &timing);
     assert_eq!(output.status.code(), Some(3), "{output:?}");
     assert!(reason(&output).ends_with("skipped the scene: no grids"));
@@ -373,19 +300,10 @@ fn self_reported_time_needs_a_pass() {
     let scene = "name = \"three\"\nframes = 4\n[[bodies]]\nshape = \"box\"\nposes = [[0,0,0,1,0,0,0],[0,0,0,1,0.5,0,0],[0,0,0,1,0,0.5,0]]\n";
     std::fs::write(directory.path().join("three.toml"), scene).unwrap();
     let bench = |pairs: &str| {
-        let program = answering(&format!(
-            r#"echo "{{\"frame\":$n,\"pairs\":[{pairs}],\"ns\":77}}""#
-        ));
-        let arguments = [
-            "bench",
-            "three.toml",
-            "--exec",
-            &program,
-            "--frames",
-            "4",
-            "--format",
-            "json",
-        ];
+        let program =
+            answering(&format!(r#"echo "{{\"frame\":$n,\"pairs\":[{pairs}],\"ns\":77}}""#));
+        let arguments =
+            ["bench", "three.toml", "--exec", &program, "--frames", "4", "--format", "json"];
         let (output, text) = sdop(directory.path(), &arguments);
         let rows: serde_json::Value = serde_json::from_str(&text).unwrap();
         (output.status.code(), rows)
@@ -400,8 +318,5 @@ fn self_reported_time_needs_a_pass() {
     assert!(rows[0]["median_ns"].as_u64().is_some_and(|ns| ns > 0) && rows[0]["outcome"] == "pass");
     let (code, rows) = bench("[0,1]");
     assert_eq!(code, Some(1));
-    assert!(
-        rows[1]["median_ns"].is_null() && rows[1]["outcome"] == "fail",
-        "{rows}"
-    );
+    assert!(rows[1]["median_ns"].is_null() && rows[1]["outcome"] == "fail", "{rows}");
 }

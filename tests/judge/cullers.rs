@@ -19,13 +19,8 @@ pub struct Ours {
 
 impl Ours {
     pub fn new(scene: &Scene<'_>, strategy: Strategy) -> Self {
-        let culler = Culler::builder()
-            .strategy(strategy)
-            .build(scene.shapes, scene.bodies);
-        Self {
-            culler: culler.unwrap(),
-            pairs: Vec::new(),
-        }
+        let culler = Culler::builder().strategy(strategy).build(scene.shapes, scene.bodies);
+        Self { culler: culler.unwrap(), pairs: Vec::new() }
     }
 }
 
@@ -80,11 +75,7 @@ impl Contestant for BoxesOfAWorld {
         for (i, id) in self.ids.iter_mut().enumerate() {
             let body = BoxBody {
                 bounds: self.boxes[i],
-                motion: if bodies.dynamic[i] {
-                    Motion::Dynamic
-                } else {
-                    Motion::Fixed
-                },
+                motion: if bodies.dynamic[i] { Motion::Dynamic } else { Motion::Fixed },
                 groups: Groups::ALL,
             };
             match *id {
@@ -104,10 +95,8 @@ impl Contestant for BoxesOfAWorld {
         pairs.map(|[i, j]| [i.min(j), i.max(j)]).collect()
     }
     fn change(&mut self, _bodies: &Bodies, was: &[Option<u32>]) -> bool {
-        let stay: Vec<_> = was
-            .iter()
-            .map(|was| was.and_then(|was| self.ids[was as usize]))
-            .collect();
+        let stay: Vec<_> =
+            was.iter().map(|was| was.and_then(|was| self.ids[was as usize])).collect();
         for id in self.ids.iter().filter(|id| !stay.contains(id)) {
             self.world.remove(id.unwrap()).unwrap();
         }

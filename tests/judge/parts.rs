@@ -80,10 +80,7 @@ impl Twin {
             _ => (bodies.rotation[i], bodies.translation[i]),
         };
         let turn = quarter_turns(q);
-        let alone = BodyPart {
-            shape: bodies.shape[i],
-            pose: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
-        };
+        let alone = BodyPart { shape: bodies.shape[i], pose: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0] };
         let mut parts = self.parts[i].clone();
         if parts.is_empty() {
             parts.push(alone);
@@ -105,10 +102,7 @@ impl Twin {
             };
             // Signs don't matter: a quarter turn permutes half sides.
             let reach = turned(turn, reach).map(f64::abs);
-            [
-                [0, 1, 2].map(|axis| f64::from(t[axis]) + offset[axis]),
-                reach,
-            ]
+            [[0, 1, 2].map(|axis| f64::from(t[axis]) + offset[axis]), reach]
         };
         parts.iter().map(boxed).collect()
     }
@@ -153,9 +147,7 @@ fn run(group: &str, flaw: Flaw) -> Verdict {
         first: None,
         pairs: Vec::new(),
     };
-    let trial = judge(make)
-        .claims(Claim::Parts)
-        .cases(&format!("{group}/*"));
+    let trial = judge(make).claims(Claim::Parts).cases(&format!("{group}/*"));
     trial.seed(3).run().unwrap()
 }
 
@@ -164,14 +156,8 @@ fn groups_catch_flaws_of_parts() {
     let always = [Flaw::OwnRotation, Flaw::FirstPart, Flaw::UnturnedOffset];
     for (group, flaws) in [
         ("parts/touch", &[][..]),
-        (
-            "parts/move",
-            &[Flaw::LostOffset, Flaw::FirstRotation, Flaw::FirstPoses],
-        ),
-        (
-            "parts/reframe",
-            &[Flaw::LostOffset, Flaw::FirstParts, Flaw::FirstPoses],
-        ),
+        ("parts/move", &[Flaw::LostOffset, Flaw::FirstRotation, Flaw::FirstPoses]),
+        ("parts/reframe", &[Flaw::LostOffset, Flaw::FirstParts, Flaw::FirstPoses]),
     ] {
         let right = run(group, Flaw::None);
         assert_eq!(right.conclusion(), Conclusion::Pass, "{group}: {right}");
@@ -194,25 +180,16 @@ fn groups_catch_flaws_of_parts() {
 #[test]
 fn our_compounds_pass() {
     let tiers = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
-    let options = Options {
-        claim: Claim::Parts,
-        seed: Some(5),
-        ..Options::default()
-    };
+    let options = Options { claim: Claim::Parts, seed: Some(5), ..Options::default() };
     let ours = EveryWay::new(Rotation::new(&tiers));
     let verdict = examine(&ours, &options, |_, _| {}).unwrap();
     assert_eq!(verdict.conclusion(), Conclusion::Pass, "{verdict}");
     assert!(verdict.pairs().required > 300, "{verdict}");
-    assert!(
-        verdict.pairs().extra < verdict.pairs().required / 2,
-        "{verdict}"
-    );
+    assert!(verdict.pairs().extra < verdict.pairs().required / 2, "{verdict}");
 }
 
 fn one_case(pattern: &str) -> Case {
-    select(Claim::Parts, pattern, None).unwrap()[0]
-        .case()
-        .unwrap()
+    select(Claim::Parts, pattern, None).unwrap()[0].case().unwrap()
 }
 
 /// Other claims refuse parts, and cullers of single shapes skip the cases.
@@ -221,15 +198,9 @@ fn parts_are_never_dropped() {
     let case = one_case("parts/touch/0000");
     let silent = CullFunction(|_: &[Shape], _: &Frame| Vec::new());
     for &claim in Claim::ALL.iter().filter(|claim| **claim != Claim::Parts) {
-        let options = Options {
-            claim,
-            ..Options::default()
-        };
+        let options = Options { claim, ..Options::default() };
         let error = examine_given(&silent, &options, case.clone()).unwrap_err();
-        assert!(
-            matches!(error, JudgeError::Parts { .. }),
-            "{claim}: {error}"
-        );
+        assert!(matches!(error, JudgeError::Parts { .. }), "{claim}: {error}");
     }
     let single = judge(|_: &Scene<'_>| crate::cullers::Boxes::default());
     let verdict = single.claims(Claim::Parts).run().unwrap();
@@ -249,28 +220,15 @@ fn invalid_parts_are_refused() {
     let text = String::from_utf8(Wire::Ndjson.encode(&one_case("parts/touch/0000")).unwrap());
     let text = text.unwrap();
     let read = |text: &str| ndjson::read(text.as_bytes(), u64::MAX);
-    assert_eq!(
-        read(&text).unwrap_or_else(|e| panic!("{e}")).case.claim,
-        Claim::Parts
-    );
+    assert_eq!(read(&text).unwrap_or_else(|e| panic!("{e}")).case.claim, Claim::Parts);
     let body = r#"{"static":false,"parts":[{"shape":"#;
     assert!(text.contains(body), "{text}");
     for (found, put, says) in [
-        (
-            body,
-            r#"{"static":false,"shape":0,"parts":[{"shape":"#,
-            "either `shape` or `parts`",
-        ),
-        (
-            body,
-            r#"{"static":false},{"static":false,"parts":[{"shape":"#,
-            "poses for",
-        ),
+        (body, r#"{"static":false,"shape":0,"parts":[{"shape":"#, "either `shape` or `parts`"),
+        (body, r#"{"static":false},{"static":false,"parts":[{"shape":"#, "poses for"),
         (body, r#"{"static":false,"parts":[{"shape":7"#, "of 2"),
     ] {
-        let error = read(&text.replacen(found, put, 1))
-            .err()
-            .unwrap_or_default();
+        let error = read(&text.replacen(found, put, 1)).err().unwrap_or_default();
         assert!(error.contains(says), "{says}: {error}");
     }
     let with_pose = |pose: [f32; 7]| {
@@ -278,25 +236,15 @@ fn invalid_parts_are_refused() {
         case.frames[0].parts.as_mut().unwrap()[0] = vec![BodyPart { shape: 0, pose }];
         case.frames[0].bodies.rotation[0] = [0.0, 0.0, 1.0, 2.0];
         let text = Wire::Ndjson.encode(&case).unwrap();
-        read(&String::from_utf8(text).unwrap())
-            .err()
-            .unwrap_or_default()
+        read(&String::from_utf8(text).unwrap()).err().unwrap_or_default()
     };
     let identity = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
     assert_eq!(with_pose(identity), "");
-    assert!(
-        with_pose([0.0; 7]).contains("body 0, part 0: "),
-        "{}",
-        with_pose([0.0; 7])
-    );
+    assert!(with_pose([0.0; 7]).contains("body 0, part 0: "), "{}", with_pose([0.0; 7]));
     // A fifth of one step is in no f64.
     let mut inexact = identity;
     inexact[4] = 1.0;
-    assert!(
-        with_pose(inexact).contains("exact pose of a part"),
-        "{}",
-        with_pose(inexact)
-    );
+    assert!(with_pose(inexact).contains("exact pose of a part"), "{}", with_pose(inexact));
 }
 
 /// The words of a case have all parts, each under its body.
@@ -339,10 +287,7 @@ fn truth_is_exact_for_composed_poses() {
         // A quarter turn about z takes the offset (0, −far) to (far, 0).
         bodies.push(0, true, [0.0, 0.0, 1.0, 1.0], [0.0; 3]);
         bodies.push(1, true, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
-        let part = |y: f32| BodyPart {
-            shape: 1,
-            pose: [1.0, 0.0, 0.0, 1.0, 0.0, y, 0.0],
-        };
+        let part = |y: f32| BodyPart { shape: 1, pose: [1.0, 0.0, 0.0, 1.0, 0.0, y, 0.0] };
         let parts = vec![vec![part(0.0), part(0.0), part(-far)], Vec::new()];
         Frame::of_parts(bodies, parts, &case.shapes).unwrap()
     };

@@ -52,8 +52,7 @@ fn interval(ends: &WorldBox, axis: usize) -> [f64; 2] {
 /// Whether two intervals share a point when the second is moved.
 fn overlap(a: [f64; 2], b: [f64; 2], by: f64, is_strict: bool) -> bool {
     let gaps = [a[0] - (b[1] + by), b[0] + by - a[1]];
-    gaps.iter()
-        .all(|gap| *gap < 0.0 || *gap == 0.0 && !is_strict)
+    gaps.iter().all(|gap| *gap < 0.0 || *gap == 0.0 && !is_strict)
 }
 
 /// Moves an interval into the period about zero.
@@ -189,11 +188,7 @@ fn smallest_cases_name_the_image() {
 #[test]
 fn our_periodic_boxes_pass() {
     let tiers = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
-    let options = Options {
-        claim: Claim::Periodic,
-        seed: Some(5),
-        ..Options::default()
-    };
+    let options = Options { claim: Claim::Periodic, seed: Some(5), ..Options::default() };
     let ours = EveryWay::new(Rotation::new(&tiers));
     let verdict = examine(&ours, &options, |_, _| {}).unwrap();
     assert_eq!(verdict.conclusion(), Conclusion::Pass, "{verdict}");
@@ -225,15 +220,9 @@ fn invalid_periods_are_refused() {
         let text = Wire::Ndjson.encode(&case).unwrap();
         let read = ndjson::read(text.as_slice(), u64::MAX).err();
         let silent = CullFunction(|_: &[Shape], _: &Frame| Vec::new());
-        let options = Options {
-            claim: Claim::Periodic,
-            ..Options::default()
-        };
+        let options = Options { claim: Claim::Periodic, ..Options::default() };
         let given = examine_given(&silent, &options, case).err();
-        [
-            read.unwrap_or_default(),
-            given.map_or_else(String::new, |error| error.to_string()),
-        ]
+        [read.unwrap_or_default(), given.map_or_else(String::new, |error| error.to_string())]
     };
     assert_eq!(with(&|_| {}), ["", ""]);
     let half = |ends: &mut WorldBox| ends[3] = ends[0] + 16.0;
@@ -262,14 +251,8 @@ fn invalid_periods_are_refused() {
     ] {
         let [read, given] = with(change);
         assert!(read.contains(&format!("line 4: {says}")), "{read}");
-        assert!(
-            given.contains(&format!("changed/0000, frame 2: {says}")),
-            "{given}"
-        );
-        assert!(
-            [&read, &given].iter().all(|text| text.contains(remedy)),
-            "{read}"
-        );
+        assert!(given.contains(&format!("changed/0000, frame 2: {says}")), "{given}");
+        assert!([&read, &given].iter().all(|text| text.contains(remedy)), "{read}");
     }
     // Each names a missing period as it is written there.
     let [read, given] = with(&|frame| frame.periods = Some([None, Some(0.0), None]));

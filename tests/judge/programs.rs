@@ -16,16 +16,9 @@ pub fn answering(answer: &str) -> String {
 pub const RIGHT: &str = r#"echo "{\"frame\":$n,\"pairs\":[]}""#;
 
 fn run(command: &str, wire: Wire, timeout: f64, case: &str) -> Verdict {
-    let program = Program {
-        command: command.to_owned(),
-        wire,
-        timeout: Duration::from_secs_f64(timeout),
-    };
-    let options = Options {
-        claim: Claim::Aabb,
-        pattern: case.to_owned(),
-        ..Options::default()
-    };
+    let program =
+        Program { command: command.to_owned(), wire, timeout: Duration::from_secs_f64(timeout) };
+    let options = Options { claim: Claim::Aabb, pattern: case.to_owned(), ..Options::default() };
     examine(&program, &options, |_, _| {}).unwrap()
 }
 
@@ -43,21 +36,13 @@ fn trouble(command: &str) -> AnswerError {
 #[test]
 fn late_programs_are_stopped() {
     let start = Instant::now();
-    for command in [
-        "sleep 1000",
-        "sleep 1000 & wait",
-        "cat > /dev/null; sleep 1000",
-        "while :; do :; done",
-    ] {
+    for command in
+        ["sleep 1000", "sleep 1000 & wait", "cat > /dev/null; sleep 1000", "while :; do :; done"]
+    {
         let verdict = run(command, Wire::Ndjson, 0.3, "churn/swap/0001");
         let outcome = &verdict.cases[0].outcome;
         assert!(
-            matches!(
-                outcome,
-                Outcome::Error {
-                    trouble: AnswerError::Timeout { frame: 0, .. }
-                }
-            ),
+            matches!(outcome, Outcome::Error { trouble: AnswerError::Timeout { frame: 0, .. } }),
             "{command}: {outcome:?}"
         );
     }
@@ -71,12 +56,7 @@ fn programs_end_with_their_input() {
     let verdict = run(&command, Wire::Ndjson, 4.0, "churn/swap/0001");
     let outcome = &verdict.cases[0].outcome;
     assert!(
-        matches!(
-            outcome,
-            Outcome::Error {
-                trouble: AnswerError::Hanging { .. }
-            }
-        ),
+        matches!(outcome, Outcome::Error { trouble: AnswerError::Hanging { .. } }),
         "{outcome:?}"
     );
 }
@@ -89,18 +69,8 @@ fn crashes_and_floods_are_named() {
         "{found}"
     );
     let found = trouble("kill -SEGV $$");
-    assert!(
-        matches!(&found, AnswerError::Crashed { how, .. } if how == "signal 11"),
-        "{found}"
-    );
-    assert!(matches!(
-        trouble("true"),
-        AnswerError::Early {
-            answered: 0,
-            frames: 6,
-            ..
-        }
-    ));
+    assert!(matches!(&found, AnswerError::Crashed { how, .. } if how == "signal 11"), "{found}");
+    assert!(matches!(trouble("true"), AnswerError::Early { answered: 0, frames: 6, .. }));
     let found = trouble("no-such-program-here");
     assert!(
         matches!(&found, AnswerError::Start { why } if why.starts_with("exit code 127; it says: ")),
@@ -117,26 +87,17 @@ fn crashes_and_floods_are_named() {
         "tr '\\0' x < /dev/zero",
         "read -r h; printf '{\"frame\":0,\"pairs\":['; while :; do printf '[0,1],'; done",
     ] {
-        assert!(
-            matches!(trouble(command), AnswerError::Flood { .. }),
-            "{command}"
-        );
+        assert!(matches!(trouble(command), AnswerError::Flood { .. }), "{command}");
     }
     // All answers are right, and then it fails.
     let found = trouble(&format!("{}; exit 1", answering(RIGHT)));
-    assert!(
-        matches!(found, AnswerError::Crashed { answered: 6, .. }),
-        "{found}"
-    );
+    assert!(matches!(found, AnswerError::Crashed { answered: 6, .. }), "{found}");
 }
 
 #[test]
 fn programs_that_cannot_start_end_runs() {
     let verdict = run("no-such-program-here", Wire::Ndjson, 20.0, "*");
-    assert!(
-        verdict.cases.len() == 3 && verdict.not_run > 100,
-        "{verdict}"
-    );
+    assert!(verdict.cases.len() == 3 && verdict.not_run > 100, "{verdict}");
     let why = verdict.why().unwrap();
     let first = "cases failed, first box/grid/0000 cannot be started: exit code 127";
     assert!(why.starts_with("3 of ") && why.contains(first), "{why}");
@@ -162,49 +123,19 @@ fn malformed_lines_are_named() {
         assert!(said.contains(why), "{line}: {said}");
     }
     let answer = |pairs: &str| {
-        trouble(&answering(&format!(
-            r#"echo "{{\"frame\":$n,\"pairs\":[{pairs}]}}""#
-        )))
+        trouble(&answering(&format!(r#"echo "{{\"frame\":$n,\"pairs\":[{pairs}]}}""#)))
     };
     assert_eq!(answer("[3,3]"), AnswerError::SelfPair { frame: 0, body: 3 });
-    assert_eq!(
-        answer("[4,1]"),
-        AnswerError::Reversed {
-            frame: 0,
-            pair: [4, 1]
-        }
-    );
-    assert_eq!(
-        answer("[0,1],[0,1]"),
-        AnswerError::Twice {
-            frame: 0,
-            pair: [0, 1]
-        }
-    );
-    assert_eq!(
-        answer("[0,40]"),
-        AnswerError::NoBody {
-            frame: 0,
-            pair: [0, 40],
-            bodies: 40
-        }
-    );
+    assert_eq!(answer("[4,1]"), AnswerError::Reversed { frame: 0, pair: [4, 1] });
+    assert_eq!(answer("[0,1],[0,1]"), AnswerError::Twice { frame: 0, pair: [0, 1] });
+    assert_eq!(answer("[0,40]"), AnswerError::NoBody { frame: 0, pair: [0, 40], bodies: 40 });
     // Every frame twice, and the last one twice.
     assert_eq!(
         trouble(&answering(&format!("{RIGHT}; {RIGHT}"))),
-        AnswerError::OutOfTurn {
-            expected: 1,
-            found: 0
-        }
+        AnswerError::OutOfTurn { expected: 1, found: 0 }
     );
     let found = trouble(&format!("{}; echo more", answering(RIGHT)));
-    assert_eq!(
-        found,
-        AnswerError::TooMany {
-            frames: 6,
-            line: "more".to_owned()
-        }
-    );
+    assert_eq!(found, AnswerError::TooMany { frames: 6, line: "more".to_owned() });
 }
 
 /// A program may skip a case. A run whose cases were all skipped does not pass.
@@ -244,24 +175,14 @@ fn skipping_what_meets_is_incomplete() {
     let verdict = run(&always, Wire::Ndjson, 20.0, "churn/teleport/*");
     assert_eq!(verdict.conclusion(), Conclusion::Incomplete, "{verdict}");
     let said = verdict.to_string();
-    assert!(
-        said.starts_with("claim aabb: INCOMPLETE, 0 of 7 cases judged"),
-        "{said}"
-    );
+    assert!(said.starts_with("claim aabb: INCOMPLETE, 0 of 7 cases judged"), "{said}");
 }
 
 #[test]
 fn cases_without_time_are_incomplete() {
-    let program = Program {
-        command: "true".to_owned(),
-        wire: Wire::Ndjson,
-        timeout: Duration::from_secs(1),
-    };
-    let options = Options {
-        claim: Claim::Aabb,
-        time: Some(Duration::ZERO),
-        ..Options::default()
-    };
+    let program =
+        Program { command: "true".to_owned(), wire: Wire::Ndjson, timeout: Duration::from_secs(1) };
+    let options = Options { claim: Claim::Aabb, time: Some(Duration::ZERO), ..Options::default() };
     let verdict = examine(&program, &options, |_, _| {}).unwrap();
     assert_eq!(verdict.conclusion(), Conclusion::Incomplete);
     assert!(verdict.cases.is_empty() && verdict.not_run > 100);
@@ -275,27 +196,17 @@ fn failing_cases_do_not_end_runs() {
         answering(RIGHT).replacen("read -r header;", "", 1)
     );
     let verdict = run(&command, Wire::Ndjson, 20.0, "churn/teleport/*");
-    let crashed = verdict
-        .cases
-        .iter()
-        .filter(|case| matches!(case.outcome, Outcome::Error { .. }))
-        .count();
-    assert_eq!(
-        (verdict.cases.len(), crashed, verdict.not_run),
-        (7, 1, 0),
-        "{verdict}"
-    );
+    let crashed =
+        verdict.cases.iter().filter(|case| matches!(case.outcome, Outcome::Error { .. })).count();
+    assert_eq!((verdict.cases.len(), crashed, verdict.not_run), (7, 1, 0), "{verdict}");
 }
 
 /// A program that reads one case after the other: a header starts the count anew.
 const SERVING: &str = r#"n=0; while read -r line; do case $line in *'"format"'*) n=0;; *) echo "{\"frame\":$n,\"pairs\":[]}"; n=$((n + 1));; esac; done"#;
 
 fn serve(command: String, case: &str) -> Verdict {
-    let service = Service::new(Program {
-        command,
-        wire: Wire::Ndjson,
-        timeout: Duration::from_secs(20),
-    });
+    let service =
+        Service::new(Program { command, wire: Wire::Ndjson, timeout: Duration::from_secs(20) });
     let options = Options {
         claim: Claim::Aabb,
         pattern: case.to_owned(),
@@ -310,42 +221,23 @@ fn serve(command: String, case: &str) -> Verdict {
 fn services_judge_many_cases() {
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("started");
-    let verdict = serve(
-        format!("echo one >> '{}'; {SERVING}", log.display()),
-        "churn/*",
-    );
+    let verdict = serve(format!("echo one >> '{}'; {SERVING}", log.display()), "churn/*");
     let alone = run(&answering(RIGHT), Wire::Ndjson, 20.0, "churn/*");
     let counts = |verdict: &Verdict| -> Vec<_> {
-        verdict
-            .cases
-            .iter()
-            .map(|case| (case.name.clone(), case.pairs))
-            .collect()
+        verdict.cases.iter().map(|case| (case.name.clone(), case.pairs)).collect()
     };
     assert_eq!(counts(&verdict), counts(&alone));
     let started = std::fs::read_to_string(log).unwrap().lines().count();
-    assert!(
-        started < 16 && verdict.cases.len() > 25,
-        "{started} processes"
-    );
+    assert!(started < 16 && verdict.cases.len() > 25, "{started} processes");
 }
 
 /// A service is started again after a case that ends it.
 #[test]
 fn ended_services_start_again() {
-    let ending = SERVING.replacen(
-        "n=0;;",
-        r#"n=0; case $line in *0001\"*) exit 9;; esac;;"#,
-        1,
-    );
+    let ending = SERVING.replacen("n=0;;", r#"n=0; case $line in *0001\"*) exit 9;; esac;;"#, 1);
     let verdict = serve(ending, "churn/teleport/*");
     let crashed = |outcome: &Outcome| {
-        matches!(
-            outcome,
-            Outcome::Error {
-                trouble: AnswerError::Crashed { answered: 0, .. }
-            }
-        )
+        matches!(outcome, Outcome::Error { trouble: AnswerError::Crashed { answered: 0, .. } })
     };
     let ended = verdict.cases.iter().filter(|case| crashed(&case.outcome));
     assert_eq!(ended.count(), 1, "{verdict}");
@@ -357,21 +249,12 @@ fn ended_services_start_again() {
 fn services_may_not_answer_twice() {
     let twice = SERVING.replacen("echo", "echo; echo {}; echo", 1);
     let verdict = serve(twice, "churn/teleport/0001");
-    assert!(
-        matches!(verdict.cases[0].outcome, Outcome::Error { .. }),
-        "{verdict}"
-    );
-    let chatty = SERVING.replacen(
-        "n=$((n + 1))",
-        r#"echo "{\"frame\":$n,\"pairs\":[]}"; n=$((n + 1))"#,
-        1,
-    );
+    assert!(matches!(verdict.cases[0].outcome, Outcome::Error { .. }), "{verdict}");
+    let chatty =
+        SERVING.replacen("n=$((n + 1))", r#"echo "{\"frame\":$n,\"pairs\":[]}"; n=$((n + 1))"#, 1);
     let verdict = serve(chatty, "churn/teleport/*");
     assert!(
-        verdict
-            .cases
-            .iter()
-            .all(|case| matches!(case.outcome, Outcome::Error { .. })),
+        verdict.cases.iter().all(|case| matches!(case.outcome, Outcome::Error { .. })),
         "{verdict}"
     );
 }

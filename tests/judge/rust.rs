@@ -11,19 +11,12 @@ use crate::cullers::{
 };
 
 fn all(flaw: Flaw) -> impl Fn(&Scene<'_>) -> All + Sync {
-    move |_| All {
-        flaw,
-        bodies: 0,
-        runs: 0,
-    }
+    move |_| All { flaw, bodies: 0, runs: 0 }
 }
 
 /// The cases that were judged and not passed.
 fn failures(verdict: &Verdict) -> Vec<&str> {
-    let against = verdict
-        .cases
-        .iter()
-        .filter(|case| verdict.counts_against(case));
+    let against = verdict.cases.iter().filter(|case| verdict.counts_against(case));
     against.map(|case| case.name.as_str()).collect()
 }
 
@@ -43,20 +36,10 @@ fn our_strategies_pass_their_claims() {
         // Its bodies are those it was made for: such cases are skipped, with a reason.
         let skipped =
             |o: &Outcome| matches!(o, Outcome::Skipped { why } if why.contains("can't change"));
-        assert_eq!(
-            verdict.conclusion(),
-            Conclusion::Incomplete,
-            "{strategy}: {verdict}"
-        );
-        assert!(
-            verdict
-                .cases
-                .iter()
-                .all(|case| case.outcome == Outcome::Pass
-                    || (skipped(&case.outcome)
-                        && (case.group() == "churn/insert-remove"
-                            || case.group().starts_with("stale/"))))
-        );
+        assert_eq!(verdict.conclusion(), Conclusion::Incomplete, "{strategy}: {verdict}");
+        assert!(verdict.cases.iter().all(|case| case.outcome == Outcome::Pass
+            || (skipped(&case.outcome)
+                && (case.group() == "churn/insert-remove" || case.group().starts_with("stale/")))));
         assert!(verdict.pairs().required > 5_000, "{verdict}");
     }
 }
@@ -69,10 +52,7 @@ fn given_boxes_are_reported_exactly() {
     let [culler, world] = [culler.seed(5).run(), world.seed(5).run()].map(Result::unwrap);
     for verdict in [&culler, &world] {
         let mut cases = verdict.cases.iter();
-        assert!(
-            verdict.passed() && cases.all(|case| case.outcome == Outcome::Pass),
-            "{verdict}"
-        );
+        assert!(verdict.passed() && cases.all(|case| case.outcome == Outcome::Pass), "{verdict}");
         assert!(verdict.pairs().required > 5_000, "{verdict}");
     }
     assert_eq!(world.pairs().extra, 0, "{world}");
@@ -86,10 +66,7 @@ fn unmet_claims_are_caught() {
         .claims(Claim::Sphere)
         .run()
         .unwrap();
-    assert!(
-        !verdict.passed() && verdict.pairs().missed > 100,
-        "{verdict}"
-    );
+    assert!(!verdict.passed() && verdict.pairs().missed > 100, "{verdict}");
     let smallest = verdict.smallest.unwrap();
     assert_eq!(smallest.case.frames[0].bodies.len(), 2);
     assert!(smallest.witness.is_some());
@@ -98,28 +75,12 @@ fn unmet_claims_are_caught() {
 /// Balls in f64 with a margin pass; in f32 without one they fail.
 #[test]
 fn balls_need_f64_and_a_margin() {
-    let verdict = judge_pair_test(balls_meet)
-        .claims(Claim::Sphere)
-        .seed(7)
-        .extra_limit(0.1)
-        .run()
-        .unwrap();
+    let verdict =
+        judge_pair_test(balls_meet).claims(Claim::Sphere).seed(7).extra_limit(0.1).run().unwrap();
     assert!(verdict.passed(), "{verdict}");
-    assert_eq!(
-        verdict.pairs().extra,
-        verdict.pairs().by_rounding,
-        "{verdict}"
-    );
-    let verdict = judge_pair_test(balls_meet_without_margin)
-        .claims(Claim::Sphere)
-        .run()
-        .unwrap();
-    assert!(
-        failures(&verdict)
-            .iter()
-            .any(|name| name.starts_with("touch/ball-ball")),
-        "{verdict}"
-    );
+    assert_eq!(verdict.pairs().extra, verdict.pairs().by_rounding, "{verdict}");
+    let verdict = judge_pair_test(balls_meet_without_margin).claims(Claim::Sphere).run().unwrap();
+    assert!(failures(&verdict).iter().any(|name| name.starts_with("touch/ball-ball")), "{verdict}");
     let smallest = verdict.smallest.as_ref().unwrap();
     let depth = smallest.witness.as_ref().unwrap().depth_ulps;
     assert!(depth.is_some_and(|ulps| ulps < 64), "{verdict}");
@@ -136,10 +97,7 @@ fn each_flaw_fails_its_group() {
         let verdict = judge(all(flaw)).cases(&format!("{group}/*")).run().unwrap();
         assert!(!failures(&verdict).is_empty(), "{group}: {verdict}");
     }
-    let verdict = judge(all(Flaw::None))
-        .cases("churn/insert-remove/*")
-        .run()
-        .unwrap();
+    let verdict = judge(all(Flaw::None)).cases("churn/insert-remove/*").run().unwrap();
     assert!(verdict.passed(), "{verdict}");
 }
 
@@ -153,58 +111,26 @@ fn unrepeatable_cullers_fail() {
         bodies: 0,
         runs: runs.fetch_add(1, Ordering::Relaxed),
     };
-    let verdict = judge(fickle)
-        .claims(Claim::Aabb)
-        .cases("exact/tip-to-tip/0000")
-        .run()
-        .unwrap();
+    let verdict = judge(fickle).claims(Claim::Aabb).cases("exact/tip-to-tip/0000").run().unwrap();
     let case = &verdict.cases[0];
-    assert!(
-        matches!(&case.outcome, Outcome::Fail { why } if why.contains("again")),
-        "{verdict}"
-    );
+    assert!(matches!(&case.outcome, Outcome::Fail { why } if why.contains("again")), "{verdict}");
 }
 
 /// Invalid answers are errors and never a pass.
 #[test]
 fn invalid_answers_are_errors() {
     let trouble = |flaw: Flaw| {
-        let verdict = judge(all(flaw))
-            .cases("exact/face-to-face/0000")
-            .run()
-            .unwrap();
+        let verdict = judge(all(flaw)).cases("exact/face-to-face/0000").run().unwrap();
         assert!(!verdict.passed());
         match verdict.cases[0].outcome.clone() {
             Outcome::Error { trouble } => trouble,
             other => panic!("{other:?}"),
         }
     };
-    assert_eq!(
-        trouble(Flaw::SelfPair),
-        AnswerError::SelfPair { frame: 0, body: 0 }
-    );
-    assert_eq!(
-        trouble(Flaw::Twice),
-        AnswerError::Twice {
-            frame: 0,
-            pair: [0, 1]
-        }
-    );
-    assert_eq!(
-        trouble(Flaw::Reversed),
-        AnswerError::Reversed {
-            frame: 0,
-            pair: [1, 0]
-        }
-    );
-    assert_eq!(
-        trouble(Flaw::NoBody),
-        AnswerError::NoBody {
-            frame: 0,
-            pair: [0, 9],
-            bodies: 9
-        }
-    );
+    assert_eq!(trouble(Flaw::SelfPair), AnswerError::SelfPair { frame: 0, body: 0 });
+    assert_eq!(trouble(Flaw::Twice), AnswerError::Twice { frame: 0, pair: [0, 1] });
+    assert_eq!(trouble(Flaw::Reversed), AnswerError::Reversed { frame: 0, pair: [1, 0] });
+    assert_eq!(trouble(Flaw::NoBody), AnswerError::NoBody { frame: 0, pair: [0, 9], bodies: 9 });
     assert!(
         matches!(trouble(Flaw::Panics), AnswerError::Crashed { how, .. } if how.contains("as planned"))
     );
@@ -219,10 +145,7 @@ fn the_extra_limit_is_enforced() {
         .run()
         .unwrap();
     assert!(wide.is_beyond_limit() && !wide.passed(), "{wide}");
-    assert!(
-        wide.pairs().unexplained() > 0 && wide.pairs().both_static > 0,
-        "{wide}"
-    );
+    assert!(wide.pairs().unexplained() > 0 && wide.pairs().both_static > 0, "{wide}");
 }
 
 mod stamped {

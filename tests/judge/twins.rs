@@ -158,12 +158,9 @@ impl Contestant for Twin {
     }
 
     fn frame(&mut self, bodies: &Bodies) {
-        let all: Vec<Option<WorldBox>> = (0..bodies.len())
-            .map(|body| self.known(bodies, body))
-            .collect();
-        let moved: Vec<bool> = (0..bodies.len())
-            .map(|body| self.has_moved(bodies, body))
-            .collect();
+        let all: Vec<Option<WorldBox>> =
+            (0..bodies.len()).map(|body| self.known(bodies, body)).collect();
+        let moved: Vec<bool> = (0..bodies.len()).map(|body| self.has_moved(bodies, body)).collect();
         let mut pairs = Vec::new();
         for j in 0..all.len() {
             for i in 0..j {
@@ -184,15 +181,8 @@ impl Contestant for Twin {
         if let Flaw::Room(room) = self.flaw {
             pairs.truncate(room);
         }
-        let boxes = all
-            .iter()
-            .zip(&self.given)
-            .map(|(known, given)| known.unwrap_or(*given));
-        self.state = State {
-            boxes: boxes.collect(),
-            pairs,
-            moved,
-        };
+        let boxes = all.iter().zip(&self.given).map(|(known, given)| known.unwrap_or(*given));
+        self.state = State { boxes: boxes.collect(), pairs, moved };
         self.seen = (self.given.clone(), bodies.clone());
         self.was = None;
     }
@@ -232,12 +222,7 @@ impl Contestant for Twin {
 fn run(claim: Claim, group: &str, flaw: Flaw) -> Verdict {
     let make = move |_: &Scene<'_>| Twin::new(flaw);
     let cases = format!("{group}/*");
-    judge(make)
-        .claims(claim)
-        .cases(&cases)
-        .seed(3)
-        .run()
-        .unwrap()
+    judge(make).claims(claim).cases(&cases).seed(3).run().unwrap()
 }
 
 #[test]
@@ -245,41 +230,17 @@ fn groups_catch_their_twins() {
     for (claim, group, flaws) in [
         (Claim::Aabb, "crowd/new-pairs", &[Flaw::Room(1 << 18)][..]),
         (Claim::Aabb, "crowd/partners", &[Flaw::Room(4096)]),
-        (
-            Claim::Aabb,
-            "stale/reshape",
-            &[Flaw::SamePose, Flaw::SameNumber],
-        ),
+        (Claim::Aabb, "stale/reshape", &[Flaw::SamePose, Flaw::SameNumber]),
         (Claim::Aabb, "stale/reorder", &[Flaw::SameNumber]),
-        (
-            Claim::Aabb,
-            "stale/rebase",
-            &[Flaw::Static, Flaw::SameNumber],
-        ),
-        (
-            Claim::Aabb,
-            "stale/all-at-once",
-            &[Flaw::Late, Flaw::SamePose, Flaw::SameNumber],
-        ),
-        (
-            Claim::Aabb,
-            "stale/sleep",
-            &[Flaw::OneAsleep, Flaw::LostOnWaking, Flaw::FirstMove],
-        ),
-        (
-            Claim::Filter,
-            "filter/groups",
-            &[Flaw::OneMask, Flaw::EightGroups],
-        ),
+        (Claim::Aabb, "stale/rebase", &[Flaw::Static, Flaw::SameNumber]),
+        (Claim::Aabb, "stale/all-at-once", &[Flaw::Late, Flaw::SamePose, Flaw::SameNumber]),
+        (Claim::Aabb, "stale/sleep", &[Flaw::OneAsleep, Flaw::LostOnWaking, Flaw::FirstMove]),
+        (Claim::Filter, "filter/groups", &[Flaw::OneMask, Flaw::EightGroups]),
         (Claim::Filter, "filter/excluded", &[Flaw::NothingExcluded]),
         (Claim::Filter, "filter/at-rest", &[Flaw::FirstFilter]),
         (Claim::Order, "order/insertion", &[Flaw::Grown]),
         (Claim::Restore, "restore/replay", &[Flaw::Unsaved]),
-        (
-            Claim::Margin,
-            "margin/global",
-            &[Flaw::NoMargin, Flaw::LargerMargin],
-        ),
+        (Claim::Margin, "margin/global", &[Flaw::NoMargin, Flaw::LargerMargin]),
         (
             Claim::Margin,
             "margin/by-body",
@@ -291,11 +252,7 @@ fn groups_catch_their_twins() {
         assert_eq!(right.pairs().extra, 0, "{group}: {right}");
         for &flaw in flaws {
             let wrong = run(claim, group, flaw);
-            assert_eq!(
-                wrong.conclusion(),
-                Conclusion::NotPassed,
-                "{flaw:?}: {wrong}"
-            );
+            assert_eq!(wrong.conclusion(), Conclusion::NotPassed, "{flaw:?}: {wrong}");
         }
     }
 }
@@ -384,11 +341,7 @@ fn overdue_lists_are_caught() {
         for &renewal in wrong {
             let verdict = run(group, renewal);
             let word = verdict.conclusion();
-            assert_eq!(
-                word,
-                Conclusion::NotPassed,
-                "{group}, {renewal:?}: {verdict}"
-            );
+            assert_eq!(word, Conclusion::NotPassed, "{group}, {renewal:?}: {verdict}");
         }
     }
 }

@@ -16,10 +16,7 @@ fn files_match_their_command() {
     let made = vectors::files().unwrap();
     for (name, bytes) in &made {
         let there = std::fs::read(directory().join(name)).unwrap_or_default();
-        assert!(
-            there == *bytes,
-            "{name} is stale: sdop cases --vectors data/vectors"
-        );
+        assert!(there == *bytes, "{name} is stale: sdop cases --vectors data/vectors");
     }
     let names: BTreeSet<&str> = made.iter().map(|(name, _)| name.as_str()).collect();
     for file in std::fs::read_dir(directory()).unwrap() {
@@ -48,11 +45,8 @@ fn vectors_agree_and_cover_both_answers() {
             }
             for body in case["bodies"].as_array().unwrap() {
                 for (numbers, bits) in [("pose", "pose_hex"), ("box", "box_hex")] {
-                    for (x, bits) in body[numbers]
-                        .as_array()
-                        .unwrap()
-                        .iter()
-                        .zip(body[bits].as_array().unwrap())
+                    for (x, bits) in
+                        body[numbers].as_array().unwrap().iter().zip(body[bits].as_array().unwrap())
                     {
                         let bits = u32::from_str_radix(bits.as_str().unwrap(), 16).unwrap();
                         // Exact, so that readers of doubles compute with the same number.
@@ -66,9 +60,6 @@ fn vectors_agree_and_cover_both_answers() {
     assert!(cases.len() >= 200, "{}", cases.len());
     for claim in Claim::PLAIN {
         let [apart, meet] = answers[claim.name()];
-        assert!(
-            apart >= 20 && meet >= 20,
-            "{claim}: {apart} apart, {meet} meet"
-        );
+        assert!(apart >= 20 && meet >= 20, "{claim}: {apart} apart, {meet} meet");
     }
 }

@@ -8,10 +8,7 @@ use sdop::mesh::{MeshFormat, ProceduralShape, ReadOptions, TriangleMesh, read, w
 use super::{sha256, signed_volume};
 
 fn shape(name: &str, sizes: &[(&str, f64)]) -> TriangleMesh {
-    ProceduralShape::from_name(name, sizes)
-        .unwrap()
-        .build()
-        .unwrap()
+    ProceduralShape::from_name(name, sizes).unwrap().build().unwrap()
 }
 
 /// Closed surfaces stay closed and keep their volume.
@@ -23,11 +20,7 @@ fn decimation_keeps_surfaces_closed() {
         (shape("torus", &[]), 500, 0.03),
         (shape("knot", &[]), 800, 0.06),
         (fine_box, 12, 1e-6),
-        (
-            read("data/meshes/spot.tri", &ReadOptions::default()).unwrap(),
-            1000,
-            0.01,
-        ),
+        (read("data/meshes/spot.tri", &ReadOptions::default()).unwrap(), 1000, 0.01),
     ];
     for (mesh, target, tolerance) in cases {
         let coarse = decimate(&mesh, target);
@@ -43,11 +36,7 @@ fn decimation_keeps_surfaces_closed() {
         );
         assert_eq!(after.unused_vertices, 0);
         let ratio = signed_volume(&coarse) / signed_volume(&mesh);
-        assert!(
-            (ratio - 1.0).abs() < tolerance,
-            "{}: {ratio} of the volume",
-            mesh.name
-        );
+        assert!((ratio - 1.0).abs() < tolerance, "{}: {ratio} of the volume", mesh.name);
         TriangleMesh::new("valid", coarse.vertices, coarse.triangles).unwrap();
     }
 }
@@ -61,13 +50,11 @@ fn subdivided(mesh: TriangleMesh, times: u32) -> TriangleMesh {
         let mut triangles = Vec::new();
         for [a, b, c] in mesh.triangles {
             let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| {
-                *edges
-                    .entry((from.min(to), from.max(to)))
-                    .or_insert_with(|| {
-                        let [a, b] = [from, to].map(|end| Vec3::from(vertices[end as usize]));
-                        vertices.push(((a + b) * 0.5).to_array());
-                        vertices.len() as u32 - 1
-                    })
+                *edges.entry((from.min(to), from.max(to))).or_insert_with(|| {
+                    let [a, b] = [from, to].map(|end| Vec3::from(vertices[end as usize]));
+                    vertices.push(((a + b) * 0.5).to_array());
+                    vertices.len() as u32 - 1
+                })
             });
             triangles.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
         }
@@ -137,8 +124,5 @@ fn the_last_triangles_keep_the_genus() {
 fn shipped_bunny_is_reproduced() {
     let bunny = read("data/meshes/bunny.tri", &ReadOptions::default()).unwrap();
     let shipped = std::fs::read("data/meshes/bunny-4k.tri").unwrap();
-    assert_eq!(
-        sha256(&write_bytes(&decimate(&bunny, 4000), MeshFormat::Tri)),
-        sha256(&shipped)
-    );
+    assert_eq!(sha256(&write_bytes(&decimate(&bunny, 4000), MeshFormat::Tri)), sha256(&shipped));
 }

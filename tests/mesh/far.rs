@@ -9,13 +9,8 @@ use sdop::volume::{Hull, Shape, ShapeSpec};
 
 use crate::forms::BOX_FACES;
 
-const FORMATS: [MeshFormat; 5] = [
-    MeshFormat::Tri,
-    MeshFormat::Obj,
-    MeshFormat::Stl,
-    MeshFormat::Ply,
-    MeshFormat::Off,
-];
+const FORMATS: [MeshFormat; 5] =
+    [MeshFormat::Tri, MeshFormat::Obj, MeshFormat::Stl, MeshFormat::Ply, MeshFormat::Off];
 
 fn read(format: MeshFormat, text: impl AsRef<[u8]>) -> TriangleMesh {
     read_bytes("test", format, text.as_ref(), &ReadOptions::default()).unwrap()
@@ -81,23 +76,14 @@ fn far_wall_keeps_its_form() {
     for format in FORMATS {
         for real in ["float", "double"] {
             let mesh = read(format, file(format, real, &words, &BOX_FACES));
-            let wanted: Vec<_> = BOX_FACES
-                .iter()
-                .map(|t| t.map(|i| points[i as usize]))
-                .collect();
+            let wanted: Vec<_> = BOX_FACES.iter().map(|t| t.map(|i| points[i as usize])).collect();
             assert_eq!(soup(&mesh), wanted, "{format:?}");
             assert_eq!(mesh.rounding, 0.0);
             let topology = Topology::of(&mesh);
-            assert_eq!(
-                (topology.components.len(), topology.closed_components()),
-                (1, 1)
-            );
+            assert_eq!((topology.components.len(), topology.closed_components()), (1, 1));
             let shape = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
             let volume = Hull::of(&shape.vertices).volume(&shape.vertices);
-            assert!(
-                (volume / 3.0e9 - 1.0).abs() < 1e-9,
-                "{format:?}: {volume:e}"
-            );
+            assert!((volume / 3.0e9 - 1.0).abs() < 1e-9, "{format:?}: {volume:e}");
             assert_eq!(shape.pose_offset, mesh.offset);
         }
     }
@@ -129,18 +115,12 @@ fn near_coordinates_are_the_nearest_f32() {
     };
     let mut differ = 0;
     for _ in 0..200 {
-        let words: Vec<[String; 3]> = (0..8)
-            .map(|i| [word(i), word(i + 1), word(i + 2)])
-            .collect();
+        let words: Vec<[String; 3]> = (0..8).map(|i| [word(i), word(i + 1), word(i + 2)]).collect();
         let nearest = |w: &String| w.parse::<f32>().unwrap();
         let twice = |w: &String| w.parse::<f64>().unwrap() as f32;
         let wanted = words.iter().map(|point| point.each_ref().map(nearest));
         let wanted: Vec<[f32; 3]> = wanted.collect();
-        differ += words
-            .as_flattened()
-            .iter()
-            .filter(|w| nearest(w) != twice(w))
-            .count();
+        differ += words.as_flattened().iter().filter(|w| nearest(w) != twice(w)).count();
         for format in FORMATS {
             let mesh = read(format, file(format, "float", &words, &BOX_FACES));
             assert_eq!((mesh.offset, mesh.rounding), ([0.0; 3], 0.0));
@@ -151,10 +131,7 @@ fn near_coordinates_are_the_nearest_f32() {
             }
         }
     }
-    assert!(
-        differ > 100,
-        "{differ} words that f64 would have rounded twice"
-    );
+    assert!(differ > 100, "{differ} words that f64 would have rounded twice");
 }
 
 /// A box whose one corner rounds by `moved` times 2⁻²⁰ of its size.
@@ -223,10 +200,7 @@ fn written_mesh_reads_back() {
             assert_eq!(again.rounding, 0.0, "{format:?}");
         }
     }
-    assert!(
-        far > 2000 && far < 4000 && rounded > 500,
-        "{far} far, {rounded} rounded"
-    );
+    assert!(far > 2000 && far < 4000 && rounded > 500, "{far} far, {rounded} rounded");
 }
 
 /// The bound holds exactly, in whole numbers, and isn't far above what it bounds.
@@ -254,10 +228,7 @@ fn the_rounding_is_what_was_moved() {
         });
         let moved = (moved.max().unwrap() as f64).sqrt() / 2f64.powi(33);
         let bound = f64::from(mesh.rounding);
-        assert!(
-            moved <= bound && bound <= moved * 1.001 + 1e-30,
-            "{moved:e}, {bound:e}"
-        );
+        assert!(moved <= bound && bound <= moved * 1.001 + 1e-30, "{moved:e}, {bound:e}");
         assert!(bound <= size * 2f64.powi(-23));
         tight += usize::from(moved > 0.0);
     }

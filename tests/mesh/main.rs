@@ -22,16 +22,11 @@ use sha2::{Digest, Sha256};
 /// look outward.
 fn signed_volume(mesh: &TriangleMesh) -> f64 {
     let corner = |i: u32| glam::Vec3::from(mesh.vertices[i as usize]).as_dvec3();
-    let six_volumes = mesh
-        .triangles
-        .iter()
-        .map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))));
+    let six_volumes =
+        mesh.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))));
     six_volumes.sum::<f64>() / 6.0
 }
 
 fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -4,12 +4,7 @@ use glam::Vec3;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read, read_bytes};
 
 fn read_text(text: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
-    read_bytes(
-        "cube.obj",
-        MeshFormat::Obj,
-        text.as_ref(),
-        &ReadOptions::default(),
-    )
+    read_bytes("cube.obj", MeshFormat::Obj, text.as_ref(), &ReadOptions::default())
 }
 
 /// Groups materials and texture seams leave one mesh.
@@ -19,10 +14,7 @@ fn obj_groups_make_one_mesh() {
                 vn 0 0 1\nusemtl red\nf 1/1/1 2/2/1 3/1/1\ng second\nv 0 0 2 2\nusemtl blue\nf 1/2 3 -1\n";
     let mesh = read_text(text).unwrap();
     assert_eq!(mesh.name, "cube");
-    assert_eq!(
-        mesh.vertices,
-        [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|v| v.to_array())
-    );
+    assert_eq!(mesh.vertices, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|v| v.to_array()));
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
 }
 
@@ -31,10 +23,7 @@ fn obj_groups_make_one_mesh() {
 fn polygons_become_fans() {
     let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nf 1 2 3 4 5\nf 1 2\nf 5\n";
     let mesh = read_text(text).unwrap();
-    assert_eq!(
-        mesh.triangles,
-        [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 1, 1], [4, 4, 4]]
-    );
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 1, 1], [4, 4, 4]]);
 }
 
 /// Bad files are refused with their line.
@@ -43,10 +32,7 @@ fn invalid_files_are_rejected() {
     let start = "v 0 0 0\nv 1 0 0\nvt 0 0\nv 0 1 0\n";
     let cases: [(String, &str); 12] = [
         (String::new(), "cube.obj: the mesh has no vertices"),
-        (
-            "# nothing\no a\n".into(),
-            "cube.obj: the mesh has no vertices",
-        ),
+        ("# nothing\no a\n".into(), "cube.obj: the mesh has no vertices"),
         (start.into(), "cube.obj: the mesh has no triangles"),
         (
             format!("{start}f 1 2 3\nf 1 2 4\n"),
@@ -64,18 +50,9 @@ fn invalid_files_are_rejected() {
             format!("{start}f 1 2 x\n"),
             "cube.obj:5: a face should be `f a b c …`, each a/b/c with whole numbers",
         ),
-        (
-            format!("{start}f\n"),
-            "cube.obj:5: the face names no vertices",
-        ),
-        (
-            format!("{start}v 1 2\n"),
-            "cube.obj:5: a vertex should be `v x y z`",
-        ),
-        (
-            format!("{start}v 1 2 3 0\n"),
-            "cube.obj:5: the vertex has the weight 0",
-        ),
+        (format!("{start}f\n"), "cube.obj:5: the face names no vertices"),
+        (format!("{start}v 1 2\n"), "cube.obj:5: a vertex should be `v x y z`"),
+        (format!("{start}v 1 2 3 0\n"), "cube.obj:5: the vertex has the weight 0"),
         (
             format!("{start}v 1 2 nan\nf 1 2 4\n"),
             "cube.obj:5: vertex 3 has the coordinate NaN: not a finite f32",
@@ -86,11 +63,7 @@ fn invalid_files_are_rejected() {
         ),
     ];
     for (text, expected) in cases {
-        assert_eq!(
-            read_text(&text).unwrap_err().to_string(),
-            expected,
-            "{text}"
-        );
+        assert_eq!(read_text(&text).unwrap_err().to_string(), expected, "{text}");
     }
 }
 
@@ -112,15 +85,9 @@ fn path_names_format_and_mesh() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("Pyramid.OBJ");
     std::fs::write(&path, "v 0 0 0\nf 1 1 1\n").unwrap();
-    assert_eq!(
-        read(&path, &ReadOptions::default()).unwrap().name,
-        "Pyramid"
-    );
+    assert_eq!(read(&path, &ReadOptions::default()).unwrap().name, "Pyramid");
     let message = |file: &str| {
-        read(file, &ReadOptions::default())
-            .map(|mesh| mesh.name)
-            .unwrap_err()
-            .to_string()
+        read(file, &ReadOptions::default()).map(|mesh| mesh.name).unwrap_err().to_string()
     };
     assert_eq!(
         message("a.fbx"),

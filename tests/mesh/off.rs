@@ -3,12 +3,7 @@
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 
 fn off(text: &str) -> Result<TriangleMesh, MeshError> {
-    read_bytes(
-        "a.off",
-        MeshFormat::Off,
-        text.as_bytes(),
-        &ReadOptions::default(),
-    )
+    read_bytes("a.off", MeshFormat::Off, text.as_bytes(), &ReadOptions::default())
 }
 
 #[track_caller]
@@ -37,9 +32,7 @@ fn headers_say_what_vertices_have() {
         let vertices = ["0 0 0", "2 0 0", "2 2 0", "0 2 0"];
         let vertices = vertices.map(|v| format!("{v}{weight}{extra}\n")).concat();
         assert_square(&format!("{header}\n\n4 1 4\n{vertices}4 0 1 2 3\n"));
-        assert_square(&format!(
-            "{header}\n4 1\n# faces\n{vertices}4 0 1 2 3 255 0 0\n"
-        ));
+        assert_square(&format!("{header}\n4 1\n# faces\n{vertices}4 0 1 2 3 255 0 0\n"));
     }
 }
 
@@ -62,45 +55,18 @@ fn invalid_off_is_rejected() {
     let with = |from: &str, to: &str| square.replacen(from, to, 1);
     for (text, expected) in [
         (String::new(), "a.off: the mesh has no vertices"),
-        (
-            "solid\n".into(),
-            "a.off:1: this is not OFF: found \"solid\"",
-        ),
+        ("solid\n".into(), "a.off:1: this is not OFF: found \"solid\""),
         ("OFF BINARY\n".into(), "a.off:1: this is a binary OFF file"),
-        (
-            with("OFF", "nOFF 4"),
-            "a.off:1: vertices of nOFF have another number of dimensions",
-        ),
-        (
-            with("4 1 0", "4 0 0").replace("4 0 1 2 3\n", ""),
-            "a.off: the mesh has no triangles",
-        ),
+        (with("OFF", "nOFF 4"), "a.off:1: vertices of nOFF have another number of dimensions"),
+        (with("4 1 0", "4 0 0").replace("4 0 1 2 3\n", ""), "a.off: the mesh has no triangles"),
         (with("4 1", "0 1"), "a.off:2: the mesh has no vertices"),
-        (
-            with("4 1", "-4 1"),
-            "a.off:2: a count should not be negative, found -4",
-        ),
-        (
-            with("4 1", "5 1"),
-            "a.off:7: the file ends where face 0 of 1 should be",
-        ),
-        (
-            with("4 1", "4 2"),
-            "a.off:7: the file ends where face 1 of 2 should be",
-        ),
-        (
-            with("2 2 0", "2 x 0"),
-            "a.off:5: a coordinate should be a number, found \"x\"",
-        ),
-        (
-            with("1 2 3", "1 2 4"),
-            "a.off:7: triangle 1 names vertex 4, but the vertices are 0 to 3",
-        ),
+        (with("4 1", "-4 1"), "a.off:2: a count should not be negative, found -4"),
+        (with("4 1", "5 1"), "a.off:7: the file ends where face 0 of 1 should be"),
+        (with("4 1", "4 2"), "a.off:7: the file ends where face 1 of 2 should be"),
+        (with("2 2 0", "2 x 0"), "a.off:5: a coordinate should be a number, found \"x\""),
+        (with("1 2 3", "1 2 4"), "a.off:7: triangle 1 names vertex 4, but the vertices are 0 to 3"),
         (with("4 0 1 2 3", "0"), "a.off:7: face 0 has no vertices"),
-        (
-            format!("{square}3 0 1 2\n"),
-            "a.off:8: 4 words after the last face",
-        ),
+        (format!("{square}3 0 1 2\n"), "a.off:8: 4 words after the last face"),
     ] {
         assert_eq!(off(&text).unwrap_err().to_string(), expected, "{text}");
     }

@@ -5,13 +5,8 @@ use glam::Vec3;
 use proptest::prelude::*;
 use sdop::mesh::{MeshFormat, ReadOptions, TriFormat, TriangleMesh, read_bytes, write_bytes};
 
-const FORMATS: [MeshFormat; 5] = [
-    MeshFormat::Tri,
-    MeshFormat::Obj,
-    MeshFormat::Stl,
-    MeshFormat::Ply,
-    MeshFormat::Off,
-];
+const FORMATS: [MeshFormat; 5] =
+    [MeshFormat::Tri, MeshFormat::Obj, MeshFormat::Stl, MeshFormat::Ply, MeshFormat::Off];
 
 /// Any finite f32 up to 2⁶⁰: both zeros, subnormals, and every exponent as often as the others.
 fn coordinate() -> impl Strategy<Value = f32> {
@@ -32,10 +27,7 @@ fn mesh() -> impl Strategy<Value = TriangleMesh> {
         let vertices = prop::collection::vec([coordinate(), coordinate(), coordinate()], count);
         let triangles = prop::collection::vec([index.clone(), index.clone(), index], 1..12);
         (vertices, triangles).prop_map(|(vertices, triangles)| {
-            let vertices = vertices
-                .into_iter()
-                .map(Vec3::from_array)
-                .collect::<Vec<_>>();
+            let vertices = vertices.into_iter().map(Vec3::from_array).collect::<Vec<_>>();
             TriangleMesh::new("mesh", vertices, triangles).unwrap()
         })
     })
@@ -54,19 +46,14 @@ fn corners(mesh: &TriangleMesh) -> Vec<[u32; 3]> {
 fn read_any(format: MeshFormat, bytes: &[u8]) -> Option<TriangleMesh> {
     let options = ReadOptions::default();
     for &tri_format in TriFormat::ALL {
-        let options = ReadOptions {
-            tri_format: Some(tri_format),
-            ..ReadOptions::default()
-        };
+        let options = ReadOptions { tri_format: Some(tri_format), ..ReadOptions::default() };
         if format == MeshFormat::Tri
             && let Ok(mesh) = read_bytes("mesh", format, bytes, &options)
         {
             assert_contract(mesh);
         }
     }
-    read_bytes("mesh", format, bytes, &options)
-        .ok()
-        .inspect(|mesh| assert_contract(mesh.clone()))
+    read_bytes("mesh", format, bytes, &options).ok().inspect(|mesh| assert_contract(mesh.clone()))
 }
 
 fn assert_contract(mesh: TriangleMesh) {
@@ -85,38 +72,24 @@ fn word() -> impl Strategy<Value = String> {
                  property list uchar int vertex_indices|property list int uint vertex_index|\
                  property list float char q|end_header|comment|v|vn|vt|f|l|o|g|usemtl|mtllib|1//2|-1/-1/-1|\
                  1//6148914691236517206|#|-|0x|solid|endsolid|facet normal 0 0 1|outer loop|vertex|endloop|endfacet|end|OFF|4OFF|element tristrips|nan(ind)|1.#QNAN|1d5|\\|\u{feff}|\u{0}";
-    let words: Vec<String> = words
-        .split('|')
-        .map(|word| word.trim_start().to_owned())
-        .collect();
+    let words: Vec<String> = words.split('|').map(|word| word.trim_start().to_owned()).collect();
     prop_oneof![3 => numbers, 3 => prop::sample::select(words), 1 => "\\PC{0,8}"]
 }
 
 fn text() -> impl Strategy<Value = String> {
     let separator = prop::sample::select(vec![" ", " ", "\n", "\n", "\r\n", "\t"]);
-    prop::collection::vec((word(), separator), 0..60).prop_map(|words| {
-        words
-            .into_iter()
-            .map(|(word, separator)| word + separator)
-            .collect()
-    })
+    prop::collection::vec((word(), separator), 0..60)
+        .prop_map(|words| words.into_iter().map(|(word, separator)| word + separator).collect())
 }
 
 /// A good file of some format with a few bytes changed and perhaps its end cut off.
 fn damaged_file() -> impl Strategy<Value = Vec<u8>> {
     let change = (any::<prop::sample::Index>(), any::<u8>());
     let changes = prop::collection::vec(change, 0..4);
-    (
-        mesh(),
-        0..=FORMATS.len(),
-        changes,
-        any::<Option<prop::sample::Index>>(),
-    )
-        .prop_map(|(mesh, format, changes, cut)| {
+    (mesh(), 0..=FORMATS.len(), changes, any::<Option<prop::sample::Index>>()).prop_map(
+        |(mesh, format, changes, cut)| {
             let binary = || binary_ply(&mesh);
-            let mut bytes = FORMATS
-                .get(format)
-                .map_or_else(binary, |f| write_bytes(&mesh, *f));
+            let mut bytes = FORMATS.get(format).map_or_else(binary, |f| write_bytes(&mesh, *f));
             for (at, byte) in changes {
                 let at = at.index(bytes.len());
                 bytes[at] = byte;
@@ -125,7 +98,8 @@ fn damaged_file() -> impl Strategy<Value = Vec<u8>> {
                 bytes.truncate(cut.index(bytes.len()));
             }
             bytes
-        })
+        },
+    )
 }
 
 fn binary_ply(mesh: &TriangleMesh) -> Vec<u8> {

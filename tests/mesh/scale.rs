@@ -5,10 +5,7 @@ use sdop::mesh::{ProceduralShape, TriangleMesh};
 use crate::signed_volume;
 
 fn l_shape() -> TriangleMesh {
-    ProceduralShape::from_name("l-shape", &[])
-        .unwrap()
-        .build()
-        .unwrap()
+    ProceduralShape::from_name("l-shape", &[]).unwrap().build().unwrap()
 }
 
 /// Counter-clockwise faces look outward before and after, so the volume has the factors' sizes and
@@ -45,38 +42,23 @@ fn products_are_rounded_once() {
 #[test]
 fn bad_scales_are_refused() {
     let mesh = l_shape();
-    for scale in [
-        [0.0, 1.0, 1.0],
-        [1.0, f64::NAN, 1.0],
-        [1.0, 1.0, f64::INFINITY],
-    ] {
+    for scale in [[0.0, 1.0, 1.0], [1.0, f64::NAN, 1.0], [1.0, 1.0, f64::INFINITY]] {
         let message = mesh.scaled(scale).unwrap_err().to_string();
         assert!(message.contains("zero or not finite"), "{message}");
     }
-    assert!(
-        mesh.scaled(1e30)
-            .unwrap_err()
-            .to_string()
-            .contains("beyond 2^60")
-    );
+    assert!(mesh.scaled(1e30).unwrap_err().to_string().contains("beyond 2^60"));
 }
 
 /// A wall on a map. Factors of 2 round nothing, so its points are exact multiples, and what reading
 /// has moved grows with them.
 #[test]
 fn far_meshes_scale_about_the_origin() {
-    let wall = [
-        [6e8, 5e9, 0.1],
-        [6e8 + 4000.1, 5e9, 0.2],
-        [6e8, 5e9 + 3000.3, 0.3],
-    ];
+    let wall = [[6e8, 5e9, 0.1], [6e8 + 4000.1, 5e9, 0.2], [6e8, 5e9 + 3000.3, 0.3]];
     let mesh = TriangleMesh::from_f64(&wall, &[[0, 1, 2]]).unwrap();
     let twice = mesh.scaled([-2.0, 2.0, 2.0]).unwrap();
     assert!(mesh.is_far() && twice.is_far() && mesh.rounding > 0.0);
-    let expected: Vec<[f64; 3]> = mesh
-        .points()
-        .map(|[x, y, z]| [-2.0 * x, 2.0 * y, 2.0 * z])
-        .collect();
+    let expected: Vec<[f64; 3]> =
+        mesh.points().map(|[x, y, z]| [-2.0 * x, 2.0 * y, 2.0 * z]).collect();
     assert_eq!(twice.points().collect::<Vec<_>>(), expected);
     assert!(twice.rounding >= 2.0 * mesh.rounding);
     assert_eq!(twice.triangles, [[0, 2, 1]]);

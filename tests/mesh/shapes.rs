@@ -10,10 +10,7 @@ use sdop::mesh::{ProceduralShape, TriangleMesh};
 use super::{sha256, signed_volume};
 
 fn default_mesh(name: &str) -> TriangleMesh {
-    ProceduralShape::from_name(name, &[])
-        .unwrap()
-        .build()
-        .unwrap()
+    ProceduralShape::from_name(name, &[]).unwrap().build().unwrap()
 }
 
 fn with(name: &str, sizes: &[(&str, f64)]) -> Result<TriangleMesh, ShapeError> {
@@ -30,11 +27,7 @@ fn assert_oriented(mesh: &TriangleMesh) {
     }
     for (&(from, to), &count) in &directed {
         assert_eq!(count, 1, "{}: edge {from}->{to} used twice", mesh.name);
-        assert!(
-            directed.contains_key(&(to, from)),
-            "{}: edge {from}->{to} unpaired",
-            mesh.name
-        );
+        assert!(directed.contains_key(&(to, from)), "{}: edge {from}->{to} unpaired", mesh.name);
     }
 }
 
@@ -44,19 +37,11 @@ fn shapes_are_closed_and_oriented() {
     for name in ProceduralShape::NAMES {
         let mesh = default_mesh(name);
         let topology = Topology::of(&mesh);
-        let euler = if ["torus", "gear", "knot"].contains(&name) {
-            0
-        } else {
-            2
-        };
+        let euler = if ["torus", "gear", "knot"].contains(&name) { 0 } else { 2 };
         assert_eq!(mesh.name, name);
         assert_eq!(topology.components.len(), 1, "{name}");
         assert!(topology.components[0].is_closed(), "{name}");
-        assert_eq!(
-            topology.components[0].euler_characteristic(),
-            euler,
-            "{name}"
-        );
+        assert_eq!(topology.components[0].euler_characteristic(), euler, "{name}");
         assert_eq!(topology.total().degenerate, 0, "{name}");
         assert_eq!(topology.unused_vertices, 0, "{name}");
         assert_oriented(&mesh);
@@ -72,51 +57,25 @@ fn volumes_match_their_formulas() {
     let polygon = |n: f64| 0.5 * n * (2.0 * pi / n).sin();
     let exact = [
         (with("box", &[("x", 2.0), ("y", 3.0), ("z", 5.0)]), 30.0),
-        (
-            with("plate", &[("x", 4.0), ("y", 2.0), ("thickness", 0.5)]),
-            4.0,
-        ),
-        (
-            with(
-                "needle",
-                &[("length", 3.0), ("radius", 1.0), ("sides", 5.0)],
-            ),
-            polygon(5.0),
-        ),
-        (
-            with(
-                "l-shape",
-                &[("x", 4.0), ("y", 3.0), ("arm", 1.0), ("thickness", 2.0)],
-            ),
-            12.0,
-        ),
+        (with("plate", &[("x", 4.0), ("y", 2.0), ("thickness", 0.5)]), 4.0),
+        (with("needle", &[("length", 3.0), ("radius", 1.0), ("sides", 5.0)]), polygon(5.0)),
+        (with("l-shape", &[("x", 4.0), ("y", 3.0), ("arm", 1.0), ("thickness", 2.0)]), 12.0),
     ];
     for (mesh, volume) in exact {
         let mesh = mesh.unwrap();
         let found = signed_volume(&mesh);
-        assert!(
-            (found / volume - 1.0).abs() < 1e-6,
-            "{}: {found} for {volume}",
-            mesh.name
-        );
+        assert!((found / volume - 1.0).abs() < 1e-6, "{}: {found} for {volume}", mesh.name);
     }
     let smooth = [
         (with("icosphere", &[("subdivisions", 4.0)]), 4.0 / 3.0 * pi),
         (with("torus", &[]), 2.0 * pi * pi * 0.25 * 0.25),
         // Pappus: area of the tube times the knot's length, 3.0 radii a unit of the curve.
-        (
-            with("knot", &[("segments", 512.0), ("sides", 64.0)]),
-            pi * 0.15 * 0.15 * knot_length(),
-        ),
+        (with("knot", &[("segments", 512.0), ("sides", 64.0)]), pi * 0.15 * 0.15 * knot_length()),
     ];
     for (mesh, volume) in smooth {
         let mesh = mesh.unwrap();
         let share = signed_volume(&mesh) / volume;
-        assert!(
-            (0.97..1.0).contains(&share),
-            "{}: {share} of the smooth volume",
-            mesh.name
-        );
+        assert!((0.97..1.0).contains(&share), "{}: {share} of the smooth volume", mesh.name);
     }
 }
 
@@ -137,10 +96,7 @@ fn knot_length() -> f64 {
 #[test]
 fn sizes_are_kept() {
     let gear = default_mesh("gear");
-    let radii = gear
-        .vertices
-        .iter()
-        .map(|v| glam::Vec2::new(v[0], v[1]).length());
+    let radii = gear.vertices.iter().map(|v| glam::Vec2::new(v[0], v[1]).length());
     assert!((radii.clone().fold(0.0, f32::max) - 1.0).abs() < 1e-6);
     assert!((radii.fold(9.0, f32::min) - 0.3).abs() < 1e-6);
     for vertex in default_mesh("icosphere").vertices {
@@ -156,60 +112,20 @@ fn sizes_are_kept() {
 fn invalid_sizes_are_rejected() {
     type Case<'a> = (&'a str, &'a [(&'a str, f64)], &'a str, &'a str);
     let cases: [Case; 9] = [
-        (
-            "cube",
-            &[],
-            r#"there is no shape "cube""#,
-            "the shapes are box, icosphere, needle",
-        ),
-        (
-            "box",
-            &[("w", 1.0)],
-            r#"the shape "box" has no size "w""#,
-            "its sizes are x, y, z",
-        ),
+        ("cube", &[], r#"there is no shape "cube""#, "the shapes are box, icosphere, needle"),
+        ("box", &[("w", 1.0)], r#"the shape "box" has no size "w""#, "its sizes are x, y, z"),
         (
             "box",
             &[("x", 0.0)],
             r#"the size "x" of the shape "box" cannot be 0"#,
             "x must be from 2^-60",
         ),
-        (
-            "box",
-            &[("x", f64::NAN)],
-            "cannot be NaN",
-            "x must be from 2^-60 to 2^58",
-        ),
-        (
-            "needle",
-            &[("sides", 2.5)],
-            "cannot be 2.5",
-            "sides must be a whole number",
-        ),
-        (
-            "needle",
-            &[("sides", -3.0)],
-            "cannot be 0",
-            "sides must be from 3 to 1024",
-        ),
-        (
-            "icosphere",
-            &[("subdivisions", 8.0)],
-            "cannot be 8",
-            "subdivisions must be from 0 to 7",
-        ),
-        (
-            "torus",
-            &[("tube", 1.0)],
-            "cannot be 1",
-            "tube must be less than 1, the ring's radius",
-        ),
-        (
-            "gear",
-            &[("bore", 0.75)],
-            "cannot be 0.75",
-            "bore must be less than 0.7",
-        ),
+        ("box", &[("x", f64::NAN)], "cannot be NaN", "x must be from 2^-60 to 2^58"),
+        ("needle", &[("sides", 2.5)], "cannot be 2.5", "sides must be a whole number"),
+        ("needle", &[("sides", -3.0)], "cannot be 0", "sides must be from 3 to 1024"),
+        ("icosphere", &[("subdivisions", 8.0)], "cannot be 8", "subdivisions must be from 0 to 7"),
+        ("torus", &[("tube", 1.0)], "cannot be 1", "tube must be less than 1, the ring's radius"),
+        ("gear", &[("bore", 0.75)], "cannot be 0.75", "bore must be less than 0.7"),
     ];
     for (name, sizes, message, help) in cases {
         let error = with(name, sizes).unwrap_err();
@@ -229,15 +145,7 @@ fn shape_bits_are_fixed() {
         for vertex in &mesh.vertices {
             bytes.extend(vertex.iter().flat_map(|c| c.to_bits().to_le_bytes()));
         }
-        bytes.extend(
-            mesh.triangles
-                .as_flattened()
-                .iter()
-                .flat_map(|i| i.to_le_bytes()),
-        );
+        bytes.extend(mesh.triangles.as_flattened().iter().flat_map(|i| i.to_le_bytes()));
     }
-    assert_eq!(
-        sha256(&bytes),
-        "a8925df26c80ade6f49e90e899554bad3151f811aedf245fb136d122973c82ac"
-    );
+    assert_eq!(sha256(&bytes), "a8925df26c80ade6f49e90e899554bad3151f811aedf245fb136d122973c82ac");
 }

@@ -4,21 +4,11 @@ use glam::Vec3;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 
 fn stl(bytes: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
-    read_bytes(
-        "a.stl",
-        MeshFormat::Stl,
-        bytes.as_ref(),
-        &ReadOptions::default(),
-    )
+    read_bytes("a.stl", MeshFormat::Stl, bytes.as_ref(), &ReadOptions::default())
 }
 
 fn ply(bytes: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
-    read_bytes(
-        "a.ply",
-        MeshFormat::Ply,
-        bytes.as_ref(),
-        &ReadOptions::default(),
-    )
+    read_bytes("a.ply", MeshFormat::Ply, bytes.as_ref(), &ReadOptions::default())
 }
 
 fn assert_refused(cases: &[(Vec<u8>, &str)], read: fn(Vec<u8>) -> Result<TriangleMesh, MeshError>) {
@@ -70,11 +60,7 @@ const SECOND: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [-0.0, 1.0, 0.0
 fn text_stl_welds_all_solids() {
     let one = format!("solid a b\n{}{}endsolid a b\n", first(), second());
     let nameless = format!("\nsolid\n\n{}{}endsolid", first(), second());
-    let two = format!(
-        "solid a\n{}endsolid a\n\nsolid b\r\n{}endsolid b\n",
-        first(),
-        second()
-    );
+    let two = format!("solid a\n{}endsolid a\n\nsolid b\r\n{}endsolid b\n", first(), second());
     for text in [one, nameless, two] {
         assert_eq!(stl(&text).unwrap(), two_triangles(), "{text}");
     }
@@ -84,10 +70,7 @@ fn text_stl_welds_all_solids() {
 #[test]
 fn length_identifies_binary_stl() {
     for header in ["", "solid plane", "solid plane\n", "exported \u{7}"] {
-        assert_eq!(
-            stl(binary_stl(header.as_bytes(), &[FIRST, SECOND])).unwrap(),
-            two_triangles()
-        );
+        assert_eq!(stl(binary_stl(header.as_bytes(), &[FIRST, SECOND])).unwrap(), two_triangles());
     }
 }
 
@@ -101,27 +84,15 @@ fn invalid_stl_is_rejected() {
     assert_refused(
         &[
             (vec![], "a.stl: the mesh has no vertices"),
-            (
-                b"solid a\nendsolid a\n".to_vec(),
-                "a.stl: the mesh has no vertices",
-            ),
+            (b"solid a\nendsolid a\n".to_vec(), "a.stl: the mesh has no vertices"),
             (binary_stl(b"", &[]), "a.stl: the mesh has no vertices"),
             (
                 b"STL?".to_vec(),
                 "a.stl: this is neither text STL (no `solid`) nor binary STL (under 84 bytes)",
             ),
-            (
-                long,
-                "a.stl: a binary STL file of 1 triangles has 134 bytes, this one has 135",
-            ),
-            (
-                short,
-                "a.stl: a binary STL file of 1 triangles has 134 bytes, this one has 133",
-            ),
-            (
-                nan,
-                "a.stl: vertex 4 has the coordinate NaN: not a finite f32",
-            ),
+            (long, "a.stl: a binary STL file of 1 triangles has 134 bytes, this one has 135"),
+            (short, "a.stl: a binary STL file of 1 triangles has 134 bytes, this one has 133"),
+            (nan, "a.stl: vertex 4 has the coordinate NaN: not a finite f32"),
             (
                 text(first() + &second().replace("outer loop", "outer")),
                 "a.stl:10: `outer loop` should stand here, found \"outer\"",
@@ -139,14 +110,8 @@ fn invalid_stl_is_rejected() {
                 text(format!("{}endsolid\n\nhello\n", first())),
                 "a.stl:11: `facet` should stand here, found \"hello\"",
             ),
-            (
-                text("\u{0}\n".into()),
-                "a.stl:2: `facet` should stand here, found \"\\0\"",
-            ),
-            (
-                b"solid \xff".to_vec(),
-                "a.stl:1: the file ends before `endsolid`",
-            ),
+            (text("\u{0}\n".into()), "a.stl:2: `facet` should stand here, found \"\\0\""),
+            (b"solid \xff".to_vec(), "a.stl:1: the file ends before `endsolid`"),
         ],
         stl,
     );
@@ -167,11 +132,7 @@ fn binary_ply(format: &str, bytes: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     }
     for triangle in two_triangles().triangles {
         file.push(3);
-        file.extend(
-            triangle
-                .iter()
-                .flat_map(|index| bytes(&index.to_le_bytes())),
-        );
+        file.extend(triangle.iter().flat_map(|index| bytes(&index.to_le_bytes())));
     }
     file
 }
@@ -190,18 +151,9 @@ fn ply_encodings_read_alike() {
     let text = format!("{HEADER}{BODY}");
     assert_eq!(ply(&text).unwrap(), two_triangles());
     assert_eq!(ply(text.replace('\n', "\r\n")).unwrap(), two_triangles());
-    assert_eq!(
-        ply(text.replace("vertex_indices", "vertex_index")).unwrap(),
-        two_triangles()
-    );
-    assert_eq!(
-        ply(binary_ply("binary_little_endian", little_endian)).unwrap(),
-        two_triangles()
-    );
-    assert_eq!(
-        ply(binary_ply("binary_big_endian", big_endian)).unwrap(),
-        two_triangles()
-    );
+    assert_eq!(ply(text.replace("vertex_indices", "vertex_index")).unwrap(), two_triangles());
+    assert_eq!(ply(binary_ply("binary_little_endian", little_endian)).unwrap(), two_triangles());
+    assert_eq!(ply(binary_ply("binary_big_endian", big_endian)).unwrap(), two_triangles());
 }
 
 /// Ply polygons become fans and other elements are passed over.
@@ -211,15 +163,9 @@ fn ply_polygons_become_fans() {
         "element face 2",
         "element edge 1\nproperty int a\nproperty list uint float b\nelement face 4",
     );
-    let body = BODY.replace(
-        "3 0 1 2\n3 1 3 2\n",
-        "7 2 0.5 1e-3\n4 0 1 3 2\n2 1 3\n1 2\n3 0 1 2",
-    );
+    let body = BODY.replace("3 0 1 2\n3 1 3 2\n", "7 2 0.5 1e-3\n4 0 1 3 2\n2 1 3\n1 2\n3 0 1 2");
     let mesh = ply(header + &body).unwrap();
-    assert_eq!(
-        mesh.triangles,
-        [[0, 1, 3], [0, 3, 2], [1, 3, 3], [2, 2, 2], [0, 1, 2]]
-    );
+    assert_eq!(mesh.triangles, [[0, 1, 3], [0, 3, 2], [1, 3, 3], [2, 2, 2], [0, 1, 2]]);
 }
 
 /// Bad ply is refused with its line.
@@ -232,10 +178,7 @@ fn invalid_ply_is_rejected() {
     assert_refused(
         &[
             (vec![], "a.ply: the mesh has no vertices"),
-            (
-                b"obj\n".to_vec(),
-                "a.ply:1: this does not fit a PLY header: \"obj\"",
-            ),
+            (b"obj\n".to_vec(), "a.ply:1: this does not fit a PLY header: \"obj\""),
             (
                 text("property double z\n", "property double\n"),
                 "a.ply:7: this does not fit a PLY header: \"property double\"",
@@ -260,22 +203,10 @@ fn invalid_ply_is_rejected() {
                 text("vertex 4", "vertex 4000000000"),
                 "a.ply: the file ends in vertex 6 of 4000000000",
             ),
-            (
-                text("vertex 4", "vertex 0"),
-                "a.ply:12: face 0 of 2 has no vertices",
-            ),
-            (
-                text("face 2", "face 3"),
-                "a.ply: the file ends in face 2 of 3",
-            ),
-            (
-                text("face 2", "face 1"),
-                "a.ply:17: 4 numbers too many after the last element",
-            ),
-            (
-                text("1 0 0 9", "1 x 0 9"),
-                "a.ply:13: a value should be a number, found \"x\"",
-            ),
+            (text("vertex 4", "vertex 0"), "a.ply:12: face 0 of 2 has no vertices"),
+            (text("face 2", "face 3"), "a.ply: the file ends in face 2 of 3"),
+            (text("face 2", "face 1"), "a.ply:17: 4 numbers too many after the last element"),
+            (text("1 0 0 9", "1 x 0 9"), "a.ply:13: a value should be a number, found \"x\""),
             (
                 text("1 0 0 9", "1 1e39 0 9"),
                 "a.ply:13: vertex 1 has the coordinate inf: not a finite f32",
@@ -288,10 +219,7 @@ fn invalid_ply_is_rejected() {
                 text("3 1 3 2", "3 1 -3 2"),
                 "a.ply:17: triangle 1 names vertex -3, but the vertices are 0 to 3",
             ),
-            (
-                text("3 1 3 2", "0"),
-                "a.ply:17: face 1 of 2 has no vertices",
-            ),
+            (text("3 1 3 2", "0"), "a.ply:17: face 1 of 2 has no vertices"),
             (cut, "a.ply: the file ends in face 1 of 2"),
             (long, "a.ply: 2 bytes too many after the last element"),
         ],
@@ -303,10 +231,7 @@ fn invalid_ply_is_rejected() {
 #[test]
 fn a_count_without_data_costs_nothing() {
     let file = binary_ply("binary_little_endian", little_endian);
-    let start = file
-        .windows(12)
-        .position(|window| window == b"element face")
-        .unwrap();
+    let start = file.windows(12).position(|window| window == b"element face").unwrap();
     let empty = b"element nothing 18446744073709551615\n".to_vec();
     let file = [&file[..start], &empty, &file[start..]].concat();
     assert_eq!(ply(file).unwrap(), two_triangles());

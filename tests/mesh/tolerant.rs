@@ -34,18 +34,10 @@ const ONE: &[[u32; 3]] = &[[0, 1, 2]];
 /// Latin-1, and bytes of no encoding, in names and comments.
 #[test]
 fn names_need_not_be_utf8() {
-    for name in [
-        &b"\xe9toile"[..],
-        b"\xff\xfe\x80",
-        b"",
-        b"endsolid facet",
-        b"v 1 2",
-    ] {
-        for (format, text) in [
-            (MeshFormat::Obj, OBJ),
-            (MeshFormat::Ply, PLY),
-            (MeshFormat::Stl, STL),
-        ] {
+    for name in [&b"\xe9toile"[..], b"\xff\xfe\x80", b"", b"endsolid facet", b"v 1 2"] {
+        for (format, text) in
+            [(MeshFormat::Obj, OBJ), (MeshFormat::Ply, PLY), (MeshFormat::Stl, STL)]
+        {
             let count = text.matches("NAME").count();
             let bytes = (0..count).fold(text.as_bytes().to_vec(), |bytes, _| {
                 let at = bytes.windows(4).position(|word| word == b"NAME").unwrap();
@@ -81,11 +73,7 @@ fn line_ends_do_not_matter() {
 #[test]
 fn marked_utf16_is_text() {
     let off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    for (format, text) in [
-        (MeshFormat::Obj, OBJ),
-        (MeshFormat::Stl, STL),
-        (MeshFormat::Off, off),
-    ] {
+    for (format, text) in [(MeshFormat::Obj, OBJ), (MeshFormat::Stl, STL), (MeshFormat::Off, off)] {
         for order in [u16::to_be_bytes, u16::to_le_bytes] {
             let units = format!("\u{feff}{text}").replace("NAME", "étoile ★");
             let bytes: Vec<u8> = units.encode_utf16().flat_map(order).collect();
@@ -116,16 +104,9 @@ fn capitals_are_letters_too() {
 fn tolerant_text_stl() {
     let marked = format!("\u{feff}{STL}");
     let comment = format!("# made by hand\n; and again\n\n// and {STL}");
-    let end = STL
-        .replace("endsolid", "end solid")
-        .replace("endloop", "end loop");
+    let end = STL.replace("endsolid", "end solid").replace("endloop", "end loop");
     let one_line = STL.replace("endfacet\n", "endfacet ");
-    for text in [
-        marked,
-        comment,
-        end.replace("endfacet", "end facet"),
-        one_line,
-    ] {
+    for text in [marked, comment, end.replace("endfacet", "end facet"), one_line] {
         assert_triangles(MeshFormat::Stl, text, ONE);
     }
 }
@@ -133,18 +114,8 @@ fn tolerant_text_stl() {
 /// Exporters write what they have for a normal; here it is not used.
 #[test]
 fn normals_of_stl_may_be_anything() {
-    for normal in [
-        "nan nan nan",
-        "-nan(ind) -1.#IND 1.#QNAN",
-        "",
-        "1 2",
-        "0,0 0,0 1,0",
-    ] {
-        assert_triangles(
-            MeshFormat::Stl,
-            STL.replace("0 0 1\n", &format!("{normal}\n")),
-            ONE,
-        );
+    for normal in ["nan nan nan", "-nan(ind) -1.#IND 1.#QNAN", "", "1 2", "0,0 0,0 1,0"] {
+        assert_triangles(MeshFormat::Stl, STL.replace("0 0 1\n", &format!("{normal}\n")), ONE);
     }
 }
 
@@ -154,11 +125,7 @@ fn rejected_stl_is_named_correctly() {
     let message = |bytes: &[u8]| read(MeshFormat::Stl, bytes).unwrap_err().to_string();
     let cut = STL.to_uppercase();
     let cut = &cut[..cut.len() / 2];
-    assert!(
-        !message(cut.as_bytes()).contains("binary"),
-        "{}",
-        message(cut.as_bytes())
-    );
+    assert!(!message(cut.as_bytes()).contains("binary"), "{}", message(cut.as_bytes()));
     let mut binary = b"solid".to_vec();
     binary.resize(80, b' ');
     binary.extend([2, 0, 0, 0, 7, 7]);
@@ -185,16 +152,11 @@ fn unused_ply_properties_are_ignored() {
 fn extra_ply_words_are_ignored() {
     let unmarked = PLY.replacen("comment NAME", "Created by NAME", 1);
     assert_triangles(MeshFormat::Ply, unmarked, ONE);
-    let longer = PLY
-        .replace("1 0 0 2\n", "1 0 0 2 7 8\n")
-        .replace("3 0 1 2\n", "3 0 1 2 9 9\n");
+    let longer = PLY.replace("1 0 0 2\n", "1 0 0 2 7 8\n").replace("3 0 1 2\n", "3 0 1 2 9 9\n");
     assert_triangles(MeshFormat::Ply, longer, ONE);
     let misspelt = PLY.replacen("property float quality", "propert float quality", 1);
     let message = read(MeshFormat::Ply, misspelt).unwrap_err().to_string();
-    assert_eq!(
-        message,
-        "a:9: this does not fit a PLY header: \"propert float quality\""
-    );
+    assert_eq!(message, "a:9: this does not fit a PLY header: \"propert float quality\"");
 }
 
 /// The numbers begin after the line feed if the header's other lines end with one, whatever is
@@ -239,8 +201,6 @@ fn obj_lines_continue_and_comment() {
 
 #[test]
 fn a_binary_file_is_no_obj() {
-    let message = read(MeshFormat::Obj, b"glTF\x00\x01\xff")
-        .unwrap_err()
-        .to_string();
+    let message = read(MeshFormat::Obj, b"glTF\x00\x01\xff").unwrap_err().to_string();
     assert_eq!(message, "a: this is not text: byte 0x00 at offset 4");
 }

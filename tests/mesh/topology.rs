@@ -8,18 +8,12 @@ use sdop::mesh::{MAX_COORDINATE, ReadOptions, TriangleMesh, read};
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
 fn topology(vertices: usize, triangles: &[[u32; 3]]) -> Topology {
-    let vertices = (0..vertices)
-        .map(|i| Vec3::splat(i as f32))
-        .collect::<Vec<_>>();
+    let vertices = (0..vertices).map(|i| Vec3::splat(i as f32)).collect::<Vec<_>>();
     Topology::of(&TriangleMesh::new("mesh", vertices, triangles.to_vec()).unwrap())
 }
 
 fn closed(topology: &Topology) -> Vec<bool> {
-    topology
-        .components
-        .iter()
-        .map(Component::is_closed)
-        .collect()
+    topology.components.iter().map(Component::is_closed).collect()
 }
 
 /// Components are joined by vertices and each is closed or open by itself.
@@ -35,10 +29,7 @@ fn components_close_independently() {
     assert_eq!(both.components[1].euler_characteristic(), 2);
     assert_eq!(both.closed_components(), 1);
 
-    let at_one_vertex = topology(
-        7,
-        &[TETRAHEDRON, TETRAHEDRON.map(|t| t.map(|i| i + 3))].concat(),
-    );
+    let at_one_vertex = topology(7, &[TETRAHEDRON, TETRAHEDRON.map(|t| t.map(|i| i + 3))].concat());
     assert_eq!(closed(&at_one_vertex), [true]);
     assert_eq!(at_one_vertex.total().edges, 12);
 }
@@ -48,10 +39,7 @@ fn components_close_independently() {
 fn three_faces_are_not_closed() {
     let fin = topology(5, &[&TETRAHEDRON[..], &[[0, 1, 4]]].concat());
     assert_eq!(closed(&fin), [false]);
-    assert_eq!(
-        (fin.total().boundary_edges, fin.total().non_manifold_edges),
-        (2, 1)
-    );
+    assert_eq!((fin.total().boundary_edges, fin.total().non_manifold_edges), (2, 1));
     let double = topology(4, &[TETRAHEDRON, TETRAHEDRON].concat());
     assert_eq!(closed(&double), [false]);
     assert_eq!(double.total().non_manifold_edges, 6);
@@ -61,21 +49,10 @@ fn three_faces_are_not_closed() {
 fn degenerate_triangles_are_no_faces() {
     let with_sliver = topology(4, &[&TETRAHEDRON[..], &[[0, 1, 1]]].concat());
     assert_eq!(closed(&with_sliver), [true]);
-    assert_eq!(
-        (
-            with_sliver.total().triangles,
-            with_sliver.total().degenerate
-        ),
-        (5, 1)
-    );
+    assert_eq!((with_sliver.total().triangles, with_sliver.total().degenerate), (5, 1));
     let joined = topology(
         8,
-        &[
-            &TETRAHEDRON[..],
-            &TETRAHEDRON.map(|t| t.map(|i| i + 4)),
-            &[[0, 7, 7]],
-        ]
-        .concat(),
+        &[&TETRAHEDRON[..], &TETRAHEDRON.map(|t| t.map(|i| i + 4)), &[[0, 7, 7]]].concat(),
     );
     assert_eq!(closed(&joined), [true]);
     let point = topology(1, &[[0, 0, 0]]);
@@ -108,24 +85,15 @@ fn shipped_meshes_match_their_table() {
         assert_eq!(mesh.name, name);
         assert_eq!(found, counts, "{name}");
         assert_eq!(topology.total().non_manifold_edges, 0, "{name}");
-        assert_eq!(
-            topology.total().vertices + topology.unused_vertices,
-            mesh.vertices.len()
-        );
+        assert_eq!(topology.total().vertices + topology.unused_vertices, mesh.vertices.len());
     }
 }
 
 #[test]
 fn a_mesh_keeps_its_contract() {
     let message = |vertices: &[[f32; 3]], triangles: &[[u32; 3]]| {
-        let vertices = vertices
-            .iter()
-            .copied()
-            .map(Vec3::from_array)
-            .collect::<Vec<_>>();
-        TriangleMesh::new("knob", vertices, triangles.to_vec())
-            .unwrap_err()
-            .to_string()
+        let vertices = vertices.iter().copied().map(Vec3::from_array).collect::<Vec<_>>();
+        TriangleMesh::new("knob", vertices, triangles.to_vec()).unwrap_err().to_string()
     };
     let (point, triangle) = ([0.0; 3], [0, 0, 0]);
     let above = f32::from_bits(MAX_COORDINATE.to_bits() + 1);

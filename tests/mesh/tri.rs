@@ -5,19 +5,11 @@ use glam::Vec3;
 use sdop::mesh::{MeshError, MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 
 fn read(text: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
-    read_bytes(
-        "data/a.tri",
-        MeshFormat::Tri,
-        text.as_ref(),
-        &ReadOptions::default(),
-    )
+    read_bytes("data/a.tri", MeshFormat::Tri, text.as_ref(), &ReadOptions::default())
 }
 
 fn read_as(name: &str, text: &str) -> Result<TriangleMesh, MeshError> {
-    let options = ReadOptions {
-        tri_format: Some(name.parse().unwrap()),
-        ..ReadOptions::default()
-    };
+    let options = ReadOptions { tri_format: Some(name.parse().unwrap()), ..ReadOptions::default() };
     read_bytes("data/a.tri", MeshFormat::Tri, text.as_bytes(), &options)
 }
 
@@ -57,10 +49,7 @@ fn good_files() -> Vec<(&'static str, String)> {
         ("labelled", file("4 2", "", &["3 0 2 1", "3 0 1 3"])),
         ("labelled", file("4 2", "", &["17 0 2 1", "-1 0 1 3"])),
         ("labelled-1", file("4 2", "", &["1 1 3 2", "2 1 2 4"])),
-        (
-            "openmeeg",
-            file("- 4", " 0 0 1", &["- 2 2 2", "0 2 1", "0 1 3"]),
-        ),
+        ("openmeeg", file("- 4", " 0 0 1", &["- 2 2 2", "0 2 1", "0 1 3"])),
     ]
 }
 
@@ -98,10 +87,7 @@ fn a_soup_is_welded() {
 #[test]
 fn records_may_run_over_line_ends() {
     for name in ["bourke", "indexed", "cart3d", "openmeeg"] {
-        let (_, text) = good_files()
-            .into_iter()
-            .find(|(found, _)| *found == name)
-            .unwrap();
+        let (_, text) = good_files().into_iter().find(|(found, _)| *found == name).unwrap();
         let one_number_a_line = text.replace(' ', "\n");
         let (header, body) = text.split_once('\n').unwrap();
         let lines: Vec<&str> = body.lines().collect();
@@ -138,27 +124,16 @@ fn ambiguous_dialect_needs_a_name() {
             "Cart3D (faces of three indices from 1) \
              or as labelled (faces of a count or label and three indices from 0) \
              or as labelled (faces of a count or label and three indices from 1)",
-            vec![
-                ("cart3d", [0, 2, 1]),
-                ("labelled", [3, 2, 2]),
-                ("labelled-1", [2, 1, 1]),
-            ],
+            vec![("cart3d", [0, 2, 1]), ("labelled", [3, 2, 2]), ("labelled-1", [2, 1, 1])],
         ),
     ];
     for (text, readings, names) in cases {
         let error = read(&text).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            format!("data/a.tri: the file can be read as {readings}")
-        );
+        assert_eq!(error.to_string(), format!("data/a.tri: the file can be read as {readings}"));
         let help = error.help();
         for (name, triangle) in names {
             assert!(help.contains(&format!("--tri-format {name}")), "{help}");
-            assert_eq!(
-                read_as(name, &text).unwrap().triangles[0],
-                triangle,
-                "{name}"
-            );
+            assert_eq!(read_as(name, &text).unwrap().triangles[0], triangle, "{name}");
         }
     }
 }
@@ -171,10 +146,7 @@ fn bourke_and_labelled_of_equal_counts() {
     let text = format!("1 6\n0 0 0 0 0 0 0 0 0\n{faces}");
     assert_eq!(read(&text).unwrap().triangles.len(), 6);
     let error = message(text.replace(' ', "\n"));
-    assert!(
-        error.starts_with("data/a.tri: the file can be read as Bourke's format"),
-        "{error}"
-    );
+    assert!(error.starts_with("data/a.tri: the file can be read as Bourke's format"), "{error}");
     assert!(
         error.ends_with("labelled (faces of a count or label and three indices from 0)"),
         "{error}"
@@ -188,18 +160,9 @@ fn invalid_files_are_rejected() {
     let cases: Vec<(Vec<u8>, &str)> = vec![
         (b"".to_vec(), "data/a.tri: the mesh has no vertices"),
         (b" \n\n".to_vec(), "data/a.tri: the mesh has no vertices"),
-        (
-            b"0 0\n".to_vec(),
-            "data/a.tri:1: this is none of the known .tri dialects",
-        ),
-        (
-            b"1 0\n0 0 0\n".to_vec(),
-            "data/a.tri: the mesh has no triangles",
-        ),
-        (
-            b"solid cube\n".to_vec(),
-            "data/a.tri:1: this is none of the known .tri dialects",
-        ),
+        (b"0 0\n".to_vec(), "data/a.tri:1: this is none of the known .tri dialects"),
+        (b"1 0\n0 0 0\n".to_vec(), "data/a.tri: the mesh has no triangles"),
+        (b"solid cube\n".to_vec(), "data/a.tri:1: this is none of the known .tri dialects"),
         (
             b"1 1\n0 0 0\n\n\x80\n".to_vec(),
             "data/a.tri:4: triangle 0 of 1 should be 3 numbers on a line, found 1",
@@ -216,10 +179,7 @@ fn invalid_files_are_rejected() {
             replace("4 2", "4 3").into(),
             "data/a.tri:7: the file ends where triangle 2 of 3 should be",
         ),
-        (
-            replace("4 2", "4 1").into(),
-            "data/a.tri:7: 3 numbers too many after the last triangle",
-        ),
+        (replace("4 2", "4 1").into(), "data/a.tri:7: 3 numbers too many after the last triangle"),
         (
             replace("4 2", "5 2").into(),
             "data/a.tri:6: vertex 4 of 5 should be 9 numbers on a line, found 3",
@@ -274,12 +234,7 @@ fn invalid_files_are_rejected() {
         ),
     ];
     for (text, expected) in cases {
-        assert_eq!(
-            message(&text),
-            expected,
-            "{}",
-            String::from_utf8_lossy(&text)
-        );
+        assert_eq!(message(&text), expected, "{}", String::from_utf8_lossy(&text));
     }
 }
 
@@ -287,9 +242,7 @@ fn invalid_files_are_rejected() {
 #[test]
 fn truncated_file_is_rejected() {
     let whole = |text: String| text.replace("1.5", "2").replace(".6 .5 .4", "1 1 1");
-    let files = good_files()
-        .into_iter()
-        .filter(|(_, text)| !text.ends_with("1 1\n"));
+    let files = good_files().into_iter().filter(|(_, text)| !text.ends_with("1 1\n"));
     for (name, text) in files {
         let text = whole(text);
         assert!(read(text.trim_end()).is_ok(), "{name}");
@@ -309,10 +262,7 @@ fn huge_count_reserves_no_memory() {
         "data/a.tri:3: the file ends where vertex 2 of 18446744073709551615 should be"
     );
     let text = "99999999999999999999 1\n0 0 0\n";
-    assert_eq!(
-        message(text),
-        "data/a.tri:1: this is none of the known .tri dialects"
-    );
+    assert_eq!(message(text), "data/a.tri:1: this is none of the known .tri dialects");
 }
 
 /// Bourke's own example, cut to its first lines, with decimal normals and colours.

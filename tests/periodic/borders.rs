@@ -8,10 +8,7 @@ use super::*;
 pub fn cube(side: f32) -> Shape {
     let [x, y, z] = [side; 3];
     let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
-    let spec = ShapeSpec {
-        axes: sdop::Axes::Model,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { axes: sdop::Axes::Model, ..ShapeSpec::default() };
     Shape::build(&mesh, &spec).unwrap()
 }
 
@@ -24,11 +21,7 @@ fn pairs_of(shape: &Shape, at: [[f64; 3]; 2], periods: [Option<f64>; 3]) -> Vec<
             world.insert(Body::at(0, UNTURNED, at[which])).unwrap();
         }
         let sign = if order == [0, 1] { 1 } else { -1 };
-        let images = world
-            .cull()
-            .unwrap()
-            .iter()
-            .map(|pair| pair.image.map(|n| sign * n));
+        let images = world.cull().unwrap().iter().map(|pair| pair.image.map(|n| sign * n));
         images.collect::<Vec<_>>()
     });
     let [found, turned] = found;
@@ -125,10 +118,7 @@ fn wide_boxes_touch_in_one_image() {
     assert_eq!(image(&mut boxes, 0.75, 1.0_f64.next_down()), NONE);
     assert_eq!(image(&mut boxes, 1.0e6 + 0.5, 1.0e6 + 0.875), NONE);
     assert_eq!(image(&mut boxes, -1.0e6 - 0.25, -1.0e6), [1_000_000]);
-    assert_eq!(
-        image(&mut boxes, -1.0e6 - 0.25, (-1.0e6_f64).next_down()),
-        NONE
-    );
+    assert_eq!(image(&mut boxes, -1.0e6 - 0.25, (-1.0e6_f64).next_down()), NONE);
 }
 
 /// Points on a border meet, on either side of it.
@@ -136,15 +126,12 @@ fn wide_boxes_touch_in_one_image() {
 fn points_on_borders_meet() {
     let mut boxes = PeriodicBoxes::new([Some(6.0), Some(6.0), Some(6.0)]).unwrap();
     let corners = (0..8).map(|n| [0, 1, 2].map(|axis| if n >> axis & 1 == 1 { 3.0 } else { -3.0 }));
-    let ids: Vec<BodyId> = corners
-        .map(|corner| boxes.insert(PeriodicBox::new(corner, corner)).unwrap())
-        .collect();
+    let ids: Vec<BodyId> =
+        corners.map(|corner| boxes.insert(PeriodicBox::new(corner, corner)).unwrap()).collect();
     let pairs = boxes.cull().unwrap();
     assert_eq!(pairs.len(), 8 * 7 / 2);
     for pair in pairs {
-        let [a, b] = pair
-            .bodies
-            .map(|id| ids.iter().position(|other| *other == id).unwrap());
+        let [a, b] = pair.bodies.map(|id| ids.iter().position(|other| *other == id).unwrap());
         let image = [0, 1, 2].map(|axis| (a >> axis & 1) as i32 - (b >> axis & 1) as i32);
         assert_eq!(pair.image, image);
     }
@@ -154,11 +141,7 @@ fn points_on_borders_meet() {
 #[test]
 fn loose_volumes_meet_once() {
     let ball = ProceduralShape::default_of("icosphere").unwrap().build();
-    let spec = ShapeSpec {
-        radius: Some(0.24),
-        axes: sdop::Axes::Model,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { radius: Some(0.24), axes: sdop::Axes::Model, ..ShapeSpec::default() };
     let shape = Shape::build(&ball.unwrap(), &spec).unwrap();
     let turned = [0.0, 0.0, 0.375, 1.0]; // by some 41 degrees, so that edges face each other
     let builder = sdop::Culler::builder().strategy(sdop::Strategy::Obb);

@@ -20,21 +20,11 @@ pub enum Ends {
     Anywhere,
 }
 
-pub const ENDS: [Ends; 5] = [
-    Ends::Eighths,
-    Ends::Far,
-    Ends::Ulps,
-    Ends::Wide,
-    Ends::Anywhere,
-];
+pub const ENDS: [Ends; 5] = [Ends::Eighths, Ends::Far, Ends::Ulps, Ends::Wide, Ends::Anywhere];
 
 fn moved_by_ulps(x: f64, random: &mut Random) -> f64 {
     let steps = random.below(5);
-    let step = if random.below(2) == 0 {
-        f64::next_up
-    } else {
-        f64::next_down
-    };
+    let step = if random.below(2) == 0 { f64::next_up } else { f64::next_down };
     (0..steps).fold(x, |x, _| step(x))
 }
 
@@ -50,10 +40,7 @@ pub fn ends(kind: Ends, period: f64, random: &mut Random) -> [f64; 2] {
             [lo + way, hi + way]
         }
         Ends::Ulps => [lo, hi].map(|end| moved_by_ulps(end, random)),
-        Ends::Wide => [
-            lo,
-            lo + period * (0.5 - 0.5_f64.powi(2 + random.below(48) as i32)),
-        ],
+        Ends::Wide => [lo, lo + period * (0.5 - 0.5_f64.powi(2 + random.below(48) as i32))],
         Ends::Anywhere => {
             let lo = period * (4.0 * unit(random) - 2.0);
             [lo, lo + 0.4 * period * unit(random)]
@@ -73,10 +60,7 @@ pub fn random_box(kind: Ends, periods: [Option<f64>; 3], random: &mut Random) ->
 
 /// The pairs that the definition asks for.
 fn expected(boxes: &PeriodicBoxes) -> Vec<PeriodicPair> {
-    let all: Vec<_> = boxes
-        .ids()
-        .map(|id| (id, boxes.body(id).unwrap()))
-        .collect();
+    let all: Vec<_> = boxes.ids().map(|id| (id, boxes.body(id).unwrap())).collect();
     let mut pairs = Vec::new();
     for (number, &(id, a)) in all.iter().enumerate() {
         for &(other, b) in &all[number + 1..] {
@@ -206,9 +190,7 @@ fn periods_can_change() {
 fn images_are_few() {
     let mut boxes = PeriodicBoxes::new([Some(10.0), Some(20.0), Some(30.0)]).unwrap();
     let mut images = |corner: [f64; 3]| {
-        let id = boxes
-            .insert(PeriodicBox::new(corner, corner.map(|x| x + 1.0)))
-            .unwrap();
+        let id = boxes.insert(PeriodicBox::new(corner, corner.map(|x| x + 1.0))).unwrap();
         boxes.cull().unwrap();
         let images = boxes.images().len();
         boxes.remove(id).unwrap();
@@ -219,11 +201,7 @@ fn images_are_few() {
     assert_eq!(images([0.0; 3]), 1);
     // The middle of the period is the origin, so its lower borders are at −5, −10 and −15.
     assert_eq!(images([-5.0, 0.0, 0.0]), 2);
-    assert_eq!(
-        images([4.75, 0.0, 0.0]),
-        2,
-        "its middle is beyond the upper one"
-    );
+    assert_eq!(images([4.75, 0.0, 0.0]), 2, "its middle is beyond the upper one");
     assert_eq!(images([4.5, 0.0, 0.0]), 1, "others have an image there");
     assert_eq!(images([-5.5, 0.0, 0.0]), 1, "the same place");
     assert_eq!(images([-3.9, 0.0, 0.0]), 1);
@@ -280,15 +258,11 @@ fn giants_come_late() {
         let mut boxes = PeriodicBoxes::new([Some(64.0), None, None]).unwrap();
         for x in -30..30 {
             let corner = [f64::from(x), 0.0, 0.0];
-            boxes
-                .insert(PeriodicBox::new(corner, corner.map(|x| x + 0.5)))
-                .unwrap();
+            boxes.insert(PeriodicBox::new(corner, corner.map(|x| x + 0.5))).unwrap();
         }
         assert_eq!(boxes.cull().unwrap(), []);
         let [lo, hi] = ends;
-        boxes
-            .insert(PeriodicBox::new([lo, 0.0, 0.0], [hi, 1.0, 1.0]))
-            .unwrap();
+        boxes.insert(PeriodicBox::new([lo, 0.0, 0.0], [hi, 1.0, 1.0])).unwrap();
         let wanted = expected(&boxes);
         assert_eq!(wanted.len(), most);
         assert_eq!(boxes.cull().unwrap(), wanted);
@@ -308,12 +282,7 @@ fn clones_go_on() {
     let mut clone = boxes.clone();
     for _ in 0..10 {
         let seed = random.0;
-        change(
-            &mut boxes,
-            &mut ids.clone(),
-            Ends::Anywhere,
-            &mut Random(seed),
-        );
+        change(&mut boxes, &mut ids.clone(), Ends::Anywhere, &mut Random(seed));
         change(&mut clone, &mut ids, Ends::Anywhere, &mut random);
         assert_eq!(boxes.cull().unwrap(), clone.cull().unwrap());
     }

@@ -25,9 +25,8 @@ fn images(pairs: &[PeriodicPair]) -> BTreeMap<[BodyId; 2], [i32; 3]> {
 fn events_are_changes_since_last_read() {
     let mut random = Random(11);
     let mut cell = PeriodicBoxes::new(LENGTHS.map(Some)).unwrap();
-    let mut ids: Vec<BodyId> = (0..30)
-        .map(|_| cell.insert(random_box(&mut random)).unwrap())
-        .collect();
+    let mut ids: Vec<BodyId> =
+        (0..30).map(|_| cell.insert(random_box(&mut random)).unwrap()).collect();
     let mut before = BTreeMap::new();
     let mut counts = [0; 3];
     for frame in 0..200 {
@@ -74,10 +73,7 @@ fn pair_persists_across_borders() {
     cell.set(b, at(10.5)).unwrap();
     cell.cull().unwrap();
     let events = cell.events();
-    let pair = PeriodicPair {
-        bodies: [a, b],
-        image: [-1, 0, 0],
-    };
+    let pair = PeriodicPair { bodies: [a, b], image: [-1, 0, 0] };
     assert_eq!(events.persisting(), [pair]);
     assert!(events.begun().is_empty() && events.ended().is_empty());
 }

@@ -11,11 +11,7 @@ const STEP: f64 = 1.0 / 256.0;
 /// Whole numbers of periods by which images are moved: none first.
 fn shifts(periods: [Option<f64>; 3]) -> Vec<[i32; 3]> {
     let along = |axis: usize| {
-        if periods[axis].is_some() {
-            -1..=1
-        } else {
-            0..=0
-        }
+        if periods[axis].is_some() { -1..=1 } else { 0..=0 }
     };
     let all = along(0).flat_map(|x| along(1).flat_map(move |y| along(2).map(move |z| [x, y, z])));
     let mut all: Vec<[i32; 3]> = all.collect();
@@ -70,9 +66,8 @@ fn boxes_meet_as_laid_out() {
     {
         let n = 600;
         let shifts = shifts(periods);
-        let mut at: Vec<[f64; 3]> = (0..n)
-            .map(|_| [6, 7, 8].map(|most| random.below(most * 256) as f64 * STEP))
-            .collect();
+        let mut at: Vec<[f64; 3]> =
+            (0..n).map(|_| [6, 7, 8].map(|most| random.below(most * 256) as f64 * STEP)).collect();
         let mut sides = || [(); 3].map(|()| (sizes[0] + random.below(sizes[1])) as f64 * STEP);
         let sides: Vec<[f64; 3]> = (0..n).map(|_| sides()).collect();
         let ends = |at: [f64; 3], side: [f64; 3]| [at, [0, 1, 2].map(|axis| at[axis] + side[axis])];
@@ -81,10 +76,7 @@ fn boxes_meet_as_laid_out() {
             let ends = at.iter().zip(&sides).map(|(&at, &side)| ends(at, side));
             ends.map(|[min, max]| PeriodicBox::new(min, max)).collect()
         };
-        let ids: Vec<BodyId> = bodies(&at)
-            .into_iter()
-            .map(|b| boxes.insert(b).unwrap())
-            .collect();
+        let ids: Vec<BodyId> = bodies(&at).into_iter().map(|b| boxes.insert(b).unwrap()).collect();
         for frame in 0..6 {
             for (id, body) in ids.iter().zip(bodies(&at)) {
                 boxes.set(*id, body).unwrap();
@@ -99,11 +91,7 @@ fn boxes_meet_as_laid_out() {
             }
             let mut culler = BoxCuller::new();
             let wanted = pairs_of_layout(&culler.cull(&layout).unwrap().sorted(), n, &shifts);
-            assert_eq!(
-                reported(boxes.cull().unwrap()),
-                wanted,
-                "{periods:?} frame {frame}"
-            );
+            assert_eq!(reported(boxes.cull().unwrap()), wanted, "{periods:?} frame {frame}");
             assert!(wanted.len() > 200);
             // All move, or one in twenty.
             let some = 1 + 19 * (frame % 2);
@@ -117,20 +105,9 @@ fn boxes_meet_as_laid_out() {
 fn shapes() -> Vec<Shape> {
     use sdop::ProceduralShape::{Box, Icosphere, Needle};
     let forms = [
-        Box {
-            x: 1.0,
-            y: 0.5,
-            z: 0.75,
-        },
-        Icosphere {
-            radius: 0.5,
-            subdivisions: 1,
-        },
-        Needle {
-            length: 1.5,
-            radius: 0.125,
-            sides: 6,
-        },
+        Box { x: 1.0, y: 0.5, z: 0.75 },
+        Icosphere { radius: 0.5, subdivisions: 1 },
+        Needle { length: 1.5, radius: 0.125, sides: 6 },
     ];
     let build = |form: sdop::ProceduralShape| {
         Shape::build(&form.build().unwrap(), &sdop::ShapeSpec::default()).unwrap()
@@ -155,10 +132,7 @@ fn meshes_meet_as_laid_out() {
                 if is_fixed { body.fixed() } else { body }
             })
             .collect();
-        let ids: Vec<BodyId> = bodies
-            .iter()
-            .map(|&body| world.insert(body).unwrap())
-            .collect();
+        let ids: Vec<BodyId> = bodies.iter().map(|&body| world.insert(body).unwrap()).collect();
         for frame in 0..4 {
             for (id, body) in ids.iter().zip(&bodies) {
                 world.set(*id, *body).unwrap();
@@ -172,11 +146,7 @@ fn meshes_meet_as_laid_out() {
             }
             let mut culler = Culler::new(&shapes, &layout).unwrap();
             let wanted = pairs_of_layout(&culler.cull(&layout).unwrap().sorted(), n, &shifts);
-            assert_eq!(
-                reported(world.cull().unwrap()),
-                wanted,
-                "{periods:?} frame {frame}"
-            );
+            assert_eq!(reported(world.cull().unwrap()), wanted, "{periods:?} frame {frame}");
             assert!(wanted.len() > 100);
             let some = 1 + 11 * (frame % 2);
             for body in bodies.iter_mut().step_by(some) {

@@ -14,35 +14,17 @@ const STEP: f64 = 1.0 / (1 << 20) as f64;
 /// Meshes of all kinds, one of them away from its origin.
 fn shapes(directions: DirectionSet) -> Vec<Shape> {
     let forms = [
-        ProceduralShape::Box {
-            x: 1.0,
-            y: 0.5,
-            z: 0.75,
-        },
-        ProceduralShape::Icosphere {
-            radius: 0.5,
-            subdivisions: 1,
-        },
-        ProceduralShape::LShape {
-            x: 1.0,
-            y: 0.75,
-            arm: 0.25,
-            thickness: 0.5,
-        },
+        ProceduralShape::Box { x: 1.0, y: 0.5, z: 0.75 },
+        ProceduralShape::Icosphere { radius: 0.5, subdivisions: 1 },
+        ProceduralShape::LShape { x: 1.0, y: 0.75, arm: 0.25, thickness: 0.5 },
     ];
-    let spec = ShapeSpec {
-        directions,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { directions, ..ShapeSpec::default() };
     let away = |shape: usize| forms[shape].build().unwrap();
     let mut meshes: Vec<_> = (0..3).map(away).collect();
     let moved = |v: &[f32; 3]| [v[0] + 2.5, v[1] - 1.0, v[2]];
     let far: Vec<_> = meshes[0].vertices.iter().map(moved).collect();
     meshes.push(sdop::TriangleMesh::from_f32(&far, &meshes[0].triangles).unwrap());
-    meshes
-        .iter()
-        .map(|mesh| Shape::build(mesh, &spec).unwrap())
-        .collect()
+    meshes.iter().map(|mesh| Shape::build(mesh, &spec).unwrap()).collect()
 }
 
 /// The mesh of a shape as the reference has it.
@@ -73,11 +55,7 @@ fn random_body(lengths: [f64; 3], periods: [Option<f64>; 3], random: &mut Random
     Body {
         motion: motion(random),
         groups: groups(random),
-        ..Body::at(
-            random.below(4) as u32,
-            [(); 4].map(|()| random.within(1.0)),
-            translation,
-        )
+        ..Body::at(random.below(4) as u32, [(); 4].map(|()| random.within(1.0)), translation)
     }
 }
 
@@ -130,9 +108,8 @@ fn no_meeting_image_is_missed() {
             let builder = Culler::builder().strategy(strategy).k(directions);
             let mut world = PeriodicWorld::with(shapes.clone(), &builder, periods).unwrap();
             let body = |random: &mut Random| random_body(lengths, periods, random);
-            let mut ids: Vec<BodyId> = (0..14)
-                .map(|_| world.insert(body(&mut random)).unwrap())
-                .collect();
+            let mut ids: Vec<BodyId> =
+                (0..14).map(|_| world.insert(body(&mut random)).unwrap()).collect();
             for round in 0..4 {
                 let found = world.cull().unwrap().to_vec();
                 let mut bodies: Vec<[BodyId; 2]> = found.iter().map(|pair| pair.bodies).collect();
@@ -152,10 +129,7 @@ fn no_meeting_image_is_missed() {
                         for image in near_images(middles, periods) {
                             if meet(&meshes, [one, two], periods, image) {
                                 met += 1;
-                                let pair = PeriodicPair {
-                                    bodies: [a, b],
-                                    image,
-                                };
+                                let pair = PeriodicPair { bodies: [a, b], image };
                                 assert!(
                                     found.contains(&pair),
                                     "{periods:?} {strategy:?} {round} {pair:?}"

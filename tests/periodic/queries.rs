@@ -159,19 +159,11 @@ fn posed_shapes_find_what_boxes_find() {
     for _ in 0..300 {
         let [x, y, z] = [400, 96, 400].map(|steps| random.below(steps) as f64 / 4.0);
         let translation = [x - 50.0, y, z - 50.0];
-        let posed = QueryVolume::Shape {
-            shape: &shape,
-            rotation: UNTURNED,
-            translation,
-            margin,
-        };
+        let posed = QueryVolume::Shape { shape: &shape, rotation: UNTURNED, translation, margin };
         let ends = [translation.map(|x| x - 1.0), translation.map(|x| x + 1.0)];
         let wanted = expected(&boxes, ends);
         let hits = index.touching(&posed).unwrap();
-        assert!(
-            wanted.iter().all(|hit| hits.contains(hit)),
-            "{translation:?}"
-        );
+        assert!(wanted.iter().all(|hit| hits.contains(hit)), "{translation:?}");
         loose += hits.len() - wanted.len();
         found += wanted.len();
     }
@@ -184,10 +176,7 @@ fn long_and_far_volumes_are_refused() {
     let id = boxes.insert(PeriodicBox::new([0.0; 3], [0.5; 3])).unwrap();
     let mut index = PeriodicIndex::new();
     index.update(&boxes);
-    let ball = |x: f64, radius| QueryVolume::Ball {
-        centre: [x, 0.0, 0.0],
-        radius,
-    };
+    let ball = |x: f64, radius| QueryVolume::Ball { centre: [x, 0.0, 0.0], radius };
     let hits = index.touching(&ball(0.25, 15.75)).unwrap();
     assert_eq!(hits.len(), 17, "those moved by -8 to 8 periods");
     assert!(hits.iter().all(|hit| hit.body == id));

@@ -32,11 +32,7 @@ impl Scene {
         for n in 0..count {
             let body = Body {
                 shape: random.below(shapes.len()) as u32,
-                motion: if n % 3 > 0 {
-                    Motion::Dynamic
-                } else {
-                    Motion::Fixed
-                },
+                motion: if n % 3 > 0 { Motion::Dynamic } else { Motion::Fixed },
                 rotation: [(); 4].map(|()| random.within(1.0)),
                 translation: near(at, 4.0, random),
                 ..Body::default()
@@ -93,21 +89,14 @@ fn near(at: [f64; 3], reach: f32, random: &mut Random) -> [f64; 3] {
 }
 
 fn scenes(seed: u64) -> impl Iterator<Item = (Scene, Random)> {
-    let ways = [
-        DirectionSet::K6,
-        DirectionSet::K14,
-        DirectionSet::K18,
-        DirectionSet::K26,
-    ];
+    let ways = [DirectionSet::K6, DirectionSet::K14, DirectionSet::K18, DirectionSet::K26];
     let places = [[0.0; 3], [1.0e9 + 0.1, -7.0e8, 0.3]];
-    ways.into_iter()
-        .enumerate()
-        .flat_map(move |(n, directions)| {
-            places.map(|at| {
-                let mut random = Random(seed + n as u64);
-                (Scene::new(shapes(directions), at, 60, &mut random), random)
-            })
+    ways.into_iter().enumerate().flat_map(move |(n, directions)| {
+        places.map(|at| {
+            let mut random = Random(seed + n as u64);
+            (Scene::new(shapes(directions), at, 60, &mut random), random)
         })
+    })
 }
 
 /// Checks that enough was to be found, and that not much else was.
@@ -160,18 +149,12 @@ fn box_finds_meshes() {
             if (0..3).any(|axis| min[axis] + f64::from(size[axis]) != max[axis]) {
                 continue;
             }
-            let found = scene
-                .index
-                .touching(&QueryVolume::Box { min, max })
-                .unwrap();
+            let found = scene.index.touching(&QueryVolume::Box { min, max }).unwrap();
             let (asked, at) = (box_mesh(size), Pose::from_f64(UNTURNED, min).unwrap());
             let meets = |mesh: &sdop_reference::Shape, pose: &Pose| {
                 meet((asked.mesh(), &at), (mesh.mesh(), pose)).meets
             };
-            add(
-                &mut sum,
-                scene.check(&found, (min, distance(min, max)), meets),
-            );
+            add(&mut sum, scene.check(&found, (min, distance(min, max)), meets));
         }
         assert_tight(sum);
     }
@@ -187,21 +170,14 @@ fn posed_mesh_finds_meshes() {
             let shape = n % asked.len();
             let rotation = [(); 4].map(|()| random.within(1.0));
             let translation = near(scene.at, 4.0, &mut random);
-            let volume = QueryVolume::Shape {
-                shape: &asked[shape],
-                rotation,
-                translation,
-                margin: 0.0,
-            };
+            let volume =
+                QueryVolume::Shape { shape: &asked[shape], rotation, translation, margin: 0.0 };
             let found = scene.index.touching(&volume).unwrap();
             let at = Pose::from_f64(rotation, translation).unwrap();
             let meets = |mesh: &sdop_reference::Shape, pose: &Pose| {
                 meet((scene.meshes[shape].mesh(), &at), (mesh.mesh(), pose)).meets
             };
-            add(
-                &mut sum,
-                scene.check(&found, (translation, scene.sizes[shape]), meets),
-            );
+            add(&mut sum, scene.check(&found, (translation, scene.sizes[shape]), meets));
         }
         assert_tight(sum);
     }
@@ -220,10 +196,7 @@ fn line_finds_meshes() {
                 (Line::Segment { from, to }, ExactLine::segment(from, to))
             } else {
                 let origin = from;
-                (
-                    Line::Ray { origin, direction },
-                    ExactLine::ray(from, direction),
-                )
+                (Line::Ray { origin, direction }, ExactLine::ray(from, direction))
             };
             let hits = scene.index.along(&line).unwrap();
             assert_eq!(scene.index.first(&line).unwrap(), hits.first().copied());
@@ -277,18 +250,9 @@ fn line_finds_meshes() {
 /// face, an edge or a corner in exact arithmetic.
 #[test]
 fn touching_to_the_bit_is_found() {
-    let turns = [
-        UNTURNED,
-        [0.0, 0.0, 3.0, 3.0],
-        [0.7, 0.7, 0.7, 0.7],
-        [0.0, 0.1, 0.0, -0.1],
-    ];
+    let turns = [UNTURNED, [0.0, 0.0, 3.0, 3.0], [0.7, 0.7, 0.7, 0.7], [0.0, 0.1, 0.0, -0.1]];
     let asked = QueryShape::new(&cube());
-    for at in [
-        [0.0; 3],
-        [1.0e9 + 0.1, 0.3, -7.0e12],
-        [1.0 / 3.0, -1.0e-3, 0.7],
-    ] {
+    for at in [[0.0; 3], [1.0e9 + 0.1, 0.3, -7.0e12], [1.0 / 3.0, -1.0e-3, 0.7]] {
         for rotation in turns {
             let mut world = World::new(vec![cube()]).unwrap();
             world.insert(Body::at(0, rotation, at)).unwrap();
@@ -358,12 +322,7 @@ fn touching_to_the_bit_is_found() {
 #[test]
 fn margins_of_both_sides_count() {
     let mut world = World::new(vec![cube()]).unwrap();
-    let body = world
-        .insert(Body {
-            margin: 0.5,
-            ..Body::default()
-        })
-        .unwrap();
+    let body = world.insert(Body { margin: 0.5, ..Body::default() }).unwrap();
     let mut index = QueryIndex::new();
     index.update(&world);
     let asked = QueryShape::new(&cube());
@@ -378,18 +337,12 @@ fn margins_of_both_sides_count() {
         let wanted: &[BodyId] = if is_near { &[body] } else { &[] };
         assert_eq!(index.touching(&shape(0.5)).unwrap(), wanted);
         assert_eq!(index.touching(&shape(0.0)).unwrap(), []);
-        let ball = QueryVolume::Ball {
-            centre: at,
-            radius: 1.5,
-        };
+        let ball = QueryVolume::Ball { centre: at, radius: 1.5 };
         assert_eq!(index.touching(&ball).unwrap(), wanted);
         let min = [distance - 1.5, -1.0, -1.0];
         let of_box = QueryVolume::Box { min, max: [9.0; 3] };
         assert_eq!(index.touching(&of_box).unwrap(), wanted);
-        let line = Line::Ray {
-            origin: [distance - 1.5, 9.0, 0.0],
-            direction: [0.0, -1.0, 0.0],
-        };
+        let line = Line::Ray { origin: [distance - 1.5, 9.0, 0.0], direction: [0.0, -1.0, 0.0] };
         assert_eq!(index.along(&line).unwrap().len(), wanted.len());
     }
 }
@@ -402,22 +355,14 @@ fn far_meshes_are_where_they_are() {
     let points = corners.map(|c: [f64; 3]| [far + c[0], 0.25 + c[1], c[2] - far]);
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let mesh = sdop::TriangleMesh::from_f64(&points, &faces).unwrap();
-    let spec = sdop::ShapeSpec {
-        axes: sdop::Axes::Model,
-        ..sdop::ShapeSpec::default()
-    };
+    let spec = sdop::ShapeSpec { axes: sdop::Axes::Model, ..sdop::ShapeSpec::default() };
     let shape = Shape::build(&mesh, &spec).unwrap();
     let mut world = World::new(vec![shape.clone()]).unwrap();
     // A quarter turn about z takes (x, y) to (−y, x).
-    world
-        .insert(Body::at(0, [0.0, 0.0, 1.0, 1.0], [0.5, 0.0, 0.0]))
-        .unwrap();
+    world.insert(Body::at(0, [0.0, 0.0, 1.0, 1.0], [0.5, 0.0, 0.0])).unwrap();
     let mut index = QueryIndex::new();
     index.update(&world);
-    let at = |p: [f64; 3]| QueryVolume::Ball {
-        centre: [0.5 - p[1], p[0], p[2]],
-        radius: 0.0,
-    };
+    let at = |p: [f64; 3]| QueryVolume::Ball { centre: [0.5 - p[1], p[0], p[2]], radius: 0.0 };
     for point in points {
         assert_eq!(index.touching(&at(point)).unwrap().len(), 1);
         let beside = [point[0] - 0.5, point[1], point[2]];

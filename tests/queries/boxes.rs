@@ -97,20 +97,13 @@ fn ball_finds_boxes() {
         for _ in 0..40 {
             let [centre, other] = [point(&all, random), point(&all, random)];
             // Through a point of some box, to what f64 makes of that.
-            let square: f64 = (0..3)
-                .map(|axis| (centre[axis] - other[axis]).powi(2))
-                .sum();
+            let square: f64 = (0..3).map(|axis| (centre[axis] - other[axis]).powi(2)).sum();
             let radius = square.sqrt().min(2.0f64.powi(60));
-            let found = index
-                .touching(&QueryVolume::Ball { centre, radius })
-                .unwrap();
+            let found = index.touching(&QueryVolume::Ball { centre, radius }).unwrap();
             for (id, aabb) in ids.iter().zip(&all) {
                 let is_found = found.binary_search(id).is_ok();
                 let meets = ball_meets_box(centre, radius, ends(aabb));
-                assert!(
-                    is_found || !meets,
-                    "{kind:?}: {centre:?} {radius:e} {aabb:?}"
-                );
+                assert!(is_found || !meets, "{kind:?}: {centre:?} {radius:e} {aabb:?}");
                 let wide = radius * (1.0 + NEAR) + 2.0f64.powi(-300);
                 let is_near = !is_found || meets || ball_meets_box(centre, wide, grown(aabb));
                 assert!(is_near, "{kind:?}: {centre:?} {radius:e} {aabb:?}");
@@ -137,10 +130,7 @@ fn line_finds_boxes_in_order() {
                 (Line::Segment { from, to }, ExactLine::segment(from, to))
             } else {
                 let origin = from;
-                (
-                    Line::Ray { origin, direction },
-                    ExactLine::ray(from, direction),
-                )
+                (Line::Ray { origin, direction }, ExactLine::ray(from, direction))
             };
             let found = index.along(&line).unwrap();
             assert!(found.is_sorted_by(|a, b| (a.at, a.body) < (b.at, b.body)));
@@ -178,13 +168,8 @@ fn lines_that_graze_are_not_lost() {
         let whole = |random: &mut Random| f64::from(1 + random.below(1 << 20) as u32);
         // Through a corner, away from the box on both sides of it along some axis.
         let corner = [0, 1, 2].map(|axis| [aabb.min, aabb.max][random.below(2)][axis]);
-        let outward = [0, 1, 2].map(|axis| {
-            if corner[axis] < 2.0 + axis as f32 + 0.5 {
-                -1.0
-            } else {
-                1.0
-            }
-        });
+        let outward =
+            [0, 1, 2].map(|axis| if corner[axis] < 2.0 + axis as f32 + 0.5 { -1.0 } else { 1.0 });
         let mut d = [whole(random), whole(random), whole(random)];
         d[0] *= outward[0];
         d[1] *= -outward[1];
@@ -201,10 +186,7 @@ fn lines_that_graze_are_not_lost() {
         assert!(found[0].body == ids[0] && is_no_later(found[0].at, &exact));
         assert!((found[0].at - before / (before + after)).abs() < 1e-12);
         inexact += u32::from(!is_no_later(before / (before + after), &exact));
-        let ray = Line::Ray {
-            origin: from,
-            direction: d,
-        };
+        let ray = Line::Ray { origin: from, direction: d };
         assert_eq!(index.along(&ray).unwrap().len(), 1, "{ray:?}");
         // An eighth farther out, and it misses.
         let off = [0, 1, 2].map(|axis| if axis < 2 { 0.125 * outward[axis] } else { 0.0 });
@@ -224,19 +206,13 @@ fn exactly_touching_balls_are_found() {
     for _ in 0..4000 {
         let size = f64::from((1 << 30 | random.below(1 << 30)) as u32) + 0.5;
         // (2, 3, 6) has the length 7, (1, 4, 8) 9, and (2, 10, 11) 15.
-        let (d, length) = [
-            ([2.0, 3.0, 6.0], 7.0),
-            ([1.0, 4.0, 8.0], 9.0),
-            ([2.0, 10.0, 11.0], 15.0),
-        ][random.below(3)];
+        let (d, length) =
+            [([2.0, 3.0, 6.0], 7.0), ([1.0, 4.0, 8.0], 9.0), ([2.0, 10.0, 11.0], 15.0)]
+                [random.below(3)];
         let centre = d.map(|x| 1.0 + size * x);
         let radius = size * length;
         assert!(ball_meets_box(centre, radius, ends(&aabb)));
-        let found = |radius| {
-            index
-                .touching(&QueryVolume::Ball { centre, radius })
-                .unwrap()
-        };
+        let found = |radius| index.touching(&QueryVolume::Ball { centre, radius }).unwrap();
         assert_eq!(found(radius).len(), 1, "{centre:?} {radius}");
         assert_eq!(found(radius * (1.0 - NEAR)).len(), 0);
     }
@@ -271,10 +247,7 @@ fn caller_judges_the_first() {
         .map(|[from, to]| Aabb::new([from, 0.0, 0.0], [to, 1.0, 1.0]))
         .collect();
     let (index, ids) = index_of(&row);
-    let line = Line::Ray {
-        origin: [-1.0, 0.5, 0.5],
-        direction: [1.0, 0.0, 0.0],
-    };
+    let line = Line::Ray { origin: [-1.0, 0.5, 0.5], direction: [1.0, 0.0, 0.0] };
     let mut asked = 0;
     let first = index.first_judged(&line, |hit| {
         asked += 1;
@@ -301,25 +274,17 @@ fn batches_equal_single_queries() {
     let volumes: Vec<QueryVolume<'_>> = (0..200)
         .map(|n| match n % 2 {
             0 => QueryVolume::from(all[random.below(500)]),
-            _ => QueryVolume::Ball {
-                centre: point(&all, random),
-                radius: 3.0,
-            },
+            _ => QueryVolume::Ball { centre: point(&all, random), radius: 3.0 },
         })
         .collect();
     let lines: Vec<Line> = (0..200)
-        .map(|_| Line::Segment {
-            from: point(&all, random),
-            to: point(&all, random),
-        })
+        .map(|_| Line::Segment { from: point(&all, random), to: point(&all, random) })
         .collect();
     for threads in [1, 3] {
         let mut index = QueryIndex::with_threads(threads).unwrap();
         index.update(&world);
-        let (touching, along) = (
-            index.touching_all(&volumes).unwrap(),
-            index.along_all(&lines).unwrap(),
-        );
+        let (touching, along) =
+            (index.touching_all(&volumes).unwrap(), index.along_all(&lines).unwrap());
         let first = index.first_all(&lines).unwrap();
         assert_eq!((touching.len(), along.len(), first.len()), (200, 200, 200));
         for (volume, found) in volumes.iter().zip(touching.iter()) {
@@ -344,10 +309,7 @@ fn invalid_queries_are_rejected() {
         error.to_string()
     };
     for (volume, message) in [
-        (
-            ball([0.0, f64::NAN, 0.0], 1.0),
-            "query 1: centre [0.0, NaN, 0.0]",
-        ),
+        (ball([0.0, f64::NAN, 0.0], 1.0), "query 1: centre [0.0, NaN, 0.0]"),
         (ball([0.0; 3], -1.0), "query 1: radius -1.0"),
         (ball([0.0; 3], f64::INFINITY), "query 1: radius inf"),
         (of_box([far; 3], [far; 3]), "query 1: min "),
@@ -358,20 +320,11 @@ fn invalid_queries_are_rejected() {
         assert!(found.starts_with(message), "{found}");
         assert!(refused(index.touching(&volume).unwrap_err()).starts_with("query 0: "));
     }
-    let ray = |direction| Line::Ray {
-        origin: [0.0; 3],
-        direction,
-    };
+    let ray = |direction| Line::Ray { origin: [0.0; 3], direction };
     for (line, message) in [
         (ray([0.0; 3]), "query 0: direction [0.0, 0.0, 0.0]"),
         (ray([2.0f64.powi(-61); 3]), "query 0: direction "),
-        (
-            Line::Segment {
-                from: [0.0; 3],
-                to: [f64::NAN; 3],
-            },
-            "query 0: to [NaN, NaN, NaN]",
-        ),
+        (Line::Segment { from: [0.0; 3], to: [f64::NAN; 3] }, "query 0: to [NaN, NaN, NaN]"),
     ] {
         let found = refused(index.along(&line).unwrap_err());
         assert!(found.starts_with(message), "{found}");
@@ -385,16 +338,8 @@ fn invalid_queries_are_rejected() {
 fn an_empty_index_answers() {
     let index = QueryIndex::new();
     assert!(index.is_empty());
-    assert_eq!(
-        index
-            .touching(&Aabb::new([0.0; 3], [1.0; 3]).into())
-            .unwrap(),
-        []
-    );
-    let line = Line::Segment {
-        from: [0.0; 3],
-        to: [1.0; 3],
-    };
+    assert_eq!(index.touching(&Aabb::new([0.0; 3], [1.0; 3]).into()).unwrap(), []);
+    let line = Line::Segment { from: [0.0; 3], to: [1.0; 3] };
     assert_eq!(index.along(&line).unwrap(), []);
     assert_eq!(index.first(&line).unwrap(), None);
     assert_eq!(index.pairs_with(&index), Vec::<[BodyId; 2]>::new());

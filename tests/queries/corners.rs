@@ -29,21 +29,9 @@ impl TurnedCorners {
         let [x, y, z, w] = q;
         let square = x * x + y * y + z * z + w * w;
         let turn = [
-            [
-                square - 2 * (y * y + z * z),
-                2 * (x * y - w * z),
-                2 * (x * z + w * y),
-            ],
-            [
-                2 * (x * y + w * z),
-                square - 2 * (x * x + z * z),
-                2 * (y * z - w * x),
-            ],
-            [
-                2 * (x * z - w * y),
-                2 * (y * z + w * x),
-                square - 2 * (x * x + y * y),
-            ],
+            [square - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), square - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), square - 2 * (x * x + y * y)],
         ];
         let place = |c: [i64; 3]| {
             let along = |axis: usize| (0..3).map(|i| turn[axis][i] * c[i]).sum::<i64>();
@@ -68,21 +56,13 @@ impl TurnedCorners {
 fn tetrahedron(corners: [[f32; 3]; 4], directions: DirectionSet) -> Shape {
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let mesh = TriangleMesh::from_f32(&corners, &faces).unwrap();
-    let spec = ShapeSpec {
-        directions,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { directions, ..ShapeSpec::default() };
     Shape::build(&mesh, &spec).unwrap()
 }
 
 #[test]
 fn touched_corners_are_found() {
-    let ways = [
-        DirectionSet::K6,
-        DirectionSet::K14,
-        DirectionSet::K18,
-        DirectionSet::K26,
-    ];
+    let ways = [DirectionSet::K6, DirectionSet::K14, DirectionSet::K18, DirectionSet::K26];
     let mut random = Random(7);
     for directions in ways {
         for _ in 0..60 {
@@ -93,21 +73,12 @@ fn touched_corners_are_found() {
             index.update(&world);
             for (number, corner) in turned.corners.into_iter().enumerate() {
                 let away = turned.outward(number);
-                let ball = QueryVolume::Ball {
-                    centre: corner,
-                    radius: 0.0,
-                };
+                let ball = QueryVolume::Ball { centre: corner, radius: 0.0 };
                 assert_eq!(index.touching(&ball).unwrap(), [id], "{corner:?}");
-                let of_box = QueryVolume::Box {
-                    min: corner,
-                    max: corner,
-                };
+                let of_box = QueryVolume::Box { min: corner, max: corner };
                 assert_eq!(index.touching(&of_box).unwrap(), [id], "{corner:?}");
                 let to = [0, 1, 2].map(|axis| corner[axis] + away[axis]);
-                let line = Line::Segment {
-                    from: to,
-                    to: corner,
-                };
+                let line = Line::Segment { from: to, to: corner };
                 let hit = index.first(&line).unwrap().expect("it ends at the corner");
                 assert!(hit.at <= 1.0, "{corner:?}");
                 // A tetrahedron with its apex there.

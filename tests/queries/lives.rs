@@ -14,19 +14,10 @@ fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random
     assert_eq!(index.len(), fresh.len());
     for _ in 0..6 {
         let centre = [(); 3].map(|()| f64::from(random.within(8.0)));
-        let ball = QueryVolume::Ball {
-            centre,
-            radius: 2.0,
-        };
-        assert_eq!(
-            index.touching(&ball).unwrap(),
-            fresh.touching(&ball).unwrap()
-        );
+        let ball = QueryVolume::Ball { centre, radius: 2.0 };
+        assert_eq!(index.touching(&ball).unwrap(), fresh.touching(&ball).unwrap());
         let direction = [(); 3].map(|()| f64::from(random.within(1.0)));
-        let line = Line::Ray {
-            origin: centre,
-            direction,
-        };
+        let line = Line::Ray { origin: centre, direction };
         let [found, wanted] = [index, &fresh].map(|index| index.along(&line).unwrap());
         assert_eq!(found, wanted);
     }
@@ -121,10 +112,7 @@ fn slot_twins_have_different_ids() {
     let mut bodies = World::new(vec![cube()]).unwrap();
     let mut boxes = BoxWorld::new();
     let aabb = Aabb::new([-1.0; 3], [1.0; 3]);
-    let gone = (
-        bodies.insert(Body::default()).unwrap(),
-        boxes.insert(aabb).unwrap(),
-    );
+    let gone = (bodies.insert(Body::default()).unwrap(), boxes.insert(aabb).unwrap());
     let [mut of_bodies, mut of_boxes] = [QueryIndex::new(), QueryIndex::new()];
     of_bodies.update(&bodies);
     of_boxes.update(&boxes);
@@ -149,10 +137,7 @@ fn replaced_shape_is_seen() {
     let body = world.insert(Body::default()).unwrap();
     let mut index = QueryIndex::new();
     index.update(&world);
-    let point = QueryVolume::Ball {
-        centre: [0.0, 1.25, 0.0],
-        radius: 0.0,
-    };
+    let point = QueryVolume::Ball { centre: [0.0, 1.25, 0.0], radius: 0.0 };
     assert_eq!(index.touching(&point).unwrap(), []);
     let [x, y, z] = [2.0, 3.0, 2.0];
     let longer = sdop::ProceduralShape::Box { x, y, z }.build().unwrap();
@@ -168,9 +153,7 @@ fn another_world_is_another_set() {
     let random = &mut Random(3);
     let mut index = QueryIndex::new();
     let mut bodies = World::new(vec![cube()]).unwrap();
-    bodies
-        .insert(Body::at(0, UNTURNED, [3.0, 0.0, 0.0]))
-        .unwrap();
+    bodies.insert(Body::at(0, UNTURNED, [3.0, 0.0, 0.0])).unwrap();
     let mut boxes = BoxWorld::new();
     boxes.insert(Aabb::new([-1.0; 3], [0.5; 3])).unwrap();
     boxes.insert(Aabb::new([2.0; 3], [2.5; 3])).unwrap();
@@ -189,27 +172,16 @@ fn another_world_is_another_set() {
 fn far_bodies_are_told_apart() {
     let mut world = World::new(vec![cube()]).unwrap();
     let ids: Vec<BodyId> = (0..200)
-        .map(|n| {
-            world
-                .insert(Body::at(0, UNTURNED, [3.0 * f64::from(n), 0.0, 0.0]))
-                .unwrap()
-        })
+        .map(|n| world.insert(Body::at(0, UNTURNED, [3.0 * f64::from(n), 0.0, 0.0])).unwrap())
         .collect();
     let mut index = QueryIndex::new();
     for far in [0.0, 1.0e9 + 0.1, 4.0e15, -0.5] {
         for (n, &id) in ids.iter().enumerate() {
-            world
-                .set_pose(id, UNTURNED, [far + 3.0 * n as f64, 0.0, 0.0])
-                .unwrap();
+            world.set_pose(id, UNTURNED, [far + 3.0 * n as f64, 0.0, 0.0]).unwrap();
         }
         index.update(&world);
         let centre = [far + 30.0, 0.0, 0.0];
-        let found = index
-            .touching(&QueryVolume::Ball {
-                centre,
-                radius: 0.75,
-            })
-            .unwrap();
+        let found = index.touching(&QueryVolume::Ball { centre, radius: 0.75 }).unwrap();
         assert_eq!(found, [ids[10]], "{far}");
     }
 }

@@ -22,10 +22,7 @@ const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
 /// Meshes of all kinds: with faces on the axes, round, thin, and with a dent.
 fn shapes(directions: DirectionSet) -> Vec<Shape> {
-    let spec = ShapeSpec {
-        directions,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { directions, ..ShapeSpec::default() };
     let dented = ProceduralShape::default_of("l-shape").unwrap();
     let build = |form: ProceduralShape| Shape::build(&form.build().unwrap(), &spec).unwrap();
     FORMS.into_iter().chain([dented]).map(build).collect()

@@ -12,17 +12,8 @@ use crate::{UNTURNED, cube, reference, shapes, tiers};
 fn box_world(boxes: &[Aabb]) -> BoxWorld {
     let mut world = BoxWorld::new();
     for (n, &aabb) in boxes.iter().enumerate() {
-        let motion = if n % 3 == 0 {
-            Motion::Fixed
-        } else {
-            Motion::Dynamic
-        };
-        world
-            .insert(BoxBody {
-                motion,
-                ..aabb.into()
-            })
-            .unwrap();
+        let motion = if n % 3 == 0 { Motion::Fixed } else { Motion::Dynamic };
+        world.insert(BoxBody { motion, ..aabb.into() }).unwrap();
     }
     world
 }

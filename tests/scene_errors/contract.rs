@@ -12,41 +12,14 @@ fn invalid_pose_names_its_body() {
     let limit = "coordinates are finite and at most 2^60 in size";
     let norm = "a quaternion (x, y, z, w) has a finite norm above zero";
     for (pose, problem, hint) in [
-        (
-            "[0, 0, 0, 1, nan, 0, 0]",
-            "translation [NaN, 0.0, 0.0]",
-            limit,
-        ),
-        (
-            "[0, 0, 0, 1, 0, -inf, 0]",
-            "translation [0.0, -inf, 0.0]",
-            limit,
-        ),
-        (
-            "[0, 0, 0, 1, 0, 0, 2e18]",
-            "translation [0.0, 0.0, 2e18]",
-            limit,
-        ),
-        (
-            "[0, 0, 0, 0, 0, 0, 0]",
-            "rotation [0.0, 0.0, 0.0, 0.0]",
-            norm,
-        ),
-        (
-            "[0, nan, 0, 1, 0, 0, 0]",
-            "rotation [0.0, NaN, 0.0, 1.0]",
-            norm,
-        ),
-        (
-            "[0, 0, 1e39, 1, 0, 0, 0]",
-            "rotation [0.0, 0.0, inf, 1.0]",
-            norm,
-        ),
+        ("[0, 0, 0, 1, nan, 0, 0]", "translation [NaN, 0.0, 0.0]", limit),
+        ("[0, 0, 0, 1, 0, -inf, 0]", "translation [0.0, -inf, 0.0]", limit),
+        ("[0, 0, 0, 1, 0, 0, 2e18]", "translation [0.0, 0.0, 2e18]", limit),
+        ("[0, 0, 0, 0, 0, 0, 0]", "rotation [0.0, 0.0, 0.0, 0.0]", norm),
+        ("[0, nan, 0, 1, 0, 0, 0]", "rotation [0.0, NaN, 0.0, 1.0]", norm),
+        ("[0, 0, 1e39, 1, 0, 0, 0]", "rotation [0.0, 0.0, inf, 1.0]", norm),
     ] {
-        assert_eq!(
-            refusal(&posed(pose)),
-            format!("a.toml:6:2: body 1: {problem} | {hint}")
-        );
+        assert_eq!(refusal(&posed(pose)), format!("a.toml:6:2: body 1: {problem} | {hint}"));
     }
     let moving = |v: &str| {
         refusal(
@@ -74,60 +47,27 @@ fn caller_bodies_are_checked() {
     let refusal = |change: fn(&mut Bodies)| {
         let mut bodies = scene.bodies.clone();
         change(&mut bodies);
-        check_bodies(&bodies, &scene.shapes)
-            .unwrap_err()
-            .to_string()
+        check_bodies(&bodies, &scene.shapes).unwrap_err().to_string()
     };
     check_bodies(&scene.bodies, &scene.shapes).unwrap();
     assert_eq!(refusal(|b| b.shape[2] = 1), "body 2: shape 1 of 1");
-    assert_eq!(
-        refusal(|b| b.rotation[0] = [0.0; 4]),
-        "body 0: rotation [0.0, 0.0, 0.0, 0.0]"
-    );
-    assert_eq!(
-        refusal(|b| b.translation[1][2] = f32::NAN)
-            .split(", ")
-            .last(),
-        Some("NaN]")
-    );
+    assert_eq!(refusal(|b| b.rotation[0] = [0.0; 4]), "body 0: rotation [0.0, 0.0, 0.0, 0.0]");
+    assert_eq!(refusal(|b| b.translation[1][2] = f32::NAN).split(", ").last(), Some("NaN]"));
     let refused = |change: fn(&mut Velocities)| {
         let mut velocities = scene.velocities.clone();
         change(&mut velocities);
         velocities.check(3).unwrap_err().to_string()
     };
-    assert_eq!(
-        refused(|v| v.linear[2] = [f32::INFINITY; 3]),
-        "body 2: velocity [inf, inf, inf]"
-    );
-    assert_eq!(
-        refused(|v| v.angular[2] = [0.0, 1.2e18, 0.0]),
-        "body 2: spin [0.0, 1.2e18, 0.0]"
-    );
-    assert_eq!(
-        refused(|v| v.angular.truncate(1)),
-        "body 1: spin has 1 entries for 3 bodies"
-    );
-    assert_eq!(
-        refusal(|b| b.dynamic.truncate(1)),
-        "body 1: dynamic has 1 entries for 3 bodies"
-    );
+    assert_eq!(refused(|v| v.linear[2] = [f32::INFINITY; 3]), "body 2: velocity [inf, inf, inf]");
+    assert_eq!(refused(|v| v.angular[2] = [0.0, 1.2e18, 0.0]), "body 2: spin [0.0, 1.2e18, 0.0]");
+    assert_eq!(refused(|v| v.angular.truncate(1)), "body 1: spin has 1 entries for 3 bodies");
+    assert_eq!(refusal(|b| b.dynamic.truncate(1)), "body 1: dynamic has 1 entries for 3 bodies");
     // Zeroed memory that nobody reads takes no room.
-    let crowd = Bodies {
-        shape: vec![0; 1 << 28],
-        ..Bodies::default()
-    };
+    let crowd = Bodies { shape: vec![0; 1 << 28], ..Bodies::default() };
     let error = check_bodies(&crowd, &scene.shapes).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "body 268435440: number 268435456 of 268435440 at most"
-    );
+    assert_eq!(error.to_string(), "body 268435440: number 268435456 of 268435440 at most");
     let mut shapes = scene.shapes.clone();
     shapes[0].ball.radius = f32::NAN;
-    let error = check_bodies(&scene.bodies, &shapes)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.starts_with("body 0: shape box with reach 1"),
-        "{error}"
-    );
+    let error = check_bodies(&scene.bodies, &shapes).unwrap_err().to_string();
+    assert!(error.starts_with("body 0: shape box with reach 1"), "{error}");
 }

@@ -18,10 +18,7 @@ fn build(text: &str) -> Result<Scene, SceneError> {
 /// The error of a scene as "message | hint".
 fn refusal(text: &str) -> String {
     let error = build(text).expect_err(text);
-    let hint = error
-        .help()
-        .map(|hint| format!(" | {hint}"))
-        .unwrap_or_default();
+    let hint = error.help().map(|hint| format!(" | {hint}")).unwrap_or_default();
     format!("{error}{hint}")
 }
 
@@ -57,19 +54,11 @@ fn posed(pose: &str) -> String {
 #[test]
 fn the_sound_scene_builds() {
     let scene = build(SOUND).unwrap();
-    assert_eq!(
-        (scene.bodies.len(), scene.shapes.len(), scene.side),
-        (3, 1, Some(20.0))
-    );
+    assert_eq!((scene.bodies.len(), scene.shapes.len(), scene.side), (3, 1, Some(20.0)));
 }
 
 #[test]
 fn an_unreadable_file_is_named() {
     let error = SceneFile::read(Path::new("data/scenes/no-such-scene.toml")).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .starts_with("data/scenes/no-such-scene.toml: "),
-        "{error}"
-    );
+    assert!(error.to_string().starts_with("data/scenes/no-such-scene.toml: "), "{error}");
 }

@@ -25,24 +25,15 @@ fn too_small_boxes_are_rejected() {
         "a.toml:5:9: seeded bodies need a box | add [box] with side = … or partners = …"
     );
     assert_eq!(
-        changed(
-            "count = 3",
-            "count = 3\nplacement = { plane = { thickness = 19 } }"
-        ),
+        changed("count = 3", "count = 3\nplacement = { plane = { thickness = 19 } }"),
         "a.toml:8:13: a slice of thickness 19 doesn't fit into a box of side 20 | the thickness can be up to 18"
     );
     assert_eq!(
-        changed(
-            "count = 3",
-            "count = 3\nplacement = { clusters = { number = 2, radius = 9.5 } }"
-        ),
+        changed("count = 3", "count = 3\nplacement = { clusters = { number = 2, radius = 9.5 } }"),
         "a.toml:8:13: clusters of radius 9.5 don't fit into a box of side 20 | the radius can be up to 9"
     );
     assert_eq!(
-        changed(
-            "count = 3",
-            "count = 3\nplacement = { clusters = { number = 4, radius = 1 } }"
-        ),
+        changed("count = 3", "count = 3\nplacement = { clusters = { number = 4, radius = 1 } }"),
         "a.toml:8:13: 4 clusters of 3 bodies | a cluster has one body at least"
     );
     assert_eq!(
@@ -58,27 +49,13 @@ fn broken_meshes_are_located() {
     std::fs::write(directory.path().join("cube.tri"), "1 1\nnonsense").unwrap();
     let refusal = |mesh: &str| {
         let text = SOUND.replace("shape = \"box\"", &format!("mesh = \"{mesh}\""));
-        let error = SceneFile::parse(&text, "a.toml", directory.path())
-            .unwrap()
-            .build()
-            .unwrap_err();
-        (
-            error.to_string(),
-            error
-                .help()
-                .map(|hint| hint.to_string())
-                .unwrap_or_default(),
-        )
+        let error =
+            SceneFile::parse(&text, "a.toml", directory.path()).unwrap().build().unwrap_err();
+        (error.to_string(), error.help().map(|hint| hint.to_string()).unwrap_or_default())
     };
     let (message, hint) = refusal("cub.tri");
-    assert!(
-        message.starts_with("a.toml:6:8: ") && message.contains("cub.tri"),
-        "{message}"
-    );
-    assert_eq!(
-        hint,
-        "mesh paths are relative to the scene file; did you mean `cube.tri`?"
-    );
+    assert!(message.starts_with("a.toml:6:8: ") && message.contains("cub.tri"), "{message}");
+    assert_eq!(hint, "mesh paths are relative to the scene file; did you mean `cube.tri`?");
     // A scene in the working directory has the empty path as its directory.
     let text = SOUND.replace("shape = \"box\"", "mesh = \"Cargo.tom\"");
     let here = SceneFile::parse(&text, "a.toml", Path::new("")).unwrap();
@@ -87,10 +64,7 @@ fn broken_meshes_are_located() {
         "mesh paths are relative to the scene file; did you mean `Cargo.toml`?"
     );
     let (message, _) = refusal("cube.tri");
-    assert!(
-        message.starts_with("a.toml:6:8: ") && message.contains("cube.tri:1"),
-        "{message}"
-    );
+    assert!(message.starts_with("a.toml:6:8: ") && message.contains("cube.tri:1"), "{message}");
 }
 
 /// Effects and culling that the scene cannot have are refused.
@@ -125,10 +99,7 @@ fn impossible_settings_are_located() {
     );
     assert!(with("[effects]\ngravity = [0, -9.81]\n").starts_with("a.toml:8:11: invalid length 2"));
     let unknown = with("[effects]\ngravity = { acceleratoin = [0, 0, -9.81] }\n");
-    assert!(
-        unknown.ends_with("did you mean `acceleration`?"),
-        "{unknown}"
-    );
+    assert!(unknown.ends_with("did you mean `acceleration`?"), "{unknown}");
     assert_eq!(
         with("[cull]\ninterest = [2]\n"),
         "interest: body 2 of a scene of 2 | bodies are counted from 0"

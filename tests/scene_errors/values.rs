@@ -20,10 +20,7 @@ fn unknown_keys_suggest_the_nearest() {
         "a.toml:12:9: unknown variant `bouncy`, expected `specular` or `reverse` | one of: specular, reverse"
     );
     assert_eq!(
-        changed("\"sphere\"", "\"spheer\"")
-            .split(" | ")
-            .last()
-            .unwrap(),
+        changed("\"sphere\"", "\"spheer\"").split(" | ").last().unwrap(),
         "did you mean `sphere`?"
     );
     assert_eq!(
@@ -91,10 +88,7 @@ fn invalid_values_are_located() {
         changed("motion = true", "rest = { sped = 1, after = 1 }"),
         "a.toml:11:10: unknown field `sped`, expected one of `speed`, `rate`, `after` | did you mean `speed`?"
     );
-    assert_eq!(
-        changed("name = \"s\"", ""),
-        "a.toml:1:1: missing field `name` | add `name`"
-    );
+    assert_eq!(changed("name = \"s\"", ""), "a.toml:1:1: missing field `name` | add `name`");
 }
 
 /// Text that is no toml is pointed at.

@@ -1,9 +1,6 @@
 //! Shapes and bodies drawn by seed.
 
-#![allow(
-    dead_code,
-    reason = "each test binary uses its own part of this support"
-)]
+#![allow(dead_code, reason = "each test binary uses its own part of this support")]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use rand::{RngExt, SeedableRng};
@@ -16,17 +13,8 @@ use sdop_judge::ours::seeded_draws::rotation;
 /// Every procedural shape at bounding radius 1, and an L-shape about its file's own origin, far off
 /// its ball's centre.
 pub fn shapes(directions: DirectionSet, axes: Axes) -> Vec<Shape> {
-    let centred = ShapeSpec {
-        origin: Origin::Ball,
-        radius: Some(1.0),
-        directions,
-        axes,
-    };
-    let about_file = ShapeSpec {
-        origin: Origin::File,
-        radius: None,
-        ..centred
-    };
+    let centred = ShapeSpec { origin: Origin::Ball, radius: Some(1.0), directions, axes };
+    let about_file = ShapeSpec { origin: Origin::File, radius: None, ..centred };
     let mesh = |name| ProceduralShape::default_of(name).unwrap().build().unwrap();
     let mut shapes: Vec<Shape> = ProceduralShape::NAMES
         .iter()

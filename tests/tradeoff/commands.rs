@@ -18,11 +18,8 @@ fn sdop(arguments: &[&str], directory: &Path) -> Output {
 fn counts(path: &Path) -> Vec<serde_json::Value> {
     let result: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let mut parts = vec![
-        result["truth"].clone(),
-        result["budgets"].clone(),
-        result["shapes"].clone(),
-    ];
+    let mut parts =
+        vec![result["truth"].clone(), result["budgets"].clone(), result["shapes"].clone()];
     for row in result["rows"].as_array().unwrap() {
         let keys = [
             "name",
@@ -63,16 +60,11 @@ fn changes_are_what_they_say(path: &Path) {
     assert_eq!(of("bodies", "bodies"), [6.0, 50.0, 500.0, 2000.0]);
     let partners = of("bodies", "partners");
     assert!(
-        partners[2..]
-            .iter()
-            .all(|p| (p / partners[1] - 1.0).abs() < 0.4),
+        partners[2..].iter().all(|p| (p / partners[1] - 1.0).abs() < 0.4),
         "the density stays: {partners:?}"
     );
     let triangles = of("triangles", "triangles");
-    assert!(
-        triangles[0] <= 100.0 && triangles[0] < triangles[1],
-        "{triangles:?}"
-    );
+    assert!(triangles[0] <= 100.0 && triangles[0] < triangles[1], "{triangles:?}");
     let motion = of("motion", "motion");
     for (way, factor) in motion.iter().zip([0.1, 1.0, 10.0, 40.0]) {
         let expected = factor * motion[1];
@@ -120,35 +112,17 @@ fn tradeoff_repeats_and_redraws() {
     fs::write(here.join("few.toml"), SCENE).unwrap();
     for out in ["one", "two"] {
         let run = sdop(&["tradeoff", "few.toml", "--quick", "--out", out], here);
-        assert_eq!(
-            run.status.code(),
-            Some(0),
-            "{}",
-            String::from_utf8_lossy(&run.stderr)
-        );
+        assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
         let text = String::from_utf8(run.stdout).unwrap();
         assert!(text.starts_with("Cheapest at this density"), "{text}");
         assert!(text.contains("sphere + hull") && !text.contains("The price of safety"));
     }
-    assert_eq!(
-        counts(&here.join("one/tradeoff.json")),
-        counts(&here.join("two/tradeoff.json"))
-    );
+    assert_eq!(counts(&here.join("one/tradeoff.json")), counts(&here.join("two/tradeoff.json")));
 
     changes_are_what_they_say(&here.join("one/tradeoff.json"));
     nothing_is_left_out(&here.join("one/tradeoff.json"));
 
-    let again = sdop(
-        &[
-            "tradeoff",
-            "one/tradeoff.json",
-            "--out",
-            "again",
-            "--format",
-            "csv",
-        ],
-        here,
-    );
+    let again = sdop(&["tradeoff", "one/tradeoff.json", "--out", "again", "--format", "csv"], here);
     assert_eq!(again.status.code(), Some(0));
     for file in [
         "figures/tradeoff.svg",
@@ -163,10 +137,7 @@ fn tradeoff_repeats_and_redraws() {
     }
     let figure = fs::read_to_string(here.join("one/figures/tradeoff.svg")).unwrap();
     // Ticks are plain numbers, whatever the machine's times.
-    assert!(
-        figure.contains("aabb") && !figure.contains("1e"),
-        "{figure}"
-    );
+    assert!(figure.contains("aabb") && !figure.contains("1e"), "{figure}");
     let all = sdop(&["tradeoff", "one/tradeoff.json", "--all"], here);
     assert!(String::from_utf8_lossy(&all.stdout).contains("The price of safety"));
     let lines = String::from_utf8(again.stdout).unwrap();
@@ -198,23 +169,10 @@ fn advice_names_the_cheapest() {
     let run = sdop(&["advise", "few.toml", "--narrow-ns", "1e6"], here);
     let text = String::from_utf8(run.stdout).unwrap();
     let lines: Vec<&str> = text.lines().collect();
-    assert!(
-        lines[0].starts_with("Use ") && lines[3].is_empty(),
-        "{text}"
-    );
+    assert!(lines[0].starts_with("Use ") && lines[3].is_empty(), "{text}");
     assert!(lines[2].starts_with("By the price of a check: "), "{text}");
 
-    let run = sdop(
-        &[
-            "advise",
-            "few.toml",
-            "--narrow-ns",
-            "1e6",
-            "--format",
-            "json",
-        ],
-        here,
-    );
+    let run = sdop(&["advise", "few.toml", "--narrow-ns", "1e6", "--format", "json"], here);
     let advice: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
     let candidates = advice["candidates"].as_array().unwrap();
     let total = |candidate: &serde_json::Value| candidate["total"].as_f64().unwrap();
@@ -224,33 +182,24 @@ fn advice_names_the_cheapest() {
     // Both axes and every finder are tried.
     let names = |list: &str| -> Vec<String> {
         let list = advice[list].as_array().unwrap().iter();
-        list.map(|one| one["name"].as_str().unwrap().to_owned())
-            .collect()
+        list.map(|one| one["name"].as_str().unwrap().to_owned()).collect()
     };
     for axes in ["principal", "model"] {
         assert!(names("candidates").contains(&format!("s-dop 18, {axes}, two-sided")));
     }
     let mut finders = names("finders");
     finders.sort();
-    assert_eq!(
-        finders,
-        ["all-pairs", "auto", "grid", "neighbours", "sweep"]
-    );
+    assert_eq!(finders, ["all-pairs", "auto", "grid", "neighbours", "sweep"]);
     // What is printed to be pasted is a table that a scene takes, and flags that the program takes.
     let table = &text[text.find("[cull]").unwrap()..];
     let table = &table[..table.find("\n\n").unwrap()];
     fs::write(here.join("pasted.toml"), format!("{SCENE}{table}\n")).unwrap();
     assert_eq!(sdop(&["run", "pasted.toml"], here).status.code(), Some(0));
-    let flags = text
-        .lines()
-        .find_map(|line| line.strip_prefix("As flags: "));
+    let flags = text.lines().find_map(|line| line.strip_prefix("As flags: "));
     let flags: Vec<&str> = flags.unwrap().split(' ').collect();
     let run = sdop(&[&["run", "few.toml"], &flags[..]].concat(), here);
     assert_eq!(run.status.code(), Some(0));
-    assert!(
-        text.contains("sdop::Culler::builder().strategy(sdop::Strategy::"),
-        "{text}"
-    );
+    assert!(text.contains("sdop::Culler::builder().strategy(sdop::Strategy::"), "{text}");
 
     // A check takes a millisecond: the variant with the fewest pairs wins, which is the hulls.
     let pairs = |candidate: &serde_json::Value| candidate["pairs"].as_f64().unwrap();

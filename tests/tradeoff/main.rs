@@ -1,9 +1,6 @@
 //! The comparison of volumes: its truth, its hulls, its counts, and the commands that print them.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot build its input has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot build its input has failed")]
 
 mod commands;
 
@@ -54,10 +51,7 @@ spin = { rate = [0.5, 1.0] }
 "#;
 
 fn scene() -> Scene {
-    SceneFile::parse(SCENE, "few.toml", Path::new(""))
-        .unwrap()
-        .build()
-        .unwrap()
+    SceneFile::parse(SCENE, "few.toml", Path::new("")).unwrap().build().unwrap()
 }
 
 /// Hulls agree with the exact meeting of hull meshes.
@@ -91,12 +85,7 @@ fn touching_hulls_are_reported() {
     let cubes = [builtin().unwrap().swap_remove(0)];
     let graphs = [HullGraph::new(&cubes[0])];
     let half = 0.5_f32;
-    for gap in [
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 1.0],
-        [1.0, -1.0, 0.3],
-        [0.0, 0.0, 0.0],
-    ] {
+    for gap in [[1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [1.0, -1.0, 0.3], [0.0, 0.0, 0.0]] {
         for (stretch, touch) in [(1.0, true), (1.0 + 1e-6, gap == [0.0; 3])] {
             let mut crowd = Crowd::new(&cubes, 1.0, 1, 0);
             crowd.bodies.rotation = vec![[0.0, 0.0, 0.0, 1.0]; 2];
@@ -112,10 +101,7 @@ fn touching_hulls_are_reported() {
 fn truth_is_complete_and_cached() {
     let scene = scene();
     let samples = samples(&scene, 3).unwrap();
-    assert_eq!(
-        samples.iter().map(|s| s.frame).collect::<Vec<_>>(),
-        [0, 13, 26]
-    );
+    assert_eq!(samples.iter().map(|s| s.frame).collect::<Vec<_>>(), [0, 13, 26]);
     let judge = ExactJudge::new(&scene.shapes).unwrap();
     let cache = tempfile::tempdir().unwrap();
     let truth = judge.truth(&samples, Some(cache.path())).unwrap();
@@ -129,12 +115,7 @@ fn truth_is_complete_and_cached() {
     assert!(counted > 20 && truth.iter().all(|pairs| pairs.is_sorted()));
 
     // What was kept is read again; a file that was tampered with is not.
-    let file = fs::read_dir(cache.path())
-        .unwrap()
-        .next()
-        .unwrap()
-        .unwrap()
-        .path();
+    let file = fs::read_dir(cache.path()).unwrap().next().unwrap().unwrap().path();
     let kept = fs::read_to_string(&file).unwrap();
     let first = format!("{} {} ", truth[0][0][0], truth[0][0][1]);
     fs::write(&file, kept.replacen(&first, "", 1)).unwrap();
@@ -150,10 +131,7 @@ fn truth_is_complete_and_cached() {
 fn finer_variants_report_fewer() {
     let scene = scene();
     let samples = samples(&scene, 5).unwrap();
-    let truth = ExactJudge::new(&scene.shapes)
-        .unwrap()
-        .truth(&samples, None)
-        .unwrap();
+    let truth = ExactJudge::new(&scene.shapes).unwrap().truth(&samples, None).unwrap();
     let tier = Tier::detect();
     let tally = |variant: &Variant| Tally::of(&scene, variant, tier, &samples, &truth).unwrap();
     let variants = variant::all(&scene, 30);
@@ -187,12 +165,7 @@ fn margins_equal_shrunk_volumes() {
         let bare = without_margins(&shape);
         assert!(inflate_radius(bare.ball.radius) <= shape.ball.radius);
         assert!(inflate_radius(bare.ball.radius.next_up()) > shape.ball.radius);
-        let shrunk = shape
-            .ordop
-            .hi
-            .iter()
-            .zip(&bare.ordop.hi)
-            .all(|(hi, bare)| bare < hi);
+        let shrunk = shape.ordop.hi.iter().zip(&bare.ordop.hi).all(|(hi, bare)| bare < hi);
         assert!(shrunk, "{}", shape.name);
     }
 }
@@ -201,10 +174,7 @@ fn margins_equal_shrunk_volumes() {
 /// the same pairs. Elsewhere nothing is.
 #[test]
 fn worlds_are_compared_where_bodies_rest() {
-    let resting = SCENE.replace(
-        "[effects]",
-        "[effects]\nrest = { speed = 0.5, after = 0.1 }",
-    );
+    let resting = SCENE.replace("[effects]", "[effects]\nrest = { speed = 0.5, after = 0.1 }");
     let plan = TradeoffPlan {
         seeds: 1,
         samples: 2,
@@ -218,22 +188,16 @@ fn worlds_are_compared_where_bodies_rest() {
         let file = SceneFile::parse(text, "few.toml", Path::new("")).unwrap();
         let comparison = Comparison::new(&file, &plan).unwrap();
         let units = comparison.header().unwrap().units;
-        let of_worlds: Vec<usize> = (0..units)
-            .filter(|&unit| comparison.name(unit) == "times of worlds")
-            .collect();
+        let of_worlds: Vec<usize> =
+            (0..units).filter(|&unit| comparison.name(unit) == "times of worlds").collect();
         assert_eq!(of_worlds.len(), worlds);
         for unit in of_worlds {
             let found: serde_json::Value =
                 serde_json::from_str(&comparison.run(unit).unwrap()).unwrap();
             let rows = found["Worlds"].as_array().unwrap();
-            let names: Vec<&str> = rows
-                .iter()
-                .map(|row| row["variant"].as_str().unwrap())
-                .collect();
-            assert!(
-                names.contains(&"sphere") && names.contains(&"aabb"),
-                "{names:?}"
-            );
+            let names: Vec<&str> =
+                rows.iter().map(|row| row["variant"].as_str().unwrap()).collect();
+            assert!(names.contains(&"sphere") && names.contains(&"aabb"), "{names:?}");
             assert_eq!(names.len(), 1 + 1 + 4 + 24 + 1, "{names:?}");
             for row in rows {
                 let mean = |key: &str| row[key]["mean"].as_f64().unwrap();

@@ -16,10 +16,7 @@ fn brute_force(points: &[DVec3]) -> f64 {
         if mask.count_ones() > 4 {
             continue;
         }
-        let subset: Vec<DVec3> = (0..n)
-            .filter(|i| mask >> i & 1 == 1)
-            .map(|i| points[i])
-            .collect();
+        let subset: Vec<DVec3> = (0..n).filter(|i| mask >> i & 1 == 1).map(|i| points[i]).collect();
         let Some(centre) = equidistant(&subset) else {
             continue;
         };
@@ -45,9 +42,8 @@ fn equidistant(points: &[DVec3]) -> Option<DVec3> {
         _ => return None,
     };
     let matrix = DMat3::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose();
-    let right: Vec<f64> = (0..3)
-        .map(|i| edges.get(i).map_or(0.0, |e| e.length_squared() / 2.0))
-        .collect();
+    let right: Vec<f64> =
+        (0..3).map(|i| edges.get(i).map_or(0.0, |e| e.length_squared() / 2.0)).collect();
     let volume = matrix.determinant().abs();
     (volume > 1e-9).then(|| points[0] + matrix.inverse() * DVec3::from_slice(&right))
 }
@@ -56,10 +52,8 @@ fn coordinates() -> impl Strategy<Value = Vec<Vec3>> {
     let any = prop::array::uniform3(-1.0..1.0_f32);
     // A small lattice is full of duplicate, collinear and cospherical points.
     let lattice = prop::array::uniform3((-1..=1_i8).prop_map(f32::from));
-    let points = prop_oneof![
-        prop::collection::vec(any, 1..9),
-        prop::collection::vec(lattice, 1..9),
-    ];
+    let points =
+        prop_oneof![prop::collection::vec(any, 1..9), prop::collection::vec(lattice, 1..9),];
     points.prop_map(|list| list.into_iter().map(Vec3::from_array).collect())
 }
 
@@ -89,11 +83,7 @@ fn known_sets_have_their_known_balls() {
     let with_centre: Vec<Vec3> = cube.iter().copied().chain([Vec3::ZERO; 9]).collect();
     let segment = [Vec3::ZERO, Vec3::X, Vec3::X * 2.0, Vec3::X * 0.3];
     // Obtuse: the longest side spans the ball, the third corner is inside.
-    let triangle = [
-        Vec3::ZERO,
-        Vec3::new(4.0, 0.0, 0.0),
-        Vec3::new(2.0, 0.5, 0.0),
-    ];
+    let triangle = [Vec3::ZERO, Vec3::new(4.0, 0.0, 0.0), Vec3::new(2.0, 0.5, 0.0)];
     let cases: [(&[Vec3], Vec3, f64); 6] = [
         (&[Vec3::ONE; 5], Vec3::ONE, 0.0),
         (&segment, Vec3::X, 1.0),
@@ -105,16 +95,9 @@ fn known_sets_have_their_known_balls() {
     for (points, centre, radius) in cases {
         let ball = Ball::smallest(points);
         assert_eq!(Vec3::from(ball.centre), centre);
-        assert!(
-            (f64::from(ball.radius) - radius).abs() <= 2e-7 * radius,
-            "{ball:?}"
-        );
+        assert!((f64::from(ball.radius) - radius).abs() <= 2e-7 * radius, "{ball:?}");
     }
-    assert_eq!(
-        Ball::smallest(&[Vec3::ONE; 5]).radius,
-        0.0,
-        "one point needs no rounding"
-    );
+    assert_eq!(Ball::smallest(&[Vec3::ONE; 5]).radius, 0.0, "one point needs no rounding");
 }
 
 #[test]

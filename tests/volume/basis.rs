@@ -61,9 +61,6 @@ fn large_quaternions_have_no_basis() {
     assert_eq!(Basis::from_integer_quaternion([2048, 1, 0, 0]), None);
     assert_eq!(Basis::from_integer_quaternion([i32::MIN, 0, 0, 1]), None);
     assert_eq!(Basis::from_integer_quaternion([i32::MIN; 4]), None);
-    assert_eq!(
-        Basis::from_integer_quaternion([0, 0, 0, 2048]),
-        Some(Basis::MODEL)
-    );
+    assert_eq!(Basis::from_integer_quaternion([0, 0, 0, 2048]), Some(Basis::MODEL));
     assert_eq!(Basis::snapped(glam::DQuat::IDENTITY), Basis::MODEL);
 }

@@ -15,18 +15,10 @@ const LIMIT: f32 = 1_152_921_504_606_846_976.0; // 2⁶⁰
 fn check(vertices: &[Vec3], radius: Option<f32>) -> Result<(), TestCaseError> {
     for &origin in Origin::ALL {
         for &axes in Axes::ALL {
-            let spec = ShapeSpec {
-                origin,
-                radius,
-                directions: DirectionSet::K26,
-                axes,
-            };
+            let spec = ShapeSpec { origin, radius, directions: DirectionSet::K26, axes };
             let shape = Shape::build(&mesh(vertices.to_vec()), &spec).unwrap();
             prop_assert!(ball_contains(&shape.ball, &shape.vertices), "{shape:?}");
-            let about_origin = Ball {
-                centre: [0.0; 3],
-                radius: shape.reach,
-            };
+            let about_origin = Ball { centre: [0.0; 3], radius: shape.reach };
             prop_assert!(ball_contains(&about_origin, &shape.vertices), "{shape:?}");
             for &directions in DirectionSet::ALL {
                 let shape = shape.clone().with_directions(directions);
@@ -86,10 +78,6 @@ fn extreme_meshes_are_contained() {
         check(&corners, None).unwrap();
         check(&rotated(&corners, glam::DQuat::from_rotation_x(0.3)), None).unwrap();
     }
-    let far = [
-        Vec3::ZERO,
-        Vec3::new(0.99 * LIMIT, 0.0, 0.0),
-        Vec3::new(0.0, 1e-45, 1.0),
-    ];
+    let far = [Vec3::ZERO, Vec3::new(0.99 * LIMIT, 0.0, 0.0), Vec3::new(0.0, 1e-45, 1.0)];
     check(&far, None).unwrap();
 }

@@ -77,22 +77,15 @@ fn slabs_grow_exactly_by_margin() {
 fn cancelling_margin_moves_far_enough() {
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
-    let spec = ShapeSpec {
-        directions: DirectionSet::K26,
-        axes: Axes::Model,
-        ..ShapeSpec::default()
-    };
+    let spec =
+        ShapeSpec { directions: DirectionSet::K26, axes: Axes::Model, ..ShapeSpec::default() };
     let mut ordop = Shape::build(&mesh, &spec).unwrap().ordop;
     let exact = lengths_squared(&ordop);
     let lengths: Vec<f64> = ordop
         .directions
         .coefficients()
         .iter()
-        .map(|&c| {
-            glam::Vec3::from(ordop.basis.direction(c))
-                .as_dvec3()
-                .length()
-        })
+        .map(|&c| glam::Vec3::from(ordop.basis.direction(c)).as_dvec3().length())
         .collect();
     let mut close = 0;
     for _ in 0..100_000 {
@@ -107,18 +100,10 @@ fn cancelling_margin_moves_far_enough() {
             ordop.lo[i] = end;
             let grown = ordop.grown(margin);
             let what = || format!("slab {i}, {margin:e}, {end:e}");
-            assert!(
-                is_far_enough(-end, -grown.lo[i], margin, &exact[i]),
-                "{}",
-                what()
-            );
+            assert!(is_far_enough(-end, -grown.lo[i], margin, &exact[i]), "{}", what());
             ordop.hi[i] = -end;
             let grown = ordop.grown(margin);
-            assert!(
-                is_far_enough(-end, grown.hi[i], margin, &exact[i]),
-                "{}",
-                what()
-            );
+            assert!(is_far_enough(-end, grown.hi[i], margin, &exact[i]), "{}", what());
             close += 1;
         }
     }

@@ -18,21 +18,11 @@ use crate::{
 pub fn assert_hull(points: &[impl Into<[f32; 3]> + Copy + std::fmt::Debug]) -> Hull {
     let hull = Hull::of(points);
     let exact: Vec<[IBig; 3]> = points.iter().map(|&v| point(v)).collect();
-    let edges: Vec<(u32, u32)> = hull
-        .facets
-        .iter()
-        .flat_map(|f| [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])])
-        .collect();
+    let edges: Vec<(u32, u32)> =
+        hull.facets.iter().flat_map(|f| [(f[0], f[1]), (f[1], f[2]), (f[2], f[0])]).collect();
     let set: HashSet<(u32, u32)> = edges.iter().copied().collect();
-    assert_eq!(
-        set.len(),
-        edges.len(),
-        "a directed edge belongs to one facet"
-    );
-    assert!(
-        set.iter().all(|&(a, b)| set.contains(&(b, a))),
-        "the surface is closed"
-    );
+    assert_eq!(set.len(), edges.len(), "a directed edge belongs to one facet");
+    assert!(set.iter().all(|&(a, b)| set.contains(&(b, a))), "the surface is closed");
     for facet in &hull.facets {
         let [a, b, c] = facet.map(|i| &exact[i as usize]);
         let (u, v) = (sub(b, a), sub(c, a));
@@ -40,28 +30,14 @@ pub fn assert_hull(points: &[impl Into<[f32; 3]> + Copy + std::fmt::Debug]) -> H
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             &u[i] * &v[j] - &u[j] * &v[i]
         });
-        assert!(
-            normal.iter().any(|n| *n != IBig::ZERO),
-            "facet {facet:?} has an area"
-        );
-        let outside = exact
-            .iter()
-            .filter(|p| dot(&normal, &sub(p, a)) > IBig::ZERO)
-            .count();
+        assert!(normal.iter().any(|n| *n != IBig::ZERO), "facet {facet:?} has an area");
+        let outside = exact.iter().filter(|p| dot(&normal, &sub(p, a)) > IBig::ZERO).count();
         assert_eq!(outside, 0, "facet {facet:?} of {points:?}");
     }
     if hull.facets.is_empty() {
-        assert_eq!(
-            hull.vertices.len(),
-            points.len(),
-            "a flat set is kept whole"
-        );
+        assert_eq!(hull.vertices.len(), points.len(), "a flat set is kept whole");
     } else {
-        assert_eq!(
-            hull.vertices.len() + hull.facets.len(),
-            edges.len() / 2 + 2,
-            "Euler"
-        );
+        assert_eq!(hull.vertices.len() + hull.facets.len(), edges.len() / 2 + 2, "Euler");
         let used: HashSet<u32> = hull.facets.iter().flatten().copied().collect();
         assert_eq!(used, hull.vertices.iter().copied().collect());
         assert!(hull.vertices.is_sorted());
@@ -104,24 +80,12 @@ proptest! {
 #[test]
 fn flat_sets_have_no_facets() {
     let plate = box_corners(Vec3::new(1.0, 1.0, 0.0));
-    let skew: Vec<Vec3> = plate
-        .iter()
-        .map(|v| Vec3::new(v.x, v.y, v.x + v.y))
-        .collect();
-    let sets: [&[Vec3]; 6] = [
-        &[],
-        &[Vec3::ONE; 3],
-        &[Vec3::X, Vec3::Y],
-        &plate,
-        &skew,
-        &[Vec3::ZERO; 1],
-    ];
+    let skew: Vec<Vec3> = plate.iter().map(|v| Vec3::new(v.x, v.y, v.x + v.y)).collect();
+    let sets: [&[Vec3]; 6] =
+        [&[], &[Vec3::ONE; 3], &[Vec3::X, Vec3::Y], &plate, &skew, &[Vec3::ZERO; 1]];
     for points in sets {
         let hull = assert_hull(points);
-        assert_eq!(
-            (hull.facets.len(), hull.volume(points), hull.area(points)),
-            (0, 0.0, 0.0)
-        );
+        assert_eq!((hull.facets.len(), hull.volume(points), hull.area(points)), (0, 0.0, 0.0));
     }
 }
 
@@ -154,12 +118,7 @@ fn a_large_set_is_exact() {
 /// differences with a sign nor one of sums is a size.
 #[test]
 fn needles_are_not_flat() {
-    let needle = [
-        [0.0, 0.0, 0.0],
-        [0.1, 0.0, 9.0],
-        [0.0, 0.1, 9.05],
-        [-0.1, -0.1, 9.1],
-    ];
+    let needle = [[0.0, 0.0, 0.0], [0.1, 0.0, 9.0], [0.0, 0.1, 9.05], [-0.1, -0.1, 9.1]];
     for shift in 0..3 {
         for (sign, far) in [(1.0, 0.0), (-1.0, 0.0), (1.0, -20.0)] {
             let needle = needle.map(|[x, y, z]| [x, y, z + far]);
@@ -177,10 +136,8 @@ fn needles_are_not_flat() {
 #[test]
 fn far_cube_keeps_its_size() {
     for far in [0.0, 1048576.0, -8388608.0] {
-        let points: Vec<Vec3> = box_corners(Vec3::splat(2.0))
-            .iter()
-            .map(|v| v + Vec3::splat(far))
-            .collect();
+        let points: Vec<Vec3> =
+            box_corners(Vec3::splat(2.0)).iter().map(|v| v + Vec3::splat(far)).collect();
         let hull = assert_hull(&points);
         let (volume, area) = (hull.volume(&points), hull.area(&points));
         assert!(
@@ -203,18 +160,13 @@ fn box_corner_is_not_flat() {
 #[test]
 fn flat_sets_have_corners() {
     let point = |x: f32, y: f32| Vec3::new(x, y, 2.0 * x + y);
-    let grid: Vec<Vec3> = (0..25)
-        .map(|i| point((i % 5) as f32, (i / 5) as f32))
-        .collect();
+    let grid: Vec<Vec3> = (0..25).map(|i| point((i % 5) as f32, (i / 5) as f32)).collect();
     let corners = |points: &[Vec3]| Hull::of(points).corners(points);
     assert_eq!(Hull::of(&grid).vertices.len(), 25);
     assert_eq!(corners(&grid), [0, 4, 20, 24]);
     let wall: Vec<Vec3> = grid.iter().map(|p| Vec3::new(0.0, p.x, p.y)).collect();
     assert_eq!(corners(&wall), [0, 4, 20, 24]);
-    assert_eq!(
-        corners(&[grid[12], grid[0], grid[24], grid[6], grid[24]]),
-        [1, 2]
-    );
+    assert_eq!(corners(&[grid[12], grid[0], grid[24], grid[6], grid[24]]), [1, 2]);
     assert_eq!(corners(&[Vec3::ZERO, -Vec3::ZERO]).len(), 1);
     assert_eq!(Hull::of(&grid).volume(&grid).to_bits(), 0);
     let solid = box_corners(Vec3::ONE);

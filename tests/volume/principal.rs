@@ -58,14 +58,8 @@ fn flat_meshes_use_the_model_axes() {
 
 #[test]
 fn model_axes_ignore_the_hull() {
-    let points = rotated(
-        &box_corners(Vec3::new(3.0, 2.0, 1.0)),
-        DQuat::from_rotation_x(0.5),
-    );
-    let spec = ShapeSpec {
-        axes: Axes::Model,
-        ..ShapeSpec::default()
-    };
+    let points = rotated(&box_corners(Vec3::new(3.0, 2.0, 1.0)), DQuat::from_rotation_x(0.5));
+    let spec = ShapeSpec { axes: Axes::Model, ..ShapeSpec::default() };
     let shape = Shape::build(&mesh(points), &spec).unwrap();
     assert_eq!(shape.ordop.basis, Basis::MODEL);
 }

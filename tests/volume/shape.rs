@@ -11,22 +11,12 @@ use sdop_bench::tightness::PolytopeVolume as _;
 use crate::meshes::{box_corners, mesh, rotated};
 
 fn spec(origin: Origin, radius: Option<f32>) -> ShapeSpec {
-    ShapeSpec {
-        origin,
-        radius,
-        axes: Axes::Model,
-        ..ShapeSpec::default()
-    }
+    ShapeSpec { origin, radius, axes: Axes::Model, ..ShapeSpec::default() }
 }
 
 fn shifted_box() -> TriangleMesh {
     let corners = box_corners(Vec3::new(2.0, 4.0, 4.0));
-    mesh(
-        corners
-            .into_iter()
-            .map(|v| v + Vec3::new(10.0, 20.0, 30.0))
-            .collect(),
-    )
+    mesh(corners.into_iter().map(|v| v + Vec3::new(10.0, 20.0, 30.0)).collect())
 }
 
 /// Its vertices.
@@ -39,10 +29,7 @@ fn origin_ball_centres_and_scales() {
     let mesh = shifted_box();
     let shape = Shape::build(&mesh, &spec(Origin::Ball, None)).unwrap();
     assert_eq!(vectors(&shape), box_corners(Vec3::new(2.0, 4.0, 4.0)));
-    assert_eq!(
-        (Vec3::from(shape.ball.centre), shape.ball.radius),
-        (Vec3::ZERO, 3.0_f32.next_up())
-    );
+    assert_eq!((Vec3::from(shape.ball.centre), shape.ball.radius), (Vec3::ZERO, 3.0_f32.next_up()));
     assert_eq!(shape.reach, shape.ball.radius);
     let scaled = Shape::build(&mesh, &spec(Origin::Ball, Some(0.75))).unwrap();
     assert_eq!(vectors(&scaled), box_corners(Vec3::new(0.5, 1.0, 1.0)));
@@ -96,10 +83,7 @@ fn a_shape_keeps_what_it_applied() {
 #[test]
 fn exchanged_directions_equal_a_rebuild() {
     for &directions in DirectionSet::ALL {
-        let built = ShapeSpec {
-            directions,
-            ..ShapeSpec::default()
-        };
+        let built = ShapeSpec { directions, ..ShapeSpec::default() };
         let built = Shape::build(&shifted_box(), &built).unwrap();
         let exchanged = Shape::build(&shifted_box(), &ShapeSpec::default()).unwrap();
         assert_eq!(exchanged.with_directions(directions), built);
@@ -108,10 +92,7 @@ fn exchanged_directions_equal_a_rebuild() {
 
 #[test]
 fn the_obb_has_its_own_axes() {
-    let turned = rotated(
-        &box_corners(Vec3::new(3.0, 2.0, 1.0)),
-        DQuat::from_rotation_y(0.4),
-    );
+    let turned = rotated(&box_corners(Vec3::new(3.0, 2.0, 1.0)), DQuat::from_rotation_y(0.4));
     let shape = Shape::build(&mesh(turned), &spec(Origin::Ball, None)).unwrap();
     let obb = shape.obb(&Hull::of(&shape.vertices));
     assert_eq!(obb.directions, DirectionSet::K6);
@@ -138,34 +119,16 @@ fn impossible_shapes_are_refused_by_name() {
             message(vec![Vec3::INFINITY], Origin::Ball, None),
             "vertex 0 of shape `test` is not finite",
         ),
-        (
-            message(vec![Vec3::X * 1.2e18], Origin::File, None),
-            "beyond the limit of 2⁶⁰",
-        ),
+        (message(vec![Vec3::X * 1.2e18], Origin::File, None), "beyond the limit of 2⁶⁰"),
         (
             message(vec![Vec3::X * -3e38, Vec3::X * 3e38], Origin::Ball, None),
             "beyond the limit of 2⁶⁰",
         ),
-        (
-            message(segment.clone(), Origin::Ball, Some(-1.0)),
-            "radius -1 of shape `test`",
-        ),
-        (
-            message(segment.clone(), Origin::Ball, Some(0.0)),
-            "radius 0 of shape `test`",
-        ),
-        (
-            message(segment.clone(), Origin::Ball, Some(f32::NAN)),
-            "radius NaN of shape `test`",
-        ),
-        (
-            message(segment, Origin::Ball, Some(2e18)),
-            "is not in 0 < radius ≤ 2⁶⁰",
-        ),
-        (
-            message(point, Origin::Ball, Some(1.0)),
-            "`test` is a single point",
-        ),
+        (message(segment.clone(), Origin::Ball, Some(-1.0)), "radius -1 of shape `test`"),
+        (message(segment.clone(), Origin::Ball, Some(0.0)), "radius 0 of shape `test`"),
+        (message(segment.clone(), Origin::Ball, Some(f32::NAN)), "radius NaN of shape `test`"),
+        (message(segment, Origin::Ball, Some(2e18)), "is not in 0 < radius ≤ 2⁶⁰"),
+        (message(point, Origin::Ball, Some(1.0)), "`test` is a single point"),
     ];
     for ((text, help), expected) in cases {
         assert!(text.contains(expected) && text.contains("`test`"), "{text}");
@@ -188,11 +151,8 @@ fn the_fingerprint_covers_every_number() {
     // made apart from this code.
     let expected = "8485da5c21992757e15eb9b660ab5ff64d2b41711a54973bb413b91f8aeaaec0";
     assert_eq!(original, expected);
-    let mut seen = vec![
-        original,
-        volumes_sha256(&[]),
-        volumes_sha256(&[shape.clone(), shape.clone()]),
-    ];
+    let mut seen =
+        vec![original, volumes_sha256(&[]), volumes_sha256(&[shape.clone(), shape.clone()])];
     let mut change = |edit: &dyn Fn(&mut Shape)| {
         let mut edited = shape.clone();
         edit(&mut edited);

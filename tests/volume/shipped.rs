@@ -15,12 +15,8 @@ use crate::{
 fn shape(name: &str, axes: Axes) -> Shape {
     let path = format!("{}/data/meshes/{name}.tri", env!("CARGO_MANIFEST_DIR"));
     let mesh = read(path, &ReadOptions::default()).unwrap();
-    let spec = ShapeSpec {
-        origin: Origin::Ball,
-        radius: Some(1.0),
-        directions: DirectionSet::K26,
-        axes,
-    };
+    let spec =
+        ShapeSpec { origin: Origin::Ball, radius: Some(1.0), directions: DirectionSet::K26, axes };
     Shape::build(&mesh, &spec).unwrap()
 }
 
@@ -59,11 +55,7 @@ fn spot_is_as_tight_as_recorded() {
     let dop = |basis, directions| OrDop::build(&points, basis, directions).volume() / size;
     let cases = [
         ("ball", Ball::smallest(&points).volume() / size, 3.61),
-        (
-            "AABB, mean",
-            mean_world_aligned_volume(&points, DirectionSet::K6, 200) / size,
-            2.86,
-        ),
+        ("AABB, mean", mean_world_aligned_volume(&points, DirectionSet::K6, 200) / size, 2.86),
         ("or-6, model", dop(Basis::MODEL, DirectionSet::K6), 2.16),
         ("or-6, principal", dop(principal, DirectionSet::K6), 1.90),
         ("or-14, model", dop(Basis::MODEL, DirectionSet::K14), 1.46),
@@ -71,9 +63,6 @@ fn spot_is_as_tight_as_recorded() {
         ("or-26, model", dop(Basis::MODEL, DirectionSet::K26), 1.33),
     ];
     for (name, ratio, expected) in cases {
-        assert!(
-            (ratio / expected - 1.0).abs() < 0.01,
-            "{name}: {ratio} against {expected}"
-        );
+        assert!((ratio / expected - 1.0).abs() < 0.01, "{name}: {ratio} against {expected}");
     }
 }

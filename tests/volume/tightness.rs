@@ -21,27 +21,12 @@ fn near(a: f64, b: f64, tolerance: f64) -> bool {
 fn octahedron_dops_are_known_solids() {
     let octahedron = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
     // Box, the octahedron itself, rhombic dodecahedron, the octahedron itself.
-    for (&directions, expected) in DirectionSet::ALL
-        .iter()
-        .zip([8.0, 4.0 / 3.0, 2.0, 4.0 / 3.0])
-    {
+    for (&directions, expected) in DirectionSet::ALL.iter().zip([8.0, 4.0 / 3.0, 2.0, 4.0 / 3.0]) {
         let ordop = OrDop::build(&octahedron, Basis::MODEL, directions);
-        assert!(
-            near(ordop.volume(), expected, 1e-12),
-            "{directions}: {}",
-            ordop.volume()
-        );
+        assert!(near(ordop.volume(), expected, 1e-12), "{directions}: {}", ordop.volume());
     }
-    assert!(near(
-        Hull::of(&octahedron).volume(&octahedron),
-        4.0 / 3.0,
-        1e-12
-    ));
-    assert!(near(
-        Ball::smallest(&octahedron).volume(),
-        4.0 / 3.0 * PI,
-        1e-6
-    ));
+    assert!(near(Hull::of(&octahedron).volume(&octahedron), 4.0 / 3.0, 1e-12));
+    assert!(near(Ball::smallest(&octahedron).volume(), 4.0 / 3.0 * PI, 1e-6));
 }
 
 #[test]
@@ -49,11 +34,7 @@ fn flat_volumes_are_zero() {
     for size in [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 2.0, 0.0)] {
         for &directions in DirectionSet::ALL {
             let ordop = OrDop::build(&box_corners(size), Basis::MODEL, directions);
-            assert!(
-                ordop.volume() < 1e-12,
-                "{size} {directions}: {}",
-                ordop.volume()
-            );
+            assert!(ordop.volume() < 1e-12, "{size} {directions}: {}", ordop.volume());
         }
     }
 }
@@ -61,10 +42,7 @@ fn flat_volumes_are_zero() {
 /// A ball is alike from all sides.
 #[test]
 fn ball_is_symmetric() {
-    let mesh = ProceduralShape::default_of("icosphere")
-        .unwrap()
-        .build()
-        .unwrap();
+    let mesh = ProceduralShape::default_of("icosphere").unwrap().build().unwrap();
     let ball = Ball::smallest(&mesh.vertices).volume();
     let cube = mean_world_aligned_volume(&mesh.vertices, DirectionSet::K6, 20);
     assert!(near(cube / ball, 6.0 / PI, 0.01), "{}", cube / ball);

@@ -36,10 +36,7 @@ fn late_shape_equals_early() {
         for (number, shape) in (1..).zip(&shapes()[1..]) {
             assert_eq!(late.add_shape(shape.clone()), Ok(number));
         }
-        let next = both(
-            (0..24).map(|i| body(i, 1 + u32::from(i) % 2)).collect(),
-            &mut late,
-        );
+        let next = both((0..24).map(|i| body(i, 1 + u32::from(i) % 2)).collect(), &mut late);
         assert!(few < next || way.strategy == Strategy::None, "{few} {next}");
         let other = shapes()[0].clone().with_directions(DirectionSet::K26);
         let refused = late.add_shape(other);
@@ -57,9 +54,7 @@ fn late_shape_equals_early() {
 fn first_shape_sets_directions() {
     for way in super::ways() {
         let mut world = World::with(Vec::new(), &Culler::builder().settings(&way)).unwrap();
-        let shapes = shapes()
-            .into_iter()
-            .map(|shape| shape.with_directions(DirectionSet::K6));
+        let shapes = shapes().into_iter().map(|shape| shape.with_directions(DirectionSet::K6));
         for (number, shape) in (0..).zip(shapes) {
             assert_eq!(world.add_shape(shape), Ok(number), "{way:?}");
         }
@@ -85,18 +80,10 @@ fn unused_shapes_are_removed() {
         });
         let number = world.add_shape(narrow.clone()).unwrap();
         let at = |x: f64| Body::at(number, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
-        let still = world
-            .insert(Body {
-                margin: 0.1,
-                ..at(0.0).fixed()
-            })
-            .unwrap();
+        let still = world.insert(Body { margin: 0.1, ..at(0.0).fixed() }).unwrap();
         let other = world.insert(at(4.0)).unwrap();
         let used = world.remove_shape(number).unwrap_err().to_string();
-        assert!(
-            used.starts_with("shape 3 (") && used.ends_with("of body 0"),
-            "{used}"
-        );
+        assert!(used.starts_with("shape 3 (") && used.ends_with("of body 0"), "{used}");
         let culled = usize::from(way.strategy != Strategy::None);
         assert_eq!(world.cull().unwrap().len(), 0, "{way:?}");
         for (form, pairs) in [(&wide, culled), (&narrow, 0), (&wide, culled)] {
@@ -120,11 +107,7 @@ fn unused_shapes_are_removed() {
         assert_eq!(world.cull().unwrap().len(), 0);
         (0..5).for_each(|shape| world.remove_shape(shape).unwrap());
         let first = narrow.with_directions(DirectionSet::K6);
-        assert_eq!(
-            world.add_shape(first),
-            Ok(0),
-            "the first sets the directions"
-        );
+        assert_eq!(world.add_shape(first), Ok(0), "the first sets the directions");
         world.insert(Body::default()).unwrap();
         world.insert(Body::default()).unwrap();
         assert_eq!(world.cull().unwrap().len(), culled, "{way:?}");

@@ -17,18 +17,11 @@ trait CountingWorld {
 }
 
 fn body(x: f32, motion: Motion) -> Body {
-    Body {
-        translation: [f64::from(x), 0.0, 0.0],
-        motion,
-        ..Body::default()
-    }
+    Body { translation: [f64::from(x), 0.0, 0.0], motion, ..Body::default() }
 }
 
 fn box_body(x: f32, motion: Motion) -> BoxBody {
-    BoxBody {
-        motion,
-        ..Aabb::new([x, 0.0, 0.0], [x + 1.5, 1.0, 1.0]).into()
-    }
+    BoxBody { motion, ..Aabb::new([x, 0.0, 0.0], [x + 1.5, 1.0, 1.0]).into() }
 }
 
 impl CountingWorld for World {

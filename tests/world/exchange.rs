@@ -31,10 +31,7 @@ fn drifting(random: &mut Random, small: u32) -> Body {
 /// The small shapes, and one that is eight times as wide.
 fn sizes() -> Vec<Shape> {
     let mut shapes = shapes();
-    let giant = sdop::mesh::ProceduralShape::Icosphere {
-        radius: 8.0,
-        subdivisions: 1,
-    };
+    let giant = sdop::mesh::ProceduralShape::Icosphere { radius: 8.0, subdivisions: 1 };
     shapes.push(Shape::build(&giant.build().unwrap(), &ShapeSpec::default()).unwrap());
     shapes
 }
@@ -46,12 +43,8 @@ fn few_exchanges_lose_no_pair() {
     let small = shapes.len() as u32 - 1;
     for strategy in [Strategy::Sphere, Strategy::SDopSequential, Strategy::KDop] {
         for &updates in Updates::ALL {
-            let way = |pairs| CullSettings {
-                strategy,
-                updates,
-                pairs,
-                ..CullSettings::all_pairs()
-            };
+            let way =
+                |pairs| CullSettings { strategy, updates, pairs, ..CullSettings::all_pairs() };
             let mut worlds: Vec<World> = Finder::ALL
                 .iter()
                 .map(|&pairs| Culler::builder().settings(&way(pairs)))

@@ -60,20 +60,9 @@ impl Model {
         let found: Pairs = world.pairs().collect();
         assert_eq!(found, wanted, "{way:?}");
         let events = world.events();
-        assert!(
-            events
-                .begun()
-                .eq(wanted.difference(&self.reported).copied())
-        );
-        assert!(
-            events
-                .ended()
-                .eq(self.reported.difference(&wanted).copied())
-        );
-        assert_eq!(
-            world.excluded(),
-            Vec::from_iter(self.excluded.iter().copied())
-        );
+        assert!(events.begun().eq(wanted.difference(&self.reported).copied()));
+        assert!(events.ended().eq(self.reported.difference(&wanted).copied()));
+        assert_eq!(world.excluded(), Vec::from_iter(self.excluded.iter().copied()));
         self.reported = wanted;
         [all, all - self.reported.len()]
     }
@@ -146,9 +135,7 @@ fn restored_worlds_exclude_the_same_pairs() {
     let mut other = World::with(shapes(), &Culler::builder().settings(way)).unwrap();
     let [a, b] = [(); 2].map(|()| other.insert(Body::default()).unwrap());
     other.exclude(a, b).unwrap();
-    other
-        .restore(&serde_json::from_value(saved.clone()).unwrap())
-        .unwrap();
+    other.restore(&serde_json::from_value(saved.clone()).unwrap()).unwrap();
     assert_eq!(other.snapshot(), world.snapshot());
     world.shrink_to_fit();
     for world in [&mut world.clone(), &mut other, &mut world] {
@@ -166,19 +153,14 @@ fn restored_worlds_exclude_the_same_pairs() {
     // Snapshots of before have none; damaged ones are refused.
     let mut without = saved.clone();
     without.as_object_mut().unwrap().remove("excluded");
-    other
-        .restore(&serde_json::from_value(without).unwrap())
-        .unwrap();
+    other.restore(&serde_json::from_value(without).unwrap()).unwrap();
     assert!(other.excluded().is_empty());
     for bad in [[[1, 0]], [[2, 2]], [[0, 9999]]] {
         let mut damaged = saved.clone();
         damaged["excluded"] = serde_json::json!(bad);
         let damaged = serde_json::from_value(damaged).unwrap();
         let error = other.restore(&damaged).unwrap_err().to_string();
-        assert!(
-            error.contains("excluded pairs that there can't be"),
-            "{error}"
-        );
+        assert!(error.contains("excluded pairs that there can't be"), "{error}");
     }
 }
 
@@ -195,10 +177,6 @@ fn removed_bodies_have_no_pairs() {
     world.cull().unwrap();
     let next = world.insert(Body::default()).unwrap();
     assert_eq!(next.slot(), a.slot());
-    assert_eq!(
-        world.cull().unwrap().len(),
-        1,
-        "another body in the slot is another pair"
-    );
+    assert_eq!(world.cull().unwrap().len(), 1, "another body in the slot is another pair");
     assert_eq!(world.exclude(next, next), Ok(false));
 }

@@ -19,11 +19,7 @@ fn tetrahedron(at: [f64; 3]) -> TriangleMesh {
 }
 
 fn world_of(way: &CullSettings, meshes: &[TriangleMesh]) -> World {
-    let spec = ShapeSpec {
-        directions: way.k,
-        axes: Axes::Model,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { directions: way.k, axes: Axes::Model, ..ShapeSpec::default() };
     let shape = |mesh| Shape::build(mesh, &spec).unwrap();
     let culler = Culler::builder().settings(way).budget(Budget::Tests(9));
     World::with(meshes.iter().map(shape).collect(), &culler).unwrap()
@@ -31,16 +27,10 @@ fn world_of(way: &CullSettings, meshes: &[TriangleMesh]) -> World {
 
 /// Ways that report what touches, and little else: boxes of all kinds.
 fn sharp_ways() -> Vec<CullSettings> {
-    let sharp = [
-        Strategy::Aabb,
-        Strategy::KDop,
-        Strategy::Obb,
-        Strategy::OrDop,
-        Strategy::SDopSequential,
-    ];
+    let sharp =
+        [Strategy::Aabb, Strategy::KDop, Strategy::Obb, Strategy::OrDop, Strategy::SDopSequential];
     let ways = ways().into_iter();
-    ways.filter(|way| sharp.contains(&way.strategy) && way.k != DirectionSet::K26)
-        .collect()
+    ways.filter(|way| sharp.contains(&way.strategy) && way.k != DirectionSet::K26).collect()
 }
 
 #[test]
@@ -68,14 +58,7 @@ fn rounded_box(random: &mut Random) -> (TriangleMesh, f64) {
         std::array::from_fn(|axis| lo[axis] + if i >> axis & 1 == 1 { size[axis] } else { 0.0 })
     };
     let points: Vec<[f64; 3]> = (0..8).map(corner).collect();
-    let faces = [
-        [0, 2, 4],
-        [6, 4, 2],
-        [1, 3, 5],
-        [7, 5, 3],
-        [0, 1, 2],
-        [4, 5, 6],
-    ];
+    let faces = [[0, 2, 4], [6, 4, 2], [1, 3, 5], [7, 5, 3], [0, 1, 2], [4, 5, 6]];
     let length = points[1][0] - points[0][0];
     (TriangleMesh::from_f64(&points, &faces).unwrap(), length)
 }
@@ -92,27 +75,17 @@ fn far_boxes_that_touch_are_reported() {
         moved += usize::from(mesh.rounding > 0.0);
         for way in sharp_ways() {
             let mut world = world_of(&way, std::slice::from_ref(&mesh));
-            let turns = [
-                (UNTURNED, [length, 0.0, 0.0]),
-                ([0.0, 0.0, 3.0, 3.0], [0.0, length, 0.0]),
-            ];
+            let turns =
+                [(UNTURNED, [length, 0.0, 0.0]), ([0.0, 0.0, 3.0, 3.0], [0.0, length, 0.0])];
             for (q, t) in turns {
                 let a = world.insert(Body::at(0, q, [0.0; 3])).unwrap();
                 let b = world.insert(Body::at(0, q, t)).unwrap();
                 world.cull().unwrap();
-                assert_eq!(
-                    world.pairs().collect::<Vec<_>>(),
-                    [[a, b]],
-                    "{round}: {way:?}"
-                );
+                assert_eq!(world.pairs().collect::<Vec<_>>(), [[a, b]], "{round}: {way:?}");
                 let apart = t.map(|x| x * 1.001);
                 world.set_pose(b, q, apart).unwrap();
                 world.cull().unwrap();
-                assert_eq!(
-                    world.pairs().len(),
-                    0,
-                    "{round}: {way:?}, a thousandth apart"
-                );
+                assert_eq!(world.pairs().len(), 0, "{round}: {way:?}, a thousandth apart");
                 world.remove(a).unwrap();
                 world.remove(b).unwrap();
             }
@@ -132,16 +105,10 @@ fn f32_poses_reject_far_shape() {
     let mends = |error: CullError| {
         let help = error.help();
         assert!(error.to_string().contains("far from the origin"), "{error}");
-        assert!(
-            help.contains("`World`") && help.contains("`Origin::Ball`"),
-            "{help}"
-        );
+        assert!(help.contains("`World`") && help.contains("`Origin::Ball`"), "{help}");
     };
     mends(Culler::new(std::slice::from_ref(&far), &bodies).unwrap_err());
-    let ball = ShapeSpec {
-        origin: Origin::Ball,
-        ..ShapeSpec::default()
-    };
+    let ball = ShapeSpec { origin: Origin::Ball, ..ShapeSpec::default() };
     let near = Shape::build(&mesh, &ball).unwrap();
     assert_eq!(near.pose_offset, [0.0; 3]);
     assert!((near.offset[0] - 1.0e9).abs() < 1.0);
@@ -165,19 +132,14 @@ fn decimal_meshes_are_told_the_remedy() {
     assert!(culler([20.125, 20.25, 20.5]).is_ok(), "all f32");
     assert!(culler([2.1, 2.2, 2.3]).is_ok(), "near");
     let error = culler([20.1, 20.2, 20.3]).unwrap_err();
-    assert!(
-        error.to_string().contains("more than 2^-20 of its size"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("more than 2^-20 of its size"), "{error}");
     let help = error.help();
     for remedy in ["`World`", "near its origin", "`Origin::Ball`"] {
         assert!(help.contains(remedy), "{help}");
     }
     let mut world = world_of(&CullSettings::default(), &[tetrahedron([20.1, 20.2, 20.3])]);
     world.insert(Body::at(0, UNTURNED, [0.0; 3])).unwrap();
-    world
-        .insert(Body::at(0, UNTURNED, [0.3, 0.0, 0.0]))
-        .unwrap();
+    world.insert(Body::at(0, UNTURNED, [0.3, 0.0, 0.0])).unwrap();
     assert_eq!(world.cull().unwrap().sorted().len(), 1);
 }
 
@@ -186,10 +148,7 @@ fn decimal_meshes_are_told_the_remedy() {
 fn scaled_far_mesh_keeps_origin() {
     let mesh = tetrahedron([1.0e6 + 0.1234, 0.1, 0.0]);
     let plain = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
-    let spec = ShapeSpec {
-        radius: Some(2.0 * plain.ball.radius),
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { radius: Some(2.0 * plain.ball.radius), ..ShapeSpec::default() };
     let twice = Shape::build(&mesh, &spec).unwrap();
     assert!((twice.scale - 2.0).abs() < 1e-6, "{}", twice.scale);
     for (vertex, point) in twice.vertices.iter().zip(mesh.points()) {
@@ -213,9 +172,7 @@ fn restored_worlds_round_about_one_origin() {
     let back = |world: &mut World, share: f64| {
         for (x, id) in [0.0, 1.0, 2.5].into_iter().zip(&ids) {
             let translation = [share * far + x, 0.1, 0.0];
-            world
-                .set_pose(*id.as_ref().unwrap(), UNTURNED, translation)
-                .unwrap();
+            world.set_pose(*id.as_ref().unwrap(), UNTURNED, translation).unwrap();
         }
         world.cull().unwrap().sorted()
     };

@@ -10,95 +10,44 @@ use super::shapes;
 /// What breaks the contract is refused and changes nothing.
 #[test]
 fn invalid_input_changes_nothing() {
-    let mut world = World::with(
-        shapes(),
-        &Culler::builder().settings(&CullSettings::all_pairs()),
-    )
-    .unwrap();
+    let mut world =
+        World::with(shapes(), &Culler::builder().settings(&CullSettings::all_pairs())).unwrap();
     let id = world.insert(Body::default()).unwrap();
     let wrong = [
+        (Body { shape: 3, ..Body::default() }, "shape 3 of 3"),
+        (Body { rotation: [0.0; 4], ..Body::default() }, "rotation [0.0, 0.0, 0.0, 0.0]"),
         (
-            Body {
-                shape: 3,
-                ..Body::default()
-            },
-            "shape 3 of 3",
-        ),
-        (
-            Body {
-                rotation: [0.0; 4],
-                ..Body::default()
-            },
-            "rotation [0.0, 0.0, 0.0, 0.0]",
-        ),
-        (
-            Body {
-                translation: [0.0, f64::NAN, 0.0],
-                ..Body::default()
-            },
+            Body { translation: [0.0, f64::NAN, 0.0], ..Body::default() },
             "translation [0.0, NaN, 0.0]",
         ),
-        (
-            Body {
-                translation: [1e19, 0.0, 0.0],
-                ..Body::default()
-            },
-            "translation [1e19, 0.0, 0.0]",
-        ),
-        (
-            Body {
-                margin: -0.5,
-                ..Body::default()
-            },
-            "margin -0.5",
-        ),
-        (
-            Body {
-                margin: f32::NAN,
-                ..Body::default()
-            },
-            "margin NaN",
-        ),
+        (Body { translation: [1e19, 0.0, 0.0], ..Body::default() }, "translation [1e19, 0.0, 0.0]"),
+        (Body { margin: -0.5, ..Body::default() }, "margin -0.5"),
+        (Body { margin: f32::NAN, ..Body::default() }, "margin NaN"),
     ];
     for (body, message) in wrong {
-        assert_eq!(
-            world.insert(body).unwrap_err().to_string(),
-            format!("body 1: {message}")
-        );
-        assert_eq!(
-            world.set(id, body).unwrap_err().to_string(),
-            format!("body 0: {message}")
-        );
+        assert_eq!(world.insert(body).unwrap_err().to_string(), format!("body 1: {message}"));
+        assert_eq!(world.set(id, body).unwrap_err().to_string(), format!("body 0: {message}"));
     }
     let nowhere = world.set_pose(id, [0.0; 4], [0.0; 3]).unwrap_err();
     assert_eq!(nowhere.to_string(), "body 0: rotation [0.0, 0.0, 0.0, 0.0]");
     let lost = world.set_pose(id, [1.0; 4], [0.0, f64::INFINITY, 0.0]);
     assert!(lost.unwrap_err().to_string().contains("translation"));
     assert_eq!((world.len(), world.body(id).unwrap()), (1, Body::default()));
-    let cone = CullSettings {
-        interest: Some(Interest::Bodies(vec![0])),
-        ..CullSettings::all_pairs()
-    };
+    let cone =
+        CullSettings { interest: Some(Interest::Bodies(vec![0])), ..CullSettings::all_pairs() };
     assert!(World::with(shapes(), &Culler::builder().settings(&cone)).is_err());
 }
 
 #[test]
 fn ids_are_never_given_again() {
-    let mut world = World::with(
-        shapes(),
-        &Culler::builder().settings(&CullSettings::all_pairs()),
-    )
-    .unwrap();
+    let mut world =
+        World::with(shapes(), &Culler::builder().settings(&CullSettings::all_pairs())).unwrap();
     let [a, b] = [(); 2].map(|()| world.insert(Body::default()).unwrap());
     world.cull().unwrap();
     assert!(world.events().begun().eq([[a, b]]));
     world.remove(b).unwrap();
     let c = world.insert(Body::default()).unwrap();
-    assert_eq!(
-        world.pairs().collect::<Vec<_>>(),
-        [[a, b]],
-        "as of the last cull"
-    );
+    assert_eq!(world.pairs().collect::<Vec<_>>(), [[a, b]], "as of the last cull");
     world.cull().unwrap();
     let events = world.events();
     assert!(events.begun().eq([[a, c]]) && events.ended().eq([[a, b]]));
@@ -110,11 +59,8 @@ fn ids_are_never_given_again() {
 /// An id consists of a slot and a generation.
 #[test]
 fn ids_have_slot_and_generation() {
-    let mut world = World::with(
-        shapes(),
-        &Culler::builder().settings(&CullSettings::all_pairs()),
-    )
-    .unwrap();
+    let mut world =
+        World::with(shapes(), &Culler::builder().settings(&CullSettings::all_pairs())).unwrap();
     let ids = [(); 3].map(|()| world.insert(Body::default()).unwrap());
     assert_eq!(ids.map(|id| id.slot()), [0, 1, 2]);
     world.remove(ids[2]).unwrap();
@@ -147,9 +93,7 @@ fn world_has_counters() {
     let way = CullSettings::all_pairs();
     let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
     assert_eq!((world.is_empty(), world.len()), (true, 0));
-    let ids: Vec<_> = (0..5)
-        .map(|_| world.insert(Body::default()).unwrap())
-        .collect();
+    let ids: Vec<_> = (0..5).map(|_| world.insert(Body::default()).unwrap()).collect();
     assert!(!world.is_empty() && world.len() == 5);
     world.cull().unwrap();
     assert_eq!((world.pairs().len(), world.counters().reported), (10, 10));
@@ -170,23 +114,13 @@ fn world_has_counters() {
 
 #[test]
 fn interest_ends_with_its_body() {
-    let way = CullSettings {
-        strategy: Strategy::SDopObjectOfInterest,
-        ..CullSettings::all_pairs()
-    };
+    let way =
+        CullSettings { strategy: Strategy::SDopObjectOfInterest, ..CullSettings::all_pairs() };
     let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
     // Two needles side by side: their spheres meet, their or-DOPs don't.
-    let needle = Body {
-        shape: 2,
-        ..Body::default()
-    };
+    let needle = Body { shape: 2, ..Body::default() };
     let id = world.insert(needle).unwrap();
-    world
-        .insert(Body {
-            translation: [0.0, 1.0, 1.0],
-            ..needle
-        })
-        .unwrap();
+    world.insert(Body { translation: [0.0, 1.0, 1.0], ..needle }).unwrap();
     world.set_interest(&[id]).unwrap();
     world.cull().unwrap();
     assert_eq!(world.pairs().len(), 0);
@@ -202,18 +136,9 @@ fn interest_ends_with_its_body() {
 /// A body that collides with all joins others that do not.
 #[test]
 fn ungrouped_body_joins_grouped() {
-    let mut world = World::with(
-        shapes(),
-        &Culler::builder().settings(&CullSettings::all_pairs()),
-    )
-    .unwrap();
-    let apart = |member| Body {
-        groups: Groups {
-            member,
-            mask: !member,
-        },
-        ..Body::default()
-    };
+    let mut world =
+        World::with(shapes(), &Culler::builder().settings(&CullSettings::all_pairs())).unwrap();
+    let apart = |member| Body { groups: Groups { member, mask: !member }, ..Body::default() };
     let [a, b] = [(); 2].map(|()| world.insert(apart(1)).unwrap());
     world.cull().unwrap();
     assert_eq!(world.pairs().len(), 0);
@@ -227,10 +152,8 @@ fn ungrouped_body_joins_grouped() {
 fn static_changes_take_effect() {
     for way in super::ways().into_iter().step_by(7) {
         let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
-        let [here, away] = [0.5, 30.0].map(|x| Body {
-            translation: [x, 0.0, 0.0],
-            ..Body::default()
-        });
+        let [here, away] =
+            [0.5, 30.0].map(|x| Body { translation: [x, 0.0, 0.0], ..Body::default() });
         world.insert(Body::default()).unwrap();
         let other = world.insert(Body::default().fixed()).unwrap();
         let id = world.insert(away).unwrap();
@@ -240,18 +163,10 @@ fn static_changes_take_effect() {
             world.pairs().len()
         };
         let culled = |pairs: usize| {
-            if way.strategy == Strategy::None {
-                0
-            } else {
-                pairs
-            }
+            if way.strategy == Strategy::None { 0 } else { pairs }
         };
         for (body, pairs) in [(here, 3), (here.fixed(), 2), (away.fixed(), 1), (here, 3)] {
-            assert_eq!(
-                count(&|world| world.set(id, body)),
-                culled(pairs),
-                "{way:?}"
-            );
+            assert_eq!(count(&|world| world.set(id, body)), culled(pairs), "{way:?}");
         }
         let turn = here.rotation;
         for (x, pairs) in [(30.0, 1), (0.5, 3), (-30.0, 1)] {
@@ -266,10 +181,7 @@ fn static_changes_take_effect() {
 fn reused_slot_has_new_groups() {
     let way = CullSettings::all_pairs();
     let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
-    let alone = Body {
-        groups: Groups { member: 1, mask: 2 },
-        ..Body::default()
-    };
+    let alone = Body { groups: Groups { member: 1, mask: 2 }, ..Body::default() };
     let [a, b] = [(); 2].map(|()| world.insert(alone).unwrap());
     world.cull().unwrap();
     world.remove(b).unwrap();
@@ -302,22 +214,16 @@ fn lookup_has_current_pairs() {
     let culler = Culler::builder().settings(&CullSettings::all_pairs());
     let mut world = World::with(shapes(), &culler).unwrap();
     let at = |x: f64| [x, 0.0, 0.0];
-    let ids: Vec<BodyId> = (0..9)
-        .map(|_| world.insert(Body::default()).unwrap())
-        .collect();
+    let ids: Vec<BodyId> = (0..9).map(|_| world.insert(Body::default()).unwrap()).collect();
     let mut before = Vec::new();
     let mut lookup = PairLookup::default();
     // The number of each body's place; places are 20 apart.
-    for places in [
-        [0, 1, 2, 0, 1, 2, 0, 1, 2],
-        [0, 1, 1, 1, 1, 3, 4, 4, 2],
-        [5, 1, 1, 0, 6, 3, 2, 2, 2],
-    ] {
+    for places in
+        [[0, 1, 2, 0, 1, 2, 0, 1, 2], [0, 1, 1, 1, 1, 3, 4, 4, 2], [5, 1, 1, 0, 6, 3, 2, 2, 2]]
+    {
         for (&id, place) in ids.iter().zip(places) {
             let turn = Body::default().rotation;
-            world
-                .set_pose(id, turn, at(f64::from(place) * 20.0))
-                .unwrap();
+            world.set_pose(id, turn, at(f64::from(place) * 20.0)).unwrap();
         }
         world.cull().unwrap();
         let pairs = (0..9).flat_map(|i| (i + 1..9).map(move |j| [i, j]));
@@ -327,10 +233,7 @@ fn lookup_has_current_pairs() {
         assert!(met.iter().all(|&[i, j]| holds(i, j) && holds(j, i)));
         assert!(!apart.iter().any(|&[i, j]| holds(i, j) || holds(j, i)));
         let named = |wanted: &dyn Fn(&[usize; 2]) -> bool, of: &[[usize; 2]]| -> Vec<[BodyId; 2]> {
-            of.iter()
-                .filter(|pair| wanted(pair))
-                .map(|pair| pair.map(|i| ids[i]))
-                .collect()
+            of.iter().filter(|pair| wanted(pair)).map(|pair| pair.map(|i| ids[i])).collect()
         };
         let events = world.events();
         let begun: Vec<_> = events.begun().collect();
@@ -350,9 +253,7 @@ fn crowds_in_portions_or_limited() {
         let culler = Culler::builder().settings(&way);
         let mut world = World::with(shapes(), &culler).unwrap();
         for number in 0..60 {
-            world
-                .insert(Body::at(number % 3, [0.0, 0.0, 0.1, 1.0], [0.0; 3]))
-                .unwrap();
+            world.insert(Body::at(number % 3, [0.0, 0.0, 0.1, 1.0], [0.0; 3])).unwrap();
         }
         let whole = world.cull().unwrap().sorted();
         let mut portions = Vec::new();
@@ -365,10 +266,7 @@ fn crowds_in_portions_or_limited() {
             continue;
         }
         let refused = world.cull_up_to(whole.len() - 1).map(|pairs| pairs.len());
-        assert!(
-            matches!(refused, Err(WorldError::Cull(_))),
-            "{way:?}: {refused:?}"
-        );
+        assert!(matches!(refused, Err(WorldError::Cull(_))), "{way:?}: {refused:?}");
         assert_eq!(world.pairs().len(), 0);
         let listed = world.cull_up_to(whole.len()).map(|pairs| pairs.sorted());
         assert_eq!(listed, Ok(whole), "{way:?}");

@@ -49,10 +49,7 @@ impl Random {
             motion: motion(self.below(4) > 0),
             rotation: [(); 4].map(|()| self.unit()),
             translation: [(); 3].map(|()| f64::from(self.unit() * 6.0)),
-            groups: Groups {
-                member: 1 << self.below(3),
-                mask: 7 & !(1 << self.below(3)),
-            },
+            groups: Groups { member: 1 << self.below(3), mask: 7 & !(1 << self.below(3)) },
             margin: 0.0,
         }
     }
@@ -60,11 +57,7 @@ impl Random {
 
 /// Of a body that moves, or of one that is fixed.
 fn motion(moves: bool) -> Motion {
-    if moves {
-        Motion::Dynamic
-    } else {
-        Motion::Fixed
-    }
+    if moves { Motion::Dynamic } else { Motion::Fixed }
 }
 
 fn shapes() -> Vec<Shape> {
@@ -109,10 +102,7 @@ fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) 
         interest: Some(sdop::settings::Interest::Bodies(Vec::new())),
         ..way.clone()
     };
-    let mut culler = Culler::builder()
-        .settings(&settings)
-        .build(shapes, &columns)
-        .unwrap();
+    let mut culler = Culler::builder().settings(&settings).build(shapes, &columns).unwrap();
     let pairs = culler.cull(&columns).unwrap().iter();
     pairs
         .map(|pair| pair.map(|i| order[i as usize]))
@@ -139,12 +129,7 @@ fn world_equals_new_culler() {
         let mut seen = 0;
         for frame in 0..12 {
             let come_and_go = frame % 3 < 2;
-            change(
-                &mut random,
-                &mut bodies,
-                [&mut world, &mut pool],
-                come_and_go,
-            );
+            change(&mut random, &mut bodies, [&mut world, &mut pool], come_and_go);
             world.cull().unwrap();
             pool.cull().unwrap();
             let now: Pairs = world.pairs().collect();
@@ -154,10 +139,7 @@ fn world_equals_new_culler() {
                 let reported = now.contains(&[a, b]) || now.contains(&[b, a]);
                 assert_eq!(lookup.contains(a, b), reported, "{way:?}: {a}, {b}");
             }
-            assert!(
-                now.iter()
-                    .all(|&[a, b]| lookup.contains(a, b) && lookup.contains(b, a))
-            );
+            assert!(now.iter().all(|&[a, b]| lookup.contains(a, b) && lookup.contains(b, a)));
             assert!(world.pairs().eq(pool.pairs()), "{way:?}: threads");
             if deterministic {
                 let expected = afresh(&shapes, &way, &bodies);
@@ -200,11 +182,7 @@ fn change(
                 bodies.insert(id, body);
             }
             2..5 => {
-                let Body {
-                    rotation,
-                    translation,
-                    ..
-                } = random.body(3);
+                let Body { rotation, translation, .. } = random.body(3);
                 world.set_pose(id, rotation, translation).unwrap();
                 pool.set_pose(id, rotation, translation).unwrap();
                 let body = bodies.get_mut(&id).unwrap();
@@ -225,49 +203,24 @@ fn change(
 /// Two unit cubes, one next to the other with a gap, under every strategy.
 #[test]
 fn margins_have_stated_reach() {
-    let form = ProceduralShape::Box {
-        x: 2.0,
-        y: 2.0,
-        z: 2.0,
-    };
+    let form = ProceduralShape::Box { x: 2.0, y: 2.0, z: 2.0 };
     let shape = Shape::build(&form.build().unwrap(), &ShapeSpec::default()).unwrap();
-    let volumes = [
-        Strategy::OrDop,
-        Strategy::Aabb,
-        Strategy::KDop,
-        Strategy::Obb,
-        Strategy::SDopBatch,
-    ];
+    let volumes =
+        [Strategy::OrDop, Strategy::Aabb, Strategy::KDop, Strategy::Obb, Strategy::SDopBatch];
     for strategy in volumes {
-        let way = CullSettings {
-            strategy,
-            ..CullSettings::all_pairs()
-        };
+        let way = CullSettings { strategy, ..CullSettings::all_pairs() };
         let mut world =
             World::with(vec![shape.clone()], &Culler::builder().settings(&way)).unwrap();
-        let first = Body {
-            margin: 0.3,
-            ..Body::default()
-        };
+        let first = Body { margin: 0.3, ..Body::default() };
         world.insert(first).unwrap();
-        let second = world
-            .insert(Body {
-                margin: 0.7,
-                ..first
-            })
-            .unwrap();
+        let second = world.insert(Body { margin: 0.7, ..first }).unwrap();
         let mut reported = |gap: f64| {
-            world
-                .set_pose(second, first.rotation, [2.0 + gap, 0.0, 0.0])
-                .unwrap();
+            world.set_pose(second, first.rotation, [2.0 + gap, 0.0, 0.0]).unwrap();
             world.cull().unwrap();
             world.pairs().len() == 1
         };
         assert!(reported(0.0) && reported(1.0), "{strategy}");
-        assert!(
-            !reported(1.0 * 1.125 + 1e-4),
-            "{strategy}: rounded up by an eighth at most"
-        );
+        assert!(!reported(1.0 * 1.125 + 1e-4), "{strategy}: rounded up by an eighth at most");
     }
 }
 
@@ -276,18 +229,11 @@ fn margins_have_stated_reach() {
 #[test]
 fn touching_spheres_meet_in_f64() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(3));
-    let form = ProceduralShape::Icosphere {
-        radius: 1.0,
-        subdivisions: 0,
-    };
+    let form = ProceduralShape::Icosphere { radius: 1.0, subdivisions: 0 };
     let (mut tried, mut rounded) = (0, 0);
     while tried < 2_000 {
         let [m, n, p, q] = [(); 4].map(|()| i64::from(random.below(1 << 9)));
-        let way = [
-            m * m + n * n - p * p - q * q,
-            2 * (m * q + n * p),
-            2 * (n * q - m * p),
-        ];
+        let way = [m * m + n * n - p * p - q * q, 2 * (m * q + n * p), 2 * (n * q - m * p)];
         let length = m * m + n * n + p * p + q * q;
         let scale = 2.0f64.powi(-8);
         // Both radii are the shape's own, whose ball is built to contain it: half the distance,
@@ -297,43 +243,18 @@ fn touching_spheres_meet_in_f64() {
             continue;
         }
         tried += 1;
-        let spec = ShapeSpec {
-            origin: Origin::Ball,
-            radius: Some(radius),
-            ..ShapeSpec::default()
-        };
+        let spec = ShapeSpec { origin: Origin::Ball, radius: Some(radius), ..ShapeSpec::default() };
         let shape = Shape::build(&form.build().unwrap(), &spec).unwrap();
         let touching = f64::from(shape.ball.radius) >= f64::from(radius);
-        assert!(
-            touching,
-            "the ball contains the radius that it was built for"
-        );
+        assert!(touching, "the ball contains the radius that it was built for");
         let base = [1.0e9 + 0.375, -3.0e8 - 0.625, 77.0];
         let away: [f64; 3] = std::array::from_fn(|i| base[i] + way[i] as f64 * scale);
         rounded += usize::from(away.map(|x| f64::from(x as f32)) != away);
-        let settings = CullSettings {
-            strategy: Strategy::Sphere,
-            ..CullSettings::all_pairs()
-        };
+        let settings = CullSettings { strategy: Strategy::Sphere, ..CullSettings::all_pairs() };
         let mut world = World::with(vec![shape], &Culler::builder().settings(&settings)).unwrap();
-        world
-            .insert(Body {
-                translation: base,
-                ..Body::default()
-            })
-            .unwrap();
-        world
-            .insert(Body {
-                translation: away,
-                ..Body::default()
-            })
-            .unwrap();
-        world
-            .insert(Body {
-                translation: [0.1, 0.2, 0.3],
-                ..Body::default()
-            })
-            .unwrap();
+        world.insert(Body { translation: base, ..Body::default() }).unwrap();
+        world.insert(Body { translation: away, ..Body::default() }).unwrap();
+        world.insert(Body { translation: [0.1, 0.2, 0.3], ..Body::default() }).unwrap();
         world.cull().unwrap();
         assert!(world.pairs().len() >= 1, "{way:?} / {length}");
     }
@@ -345,10 +266,7 @@ fn touching_spheres_meet_in_f64() {
 fn static_body_follows_origin() {
     for way in ways().into_iter().step_by(7) {
         let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
-        let there = |x: f64| Body {
-            translation: [x, 0.1, 0.0],
-            ..Body::default()
-        };
+        let there = |x: f64| Body { translation: [x, 0.1, 0.0], ..Body::default() };
         let still = world.insert(there(1e6 + 0.1).fixed()).unwrap();
         let mover = world.insert(there(-1e6)).unwrap();
         world.cull().unwrap();

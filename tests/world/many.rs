@@ -36,10 +36,7 @@ const PLACES: [f64; 5] = [0.0, 3.0e5 + 0.3, -3.0e5 - 0.3, 7.0e6 + 0.1, -7.0e6 - 
 /// How far a body of size `half` may be moved by rounding at most, and be grown for it: by the
 /// place's distance, and 2⁻¹² of its size.
 fn rounding(body: &Body) -> f64 {
-    let far = body
-        .translation
-        .iter()
-        .fold(0.0_f64, |far, x| far.max(x.abs()));
+    let far = body.translation.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
     far * 2.0_f64.powi(-21) + 1.75 * half_side(body.shape) * 2.0_f64.powi(-11)
 }
 
@@ -82,11 +79,7 @@ fn are_apart(strategy: Strategy, a: &Body, b: &Body) -> bool {
     match strategy {
         Strategy::Aabb | Strategy::KDop => gaps(a, b).iter().any(|&gap| gap > grown + 1e-5),
         _ => {
-            let squares = a
-                .translation
-                .iter()
-                .zip(b.translation)
-                .map(|(a, b)| (a - b).powi(2));
+            let squares = a.translation.iter().zip(b.translation).map(|(a, b)| (a - b).powi(2));
             let radii = 3.0_f64.sqrt() * (half_side(a.shape) + half_side(b.shape));
             squares.sum::<f64>().sqrt() > radii + grown + 1e-5
         }
@@ -103,11 +96,7 @@ fn pairs_follow_from_their_own_bodies() {
         (4, Strategy::KDop),
     ] {
         for finder in [Finder::AllPairs, Finder::Auto] {
-            let settings = CullSettings {
-                strategy,
-                pairs: finder,
-                ..CullSettings::default()
-            };
+            let settings = CullSettings { strategy, pairs: finder, ..CullSettings::default() };
             let builder = Culler::builder().settings(&settings);
             let mut world = World::with(shapes(), &builder).unwrap();
             let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
@@ -140,8 +129,5 @@ fn pairs_follow_from_their_own_bodies() {
             }
         }
     }
-    assert!(
-        touching > 10_000 && separated > 1_000_000,
-        "{touching}, {separated}"
-    );
+    assert!(touching > 10_000 && separated > 1_000_000, "{touching}, {separated}");
 }

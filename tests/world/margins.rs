@@ -16,11 +16,7 @@ fn cube(directions: DirectionSet, axes: Axes) -> Shape {
 fn sized(directions: DirectionSet, axes: Axes, edge: f32) -> Shape {
     let [x, y, z] = [edge; 3];
     let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
-    let spec = ShapeSpec {
-        directions,
-        axes,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { directions, axes, ..ShapeSpec::default() };
     Shape::build(&mesh, &spec).unwrap()
 }
 
@@ -80,15 +76,10 @@ fn grown_bodies_touch_to_the_ulp() {
                     let gap = farthest(n as u64, reach) as f32;
                     let mut reported = |gap: f32| {
                         let t = |i: usize| if i < n { f64::from(2.0 + gap) } else { 0.25 };
-                        for (id, translation, margin) in [
-                            (a, [0.0; 3], margins[0]),
-                            (b, [t(0), -t(1), t(2)], margins[1]),
-                        ] {
-                            let body = Body {
-                                margin,
-                                translation,
-                                ..Body::default()
-                            };
+                        for (id, translation, margin) in
+                            [(a, [0.0; 3], margins[0]), (b, [t(0), -t(1), t(2)], margins[1])]
+                        {
+                            let body = Body { margin, translation, ..Body::default() };
                             world.set(id, body).unwrap();
                         }
                         is_reported(&mut world)
@@ -114,10 +105,7 @@ fn grown_bodies_touch_to_the_ulp() {
 #[test]
 fn rounded_touching_bodies_are_reported() {
     let first = 2_f64.powi(25) + 2.0;
-    assert_eq!(
-        [first, first + 2.0].map(|x| x as f32 - first as f32),
-        [0.0, 4.0]
-    );
+    assert_eq!([first, first + 2.0].map(|x| x as f32 - first as f32), [0.0, 4.0]);
     for (k, axes) in variants() {
         let shape = cube(k, axes);
         for way in ways(k, axes) {
@@ -162,16 +150,10 @@ fn changed_margin_counts_next_cull() {
     let (k, axes) = (DirectionSet::K18, Axes::Principal);
     let shape = cube(k, axes);
     // Too far for the spheres, 2·√3.
-    let away = Body {
-        translation: [3.5, 0.0, 0.0],
-        ..Body::default()
-    };
+    let away = Body { translation: [3.5, 0.0, 0.0], ..Body::default() };
     for way in ways(k, axes) {
         for motion in [Motion::Dynamic, Motion::Fixed] {
-            let first = Body {
-                motion,
-                ..Body::default()
-            };
+            let first = Body { motion, ..Body::default() };
             let (mut world, [a, b]) = two(&way, &shape, [first, away]);
             let culled = way.strategy != Strategy::None;
             for (margin, reported) in [(0.0, false), (0.8, culled), (0.0, false), (1.6, culled)] {
@@ -186,10 +168,7 @@ fn changed_margin_counts_next_cull() {
             world.set(a, first).unwrap();
             world.set(b, away).unwrap();
             assert!(!is_reported(&mut world), "{way:?}");
-            let grown = Body {
-                margin: 1.6,
-                ..away
-            };
+            let grown = Body { margin: 1.6, ..away };
             world.set(b, grown).unwrap();
             assert_eq!(is_reported(&mut world), culled, "{way:?}");
         }
@@ -203,17 +182,9 @@ fn resting_bodies_keep_their_margins() {
     let shape = cube(DirectionSet::K6, Axes::Model);
     let spheres = Culler::builder().strategy(Strategy::Sphere);
     let mut world = World::with(vec![shape], &spheres).unwrap();
-    let at = |x: f64, margin| Body {
-        margin,
-        translation: [x; 3],
-        ..Body::default()
-    };
+    let at = |x: f64, margin| Body { margin, translation: [x; 3], ..Body::default() };
     let still: Vec<BodyId> = (0..40)
-        .map(|number| {
-            world
-                .insert(at(100.0 * f64::from(number), 1.0).fixed())
-                .unwrap()
-        })
+        .map(|number| world.insert(at(100.0 * f64::from(number), 1.0).fixed()).unwrap())
         .collect();
     let mover = world.insert(at(50.0, 0.0)).unwrap(); // between two others
     world.cull().unwrap();

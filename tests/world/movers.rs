@@ -89,17 +89,9 @@ impl History {
         Body {
             motion,
             translation: self.places.draw(random),
-            rotation: if turned {
-                body.rotation
-            } else {
-                Body::default().rotation
-            },
+            rotation: if turned { body.rotation } else { Body::default().rotation },
             margin: [0.0, 0.0, 0.1, 0.25][random.below(4) as usize],
-            groups: if random.below(3) == 0 {
-                body.groups
-            } else {
-                Groups::ALL
-            },
+            groups: if random.below(3) == 0 { body.groups } else { Groups::ALL },
             ..body
         }
     }
@@ -141,17 +133,9 @@ impl History {
             _ => body.translation = drawn.translation,
         }
         let former = self.bodies.insert(id, body).unwrap();
-        let with_motion = Body {
-            motion: body.motion,
-            ..former
-        };
+        let with_motion = Body { motion: body.motion, ..former };
         let (rotation, translation) = (body.rotation, body.translation);
-        if (Body {
-            rotation,
-            translation,
-            ..former
-        }) == body
-        {
+        if (Body { rotation, translation, ..former }) == body {
             self.world.set_pose(id, rotation, translation).unwrap();
         } else if with_motion == body {
             self.world.set_motion(id, body.motion).unwrap();
@@ -172,9 +156,8 @@ impl History {
     fn wanted(&self) -> Pairs {
         let mut fresh = world_of(&self.shapes, &self.way);
         let old: Vec<BodyId> = self.bodies.keys().copied().collect();
-        let new: Vec<BodyId> = (self.bodies.values())
-            .map(|&body| fresh.insert(body).unwrap())
-            .collect();
+        let new: Vec<BodyId> =
+            (self.bodies.values()).map(|&body| fresh.insert(body).unwrap()).collect();
         let number = |id: &BodyId| old.binary_search(id).unwrap();
         let interest: Vec<BodyId> = self.interest.iter().map(|id| new[number(id)]).collect();
         fresh.set_interest(&interest).unwrap();
@@ -240,21 +223,14 @@ fn few_movers_leave_exact_pairs() {
     for (number, way) in ways().iter().enumerate() {
         let places = PLACES[number % 4];
         let pairs = History::new(way, places, number as u64, 60).live(40, |_, _| ());
-        assert!(
-            pairs > 400 || way.strategy == Strategy::None,
-            "{way:?}: {pairs}"
-        );
+        assert!(pairs > 400 || way.strategy == Strategy::None, "{way:?}: {pairs}");
     }
     for (seed, places) in (100..).zip(PLACES) {
         for (strategy, overlap) in [
             (Strategy::SDopSequential, Overlap::OneSided),
             (Strategy::SDopObjectOfInterest, Overlap::Full),
         ] {
-            let way = CullSettings {
-                strategy,
-                overlap,
-                ..CullSettings::default()
-            };
+            let way = CullSettings { strategy, overlap, ..CullSettings::default() };
             History::new(&way, places, seed, 120).live(150, |_, _| ());
         }
     }
@@ -270,15 +246,8 @@ fn through_text(world: &World) -> WorldSnapshot {
 #[test]
 fn few_movers_in_random_histories() {
     for (seed, places) in (200..).zip(PLACES) {
-        for strategy in [
-            Strategy::SDopBatch,
-            Strategy::KDop,
-            Strategy::SDopObjectOfInterest,
-        ] {
-            let way = CullSettings {
-                strategy,
-                ..CullSettings::default()
-            };
+        for strategy in [Strategy::SDopBatch, Strategy::KDop, Strategy::SDopObjectOfInterest] {
+            let way = CullSettings { strategy, ..CullSettings::default() };
             History::new(&way, places, seed, 80).live(120, |history, frame| {
                 let world = &mut history.world;
                 match frame % 9 {
@@ -286,10 +255,7 @@ fn few_movers_in_random_histories() {
                     3 => {
                         let saved = through_text(world);
                         let pairs = Finder::ALL[frame % Finder::ALL.len()];
-                        let other = CullSettings {
-                            pairs,
-                            ..history.way.clone()
-                        };
+                        let other = CullSettings { pairs, ..history.way.clone() };
                         let mut other = world_of(&history.shapes, &other);
                         other.restore(&saved).unwrap();
                         assert_eq!(other.snapshot(), saved);

@@ -15,25 +15,12 @@ fn pair_test_equals_world() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(11));
     let mut seen = [0; 2];
     for &k in DirectionSet::ALL {
-        let shapes: Vec<_> = shapes()
-            .into_iter()
-            .map(|shape| shape.with_directions(k))
-            .collect();
-        let settings = CullSettings {
-            strategy: Strategy::OrDop,
-            k,
-            ..CullSettings::default()
-        };
+        let shapes: Vec<_> = shapes().into_iter().map(|shape| shape.with_directions(k)).collect();
+        let settings = CullSettings { strategy: Strategy::OrDop, k, ..CullSettings::default() };
         let mut test = PairTest::new(k);
-        let numbers: Vec<u32> = shapes
-            .iter()
-            .map(|shape| test.add(shape).unwrap())
-            .collect();
+        let numbers: Vec<u32> = shapes.iter().map(|shape| test.add(shape).unwrap()).collect();
         // What a world makes of 0.375: the next of eight steps an octave.
-        let grown: Vec<u32> = numbers
-            .iter()
-            .map(|&n| test.grown(n, 0.40625).unwrap())
-            .collect();
+        let grown: Vec<u32> = numbers.iter().map(|&n| test.grown(n, 0.40625).unwrap()).collect();
         for round in 0..400 {
             let [a, b] = [random.below(3) as usize, random.below(3) as usize];
             let body = random.body(3);
@@ -41,13 +28,7 @@ fn pair_test_equals_world() {
             let margin = [0.0, 0.375][round % 2];
             let mut world =
                 World::with(shapes.clone(), &Culler::builder().settings(&settings)).unwrap();
-            world
-                .insert(Body {
-                    shape: a as u32,
-                    margin,
-                    ..Body::default()
-                })
-                .unwrap();
+            world.insert(Body { shape: a as u32, margin, ..Body::default() }).unwrap();
             let second = Body {
                 shape: b as u32,
                 rotation: body.rotation,

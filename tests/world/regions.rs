@@ -20,10 +20,7 @@ fn world() -> World {
         let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
         Shape::build(&mesh, &ShapeSpec::default()).unwrap()
     };
-    let way = CullSettings {
-        strategy: Strategy::SDopBatch,
-        ..CullSettings::default()
-    };
+    let way = CullSettings { strategy: Strategy::SDopBatch, ..CullSettings::default() };
     World::with(HALF.map(cube).to_vec(), &Culler::builder().settings(&way)).unwrap()
 }
 
@@ -60,10 +57,7 @@ fn assert_no_pair_is_missed(world: &World, pairs: &[[BodyId; 2]]) {
 /// The pairs of a new world with the same bodies, by their numbers among those present.
 fn afresh(bodies: &[(BodyId, Body)]) -> Vec<[BodyId; 2]> {
     let mut fresh = world();
-    let ids: Vec<BodyId> = bodies
-        .iter()
-        .map(|(_, body)| fresh.insert(*body).unwrap())
-        .collect();
+    let ids: Vec<BodyId> = bodies.iter().map(|(_, body)| fresh.insert(*body).unwrap()).collect();
     let old = |id: BodyId| bodies[ids.binary_search(&id).unwrap()].0;
     let pairs = fresh.cull().unwrap().sorted();
     pairs.into_iter().map(|pair| pair.map(old)).collect()
@@ -115,11 +109,9 @@ fn pairs_follow_from_present_bodies() {
 
 #[test]
 fn regions_add_few_pairs() {
-    for (seed, regions, wide, least, most) in [
-        (1, 1000, 5.0, 9.0, 15.0),
-        (2, 3, 2.0, 9.0, 15.0),
-        (3, 60, 5.0, 3.0, 6.0),
-    ] {
+    for (seed, regions, wide, least, most) in
+        [(1, 1000, 5.0, 9.0, 15.0), (2, 3, 2.0, 9.0, 15.0), (3, 60, 5.0, 3.0, 6.0)]
+    {
         let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
         let mut whole = world();
         let mut alone = 0;
@@ -163,22 +155,14 @@ fn giants_elsewhere_add_few_pairs() {
         alone += one.cull().unwrap().sorted().len();
     }
     let all = whole.cull().unwrap().sorted().len();
-    assert!(
-        alone > 435 && all as f64 <= 1.1 * alone as f64 + 4.0,
-        "{all} of {alone}"
-    );
+    assert!(alone > 435 && all as f64 <= 1.1 * alone as f64 + 4.0, "{all} of {alone}");
 }
 
 /// A world of one far mesh, so large that all bodies are in one region. They may lie twice as far
 /// out as the contract goes.
 fn world_of_far_meshes() -> World {
     let corner = |x: f64, y: f64, z: f64| [1.0e18 + x * 1.0e16, y * 1.0e16, z * 1.0e16];
-    let corners = [
-        (0.0, 0.0, 0.0),
-        (1.0, 0.0, 0.0),
-        (0.0, 1.0, 0.0),
-        (0.0, 0.0, 1.0),
-    ];
+    let corners = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
     let points = corners.map(|(x, y, z)| corner(x, y, z));
     let mesh = TriangleMesh::from_f64(&points, &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
     let shape = Shape::build(&mesh.unwrap(), &ShapeSpec::default()).unwrap();
@@ -227,11 +211,7 @@ fn refusals_follow_from_present_bodies() {
         let ids: Vec<BodyId> = ids.collect();
         let old = |id: BodyId| bodies[ids.binary_search(&id).unwrap()].0;
         let expected = match fresh.cull() {
-            Ok(pairs) => Ok(pairs
-                .sorted()
-                .into_iter()
-                .map(|pair| pair.map(old))
-                .collect()),
+            Ok(pairs) => Ok(pairs.sorted().into_iter().map(|pair| pair.map(old)).collect()),
             Err(WorldError::Apart(id)) => Err(old(id)),
             Err(other) => panic!("{other}"),
         };
@@ -259,25 +239,13 @@ fn refused_frames_lose_no_change() {
     let others = [0, 1].map(|turn| world.insert(at(turn, 0.0, 5.0e17)).unwrap());
     assert_eq!(world.cull().unwrap().sorted().len(), 0);
     let margin = 8.0e15;
-    world
-        .set(
-            a,
-            Body {
-                margin,
-                ..middle[0]
-            },
-        )
-        .unwrap();
+    world.set(a, Body { margin, ..middle[0] }).unwrap();
     for (turn, x) in [1.1e18, -1.1e18].into_iter().enumerate() {
-        world
-            .set_pose(others[turn], turns[turn], [x, 5.0e17, 0.0])
-            .unwrap();
+        world.set_pose(others[turn], turns[turn], [x, 5.0e17, 0.0]).unwrap();
     }
     assert_eq!(world.cull().err(), Some(WorldError::Apart(others[0])));
     for turn in 0..2 {
-        world
-            .set_pose(others[turn], turns[turn], [0.0, 5.0e17, 0.0])
-            .unwrap();
+        world.set_pose(others[turn], turns[turn], [0.0, 5.0e17, 0.0]).unwrap();
     }
     assert_eq!(world.cull().unwrap().sorted(), [[a, b]]);
 }
@@ -286,26 +254,15 @@ fn refused_frames_lose_no_change() {
 /// body far away.
 #[test]
 fn chains_hold_across_cells() {
-    for way in [
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [1.0, -1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ] {
+    for way in [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]] {
         for start in [-128.0, -127.7, 1.0e9 + 0.1] {
             let mut world = world();
             for i in 0..300 {
                 let translation = way.map(|x| start + x * 2.0 * f64::from(i));
-                let body = Body {
-                    translation,
-                    ..Body::default()
-                };
+                let body = Body { translation, ..Body::default() };
                 world.insert(body).unwrap();
             }
-            let away = Body {
-                translation: [1.0e12 + 0.1, 0.0, 0.0],
-                ..Body::default()
-            };
+            let away = Body { translation: [1.0e12 + 0.1, 0.0, 0.0], ..Body::default() };
             world.insert(away).unwrap();
             let pairs = world.cull().unwrap().sorted();
             let along = pairs.iter().filter(|[a, b]| b.slot() == a.slot() + 1);

@@ -40,11 +40,8 @@ enum Answer {
 /// A box whose sides follow from a number.
 fn box_of(number: u32) -> Shape {
     let side = |n: u32| 0.5 + (n % 5) as f32 / 2.0;
-    let mesh = ProceduralShape::Box {
-        x: side(number),
-        y: side(number / 5 + 1),
-        z: side(number / 3 + 2),
-    };
+    let mesh =
+        ProceduralShape::Box { x: side(number), y: side(number / 5 + 1), z: side(number / 3 + 2) };
     Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()
 }
 
@@ -86,12 +83,7 @@ fn drawn(random: &mut Random, world: &World, moves_only: bool) -> Vec<Call> {
         let margin = random.below(3) as f32 * 0.1 * random.below(4) as f32;
         let drawn = random.body(1);
         let translation = drawn.translation.map(|x| 0.75 * x + 1.0e-9);
-        Body {
-            shape,
-            margin,
-            translation,
-            ..drawn
-        }
+        Body { shape, margin, translation, ..drawn }
     };
     for id in world.ids() {
         match random.below(12) {
@@ -135,11 +127,7 @@ fn strategies() -> Vec<CullSettings> {
     let mut all = Vec::new();
     for &strategy in Strategy::ALL {
         let has_budget = strategy == Strategy::SDopTimeCritical;
-        for &order in if has_budget {
-            Order::ALL
-        } else {
-            &Order::ALL[..1]
-        } {
+        for &order in if has_budget { Order::ALL } else { &Order::ALL[..1] } {
             all.push(CullSettings {
                 strategy,
                 order,
@@ -215,11 +203,7 @@ fn restored_worlds_go_on_alike() {
             let builder = &builders[(number + frame) % builders.len()];
             let mut other = like(&world, &forms, builder);
             other.restore(&saved).unwrap();
-            assert_eq!(
-                other.snapshot(),
-                saved,
-                "what was restored is what was saved"
-            );
+            assert_eq!(other.snapshot(), saved, "what was restored is what was saved");
             for call in drawn(&mut random, &astray, true) {
                 carry_out(&mut astray, &call);
             }
@@ -239,10 +223,7 @@ fn restored_worlds_go_on_alike() {
             let now = world.snapshot();
             assert!(followers.iter().all(|follower| follower.snapshot() == now));
         }
-        assert!(
-            seen > 0 || settings.strategy == Strategy::None,
-            "{settings:?}"
-        );
+        assert!(seen > 0 || settings.strategy == Strategy::None, "{settings:?}");
     }
 }
 
@@ -258,10 +239,8 @@ fn order_is_independent_of_finder() {
         for frame in 0..8 {
             let moves_only = frame % 3 == 2;
             for call in drawn(&mut random, &worlds[0], moves_only) {
-                let answers: Vec<Answer> = worlds
-                    .iter_mut()
-                    .map(|world| carry_out(world, &call))
-                    .collect();
+                let answers: Vec<Answer> =
+                    worlds.iter_mut().map(|world| carry_out(world, &call)).collect();
                 let is_same = answers.iter().all(|answer| *answer == answers[0]);
                 assert!(is_same, "{settings:?}, frame {frame}: {call:?}");
             }
@@ -391,25 +370,13 @@ fn each_damage_is_named() {
     let number = |n: u32| serde_json::json!(n);
     let nan = f64::NAN.to_bits();
     for (path, value, wanted) in [
-        (
-            "/rotation/20",
-            serde_json::json!([0, 0, 0, 0]),
-            "rotation [0.0, 0.0",
-        ),
+        ("/rotation/20", serde_json::json!([0, 0, 0, 0]), "rotation [0.0, 0.0"),
         ("/translation/20/1", serde_json::json!(nan), "translation"),
         ("/margin/20", number(f32::NAN.to_bits()), "margin NaN"),
         ("/shape/20", number(7), "slot 20 has shape 7"),
-        (
-            "/margin",
-            serde_json::json!([]),
-            "`margin` has 0 entries for 30 slots",
-        ),
+        ("/margin", serde_json::json!([]), "`margin` has 0 entries for 30 slots"),
         ("/ids/free/0", number(900), "slot 900 of 30 is free"),
-        (
-            "/ids/free/0",
-            whole["ids"]["free"][1].clone(),
-            "in two states",
-        ),
+        ("/ids/free/0", whole["ids"]["free"][1].clone(), "in two states"),
         ("/ids/free", serde_json::json!([]), "neither taken nor free"),
         ("/pairs/last/1/0", number(30), "of 30 slots"),
         ("/pairs/last/0/0", number(29), "the pair 29"),
@@ -421,10 +388,7 @@ fn each_damage_is_named() {
     let mut text = whole.clone();
     text["version"] = number(2);
     let refused = serde_json::from_value::<WorldSnapshot>(text).unwrap_err();
-    assert!(
-        refused.to_string().contains("snapshot of version 2"),
-        "{refused}"
-    );
+    assert!(refused.to_string().contains("snapshot of version 2"), "{refused}");
 }
 
 #[test]

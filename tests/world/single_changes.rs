@@ -15,10 +15,8 @@ use super::{Random, shapes};
 /// A row of boxes, each of which meets the next, culled.
 fn row(count: u16, motion: Motion, way: &CullSettings) -> (World, Vec<BodyId>) {
     let mut world = world_of(&shapes(), way);
-    let at = |i: u16| Body {
-        motion,
-        ..Body::at(0, Body::default().rotation, [f64::from(i), 0.0, 0.0])
-    };
+    let at =
+        |i: u16| Body { motion, ..Body::at(0, Body::default().rotation, [f64::from(i), 0.0, 0.0]) };
     let ids = (0..count).map(|i| world.insert(at(i)).unwrap()).collect();
     world.cull().unwrap();
     assert_eq!(world.events().begun().count(), usize::from(count) - 1);
@@ -26,9 +24,7 @@ fn row(count: u16, motion: Motion, way: &CullSettings) -> (World, Vec<BodyId>) {
 }
 
 fn moved(world: &mut World, id: BodyId, x: f64) {
-    world
-        .set_pose(id, Body::default().rotation, [x, 0.0, 0.0])
-        .unwrap();
+    world.set_pose(id, Body::default().rotation, [x, 0.0, 0.0]).unwrap();
 }
 
 /// Pairs at rest stay until a body leaves.
@@ -58,25 +54,16 @@ fn resting_pairs_end_with_a_body() {
     assert!(world.events().ended().eq([[ids[19], ids[20]]]));
     assert_eq!(world.body(ids[20]).unwrap().motion, Motion::Resting);
     let volumes = world.counters().sphere.since(&before).updates;
-    assert!(
-        (2..8).contains(&volumes),
-        "{volumes}: its own and those near it"
-    );
+    assert!((2..8).contains(&volumes), "{volumes}: its own and those near it");
     // Two fixed bodies are in no pair, one and another at rest are.
-    for (at, motion, pairs) in [
-        (50, Motion::Fixed, 98),
-        (51, Motion::Fixed, 97),
-        (50, Motion::Resting, 98),
-    ] {
+    for (at, motion, pairs) in
+        [(50, Motion::Fixed, 98), (51, Motion::Fixed, 97), (50, Motion::Resting, 98)]
+    {
         world.set_motion(ids[at], motion).unwrap();
         world.cull().unwrap();
         assert_eq!(world.pairs().len(), pairs, "{at} {motion:?}");
     }
-    assert_eq!(
-        world.events().begun().count(),
-        0,
-        "it ended and began since the last call"
-    );
+    assert_eq!(world.events().begun().count(), 0, "it ended and began since the last call");
 }
 
 /// The body was moved after the cull that the snapshot has the pairs of, and the world has seen
@@ -105,9 +92,8 @@ fn origins_come_with_far_bodies() {
     let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
     let shape = Shape::build(&mesh, &ShapeSpec::default()).unwrap();
     let mut world = world_of(&[shape], &way);
-    let ids: Vec<BodyId> = (0..40)
-        .map(|i| world.insert(at(8.0 + 4.0 * f64::from(i))).unwrap())
-        .collect();
+    let ids: Vec<BodyId> =
+        (0..40).map(|i| world.insert(at(8.0 + 4.0 * f64::from(i))).unwrap()).collect();
     world.cull().unwrap();
     moved(&mut world, ids[0], base - 50.0); // so that the bounds of all are kept
     world.cull().unwrap();
@@ -165,20 +151,10 @@ fn needle(y: f64) -> Body {
 #[test]
 fn interest_alone_changes_pairs() {
     let strategy = Strategy::SDopObjectOfInterest;
-    let (mut world, ids) = needles(
-        &CullSettings {
-            strategy,
-            ..CullSettings::default()
-        },
-        40,
-    );
+    let (mut world, ids) = needles(&CullSettings { strategy, ..CullSettings::default() }, 40);
     world.cull().unwrap();
     assert_eq!(world.pairs().len(), 39);
-    for (of_interest, pairs) in [
-        (vec![ids[0]], 38),
-        (vec![ids[5], ids[20]], 35),
-        (vec![], 39),
-    ] {
+    for (of_interest, pairs) in [(vec![ids[0]], 38), (vec![ids[5], ids[20]], 35), (vec![], 39)] {
         world.set_interest(&of_interest).unwrap();
         world.cull().unwrap();
         assert_eq!(world.pairs().len(), pairs, "{of_interest:?}");
@@ -219,26 +195,18 @@ fn touching_bodies_freeze_and_thaw() {
     let ulp = f64::from(f32::EPSILON) * 16.0;
     for (k, axes) in variants() {
         let [x, y, z] = [2.0; 3];
-        let spec = ShapeSpec {
-            directions: k,
-            axes,
-            ..ShapeSpec::default()
-        };
+        let spec = ShapeSpec { directions: k, axes, ..ShapeSpec::default() };
         let mesh = ProceduralShape::Box { x, y, z }.build().unwrap();
         let shape = Shape::build(&mesh, &spec).unwrap();
         for way in judged_ways(k, axes) {
             if way.strategy == Strategy::None {
                 continue;
             }
-            let way = CullSettings {
-                budget: Some(Budget::Tests(1000)),
-                ..way
-            };
+            let way = CullSettings { budget: Some(Budget::Tests(1000)), ..way };
             let mut world = world_of(std::slice::from_ref(&shape), &way);
             let at = |x: f64| Body::at(0, Body::default().rotation, [x, 0.0, 0.0]);
-            let ids: Vec<BodyId> = (0..20)
-                .map(|i| world.insert(at(2.0 * f64::from(i))).unwrap())
-                .collect();
+            let ids: Vec<BodyId> =
+                (0..20).map(|i| world.insert(at(2.0 * f64::from(i))).unwrap()).collect();
             assert!(world.cull().unwrap().len() >= 19);
             for (motion, x) in [
                 (Motion::Resting, 20.0),
@@ -258,11 +226,7 @@ fn touching_bodies_freeze_and_thaw() {
                 for (id, body) in world.bodies() {
                     assert_eq!(fresh.insert(body).unwrap(), id);
                 }
-                assert_eq!(
-                    now,
-                    fresh.cull().unwrap().sorted(),
-                    "{way:?} {motion:?} {x}"
-                );
+                assert_eq!(now, fresh.cull().unwrap().sorted(), "{way:?} {motion:?} {x}");
             }
         }
     }
@@ -279,21 +243,15 @@ fn a_frame_costs_what_changes() {
             |random: &mut Random| [(); 3].map(|()| far + 2.0 * side * f64::from(random.unit()));
         let ids: Vec<BodyId> = (0..count)
             .map(|i| {
-                world
-                    .insert(Body::at(i % 3, [0.0, 0.0, 0.6, 0.8], place(&mut random)))
-                    .unwrap()
+                world.insert(Body::at(i % 3, [0.0, 0.0, 0.6, 0.8], place(&mut random))).unwrap()
             })
             .collect();
         // Such that no other body is the outermost.
         for x in [-3.0, 3.0] {
-            world
-                .insert(Body::at(0, [1.0; 4], [far + x * side; 3]))
-                .unwrap();
+            world.insert(Body::at(0, [1.0; 4], [far + x * side; 3])).unwrap();
         }
         world.cull().unwrap();
-        world
-            .set_pose(ids[0], [1.0; 4], place(&mut random))
-            .unwrap();
+        world.set_pose(ids[0], [1.0; 4], place(&mut random)).unwrap();
         world.cull().unwrap(); // makes an index
         let before = *world.counters();
         for frame in 0..50 {

@@ -31,43 +31,17 @@ fn bound(
     (teeth, constant): (f64, f64),
     search: impl Fn(u64, u64) -> f64 + Send + Sync + 'static,
 ) -> Bound {
-    Bound {
-        name: name.into(),
-        unit,
-        constant,
-        teeth,
-        search: Box::new(search),
-    }
+    Bound { name: name.into(), unit, constant, teeth, search: Box::new(search) }
 }
 
 /// All bounds that the culler relies on.
 pub fn all() -> Vec<Bound> {
     let mut bounds = vec![
         bound("sphere decision", "u", (7.7, 8.0), spheres::decision),
-        bound(
-            "reported sphere distance",
-            "u",
-            (3.8, (FINDER_FACTOR - 1.0) / U),
-            spheres::reported,
-        ),
-        bound(
-            "pose coordinate",
-            "2⁻⁵³",
-            (7.0, COORDINATE_ERROR / EPSILON),
-            poses::coordinate,
-        ),
-        bound(
-            "ball centre",
-            "2⁻⁵³",
-            (8.0, CENTRE_ERROR / EPSILON),
-            poses::centre,
-        ),
-        bound(
-            "world extent",
-            "2⁻⁵³",
-            (11.0, REFIT_MARGIN / EPSILON),
-            poses::extent,
-        ),
+        bound("reported sphere distance", "u", (3.8, (FINDER_FACTOR - 1.0) / U), spheres::reported),
+        bound("pose coordinate", "2⁻⁵³", (7.0, COORDINATE_ERROR / EPSILON), poses::coordinate),
+        bound("ball centre", "2⁻⁵³", (8.0, CENTRE_ERROR / EPSILON), poses::centre),
+        bound("world extent", "2⁻⁵³", (11.0, REFIT_MARGIN / EPSILON), poses::extent),
         bound("entry of M", "u", (2.3, 6.51), poses::product),
     ];
     for (k, constant) in SUPPORT_ERROR {
@@ -81,28 +55,17 @@ pub fn all() -> Vec<Bound> {
     }
     for target in targets() {
         let constant = SLAB_MARGIN / U;
-        bounds.push(bound(
-            name(target),
-            "uρ‖a‖",
-            (4.0, constant),
-            move |seed, n| slabs::rounding(target, seed, n),
-        ));
+        bounds.push(bound(name(target), "uρ‖a‖", (4.0, constant), move |seed, n| {
+            slabs::rounding(target, seed, n)
+        }));
     }
     for k in [6, 14, 18, 26] {
-        let target = Target {
-            k,
-            edges: true,
-            offset: false,
-            boxes: false,
-        };
+        let target = Target { k, edges: true, offset: false, boxes: false };
         let constant = SLAB_FLOOR / FLUSH;
         let name = format!("underflow flushed, k = {k}");
-        bounds.push(bound(
-            name,
-            "2⁻¹²⁶‖a‖",
-            (4.0, constant),
-            move |seed, n| slabs::underflow::<true>(target, seed, n),
-        ));
+        bounds.push(bound(name, "2⁻¹²⁶‖a‖", (4.0, constant), move |seed, n| {
+            slabs::underflow::<true>(target, seed, n)
+        }));
     }
     bounds
 }
@@ -111,30 +74,12 @@ pub fn all() -> Vec<Bound> {
 pub fn containments() -> Vec<Bound> {
     let none = (f64::NEG_INFINITY, 0.0);
     vec![
-        bound(
-            "posed ball out of its world ball",
-            "u",
-            none,
-            poses::ball_outside,
-        ),
-        bound(
-            "posed vertex out of its world extent",
-            "2⁻⁵³",
-            none,
-            poses::extent_outside,
-        ),
-        bound(
-            "touching spheres culled",
-            "(1: culled)",
-            none,
-            spheres::touching,
-        ),
-        bound(
-            "tiny touching spheres culled",
-            "(1: culled)",
-            none,
-            |seed, n| spheres::tiny::<false>(seed, n, RADIUS_FLOOR),
-        ),
+        bound("posed ball out of its world ball", "u", none, poses::ball_outside),
+        bound("posed vertex out of its world extent", "2⁻⁵³", none, poses::extent_outside),
+        bound("touching spheres culled", "(1: culled)", none, spheres::touching),
+        bound("tiny touching spheres culled", "(1: culled)", none, |seed, n| {
+            spheres::tiny::<false>(seed, n, RADIUS_FLOOR)
+        }),
         bound("the same, flushed", "(1: culled)", none, |seed, n| {
             spheres::tiny::<true>(seed, n, RADIUS_FLOOR)
         }),
@@ -145,39 +90,17 @@ fn targets() -> Vec<Target> {
     let mut targets = Vec::new();
     for k in [6, 14, 18, 26] {
         for edges in [false, true] {
-            targets.push(Target {
-                k,
-                edges,
-                offset: false,
-                boxes: false,
-            });
+            targets.push(Target { k, edges, offset: false, boxes: false });
         }
-        targets.push(Target {
-            k,
-            edges: false,
-            offset: true,
-            boxes: false,
-        });
+        targets.push(Target { k, edges: false, offset: true, boxes: false });
     }
     for edges in [false, true] {
-        targets.push(Target {
-            k: 6,
-            edges,
-            offset: false,
-            boxes: true,
-        });
+        targets.push(Target { k: 6, edges, offset: false, boxes: true });
     }
     targets
 }
 
-fn name(
-    Target {
-        k,
-        edges,
-        offset,
-        boxes,
-    }: Target,
-) -> String {
+fn name(Target { k, edges, offset, boxes }: Target) -> String {
     let axes = if edges { "edge × edge" } else { "normals" };
     let solids = if boxes { ", boxes" } else { "" };
     let centre = if offset { ", c ≠ 0" } else { "" };

@@ -60,11 +60,7 @@ pub fn climb<const N: usize>(
     let (mut peak, mut stuck) = (here_score, 0);
     for step in 0..evaluations {
         if stuck > PATIENCE {
-            here = if random.below(3) == 0 {
-                best
-            } else {
-                start(&mut random)
-            };
+            here = if random.below(3) == 0 { best } else { start(&mut random) };
             here_score = score(&here);
             memory.fill(here_score);
             (peak, stuck) = (here_score, 0);
@@ -99,11 +95,8 @@ fn nudge<const N: usize>(random: &mut Random, point: &mut [f32; N]) {
     }
     let step = 1u32 << random.below(24);
     let bits = x.to_bits();
-    let moved = if random.below(2) == 0 {
-        bits.wrapping_add(step)
-    } else {
-        bits.wrapping_sub(step)
-    };
+    let moved =
+        if random.below(2) == 0 { bits.wrapping_add(step) } else { bits.wrapping_sub(step) };
     if f32::from_bits(moved).is_finite() {
         *x = f32::from_bits(moved);
     }

@@ -17,26 +17,17 @@ impl Double {
     fn sum(a: f64, b: f64) -> Self {
         let hi = a + b;
         let of_b = hi - a;
-        Self {
-            hi,
-            lo: (a - (hi - of_b)) + (b - of_b),
-        }
+        Self { hi, lo: (a - (hi - of_b)) + (b - of_b) }
     }
     fn product(a: f64, b: f64) -> Self {
         let hi = a * b;
-        Self {
-            hi,
-            lo: a.mul_add(b, -hi),
-        }
+        Self { hi, lo: a.mul_add(b, -hi) }
     }
     pub fn minus(self, x: f64) -> f64 {
         (self + Self::of(-x)).hi
     }
     pub fn negative(self) -> Self {
-        Self {
-            hi: -self.hi,
-            lo: -self.lo,
-        }
+        Self { hi: -self.hi, lo: -self.lo }
     }
     fn over(self, other: Self) -> Self {
         let quotient = self.hi / other.hi;
@@ -67,29 +58,13 @@ impl Mul<f64> for Double {
 pub fn transform(q: [f32; 4], x: [f32; 3], t: [f32; 3]) -> [Double; 3] {
     let [qx, qy, qz, qw] = q.map(f64::from);
     // Products of two f32 are exact in f64.
-    let sum = |terms: [f64; 4]| {
-        terms
-            .iter()
-            .fold(Double::of(0.0), |s, &y| s + Double::of(y))
-    };
+    let sum = |terms: [f64; 4]| terms.iter().fold(Double::of(0.0), |s, &y| s + Double::of(y));
     let pair = |a: f64, b: f64| sum([2.0 * a, 2.0 * b, 0.0, 0.0]);
     let (xx, yy, zz, ww) = (qx * qx, qy * qy, qz * qz, qw * qw);
     let rows = [
-        [
-            sum([xx, ww, -yy, -zz]),
-            pair(qx * qy, -(qw * qz)),
-            pair(qx * qz, qw * qy),
-        ],
-        [
-            pair(qx * qy, qw * qz),
-            sum([yy, ww, -xx, -zz]),
-            pair(qy * qz, -(qw * qx)),
-        ],
-        [
-            pair(qx * qz, -(qw * qy)),
-            pair(qy * qz, qw * qx),
-            sum([zz, ww, -xx, -yy]),
-        ],
+        [sum([xx, ww, -yy, -zz]), pair(qx * qy, -(qw * qz)), pair(qx * qz, qw * qy)],
+        [pair(qx * qy, qw * qz), sum([yy, ww, -xx, -zz]), pair(qy * qz, -(qw * qx))],
+        [pair(qx * qz, -(qw * qy)), pair(qy * qz, qw * qx), sum([zz, ww, -xx, -yy])],
     ];
     let square = sum([xx, yy, zz, ww]);
     std::array::from_fn(|i| {
@@ -103,21 +78,9 @@ pub fn rotation([x, y, z, w]: [f64; 4]) -> [[f64; 3]; 3] {
     let n = x * x + y * y + z * z + w * w;
     let twice = |a: f64, b: f64| 2.0 * (a + b) / n;
     [
-        [
-            (w * w + x * x - y * y - z * z) / n,
-            twice(x * y, -w * z),
-            twice(x * z, w * y),
-        ],
-        [
-            twice(x * y, w * z),
-            (w * w + y * y - x * x - z * z) / n,
-            twice(y * z, -w * x),
-        ],
-        [
-            twice(x * z, -w * y),
-            twice(y * z, w * x),
-            (w * w + z * z - x * x - y * y) / n,
-        ],
+        [(w * w + x * x - y * y - z * z) / n, twice(x * y, -w * z), twice(x * z, w * y)],
+        [twice(x * y, w * z), (w * w + y * y - x * x - z * z) / n, twice(y * z, -w * x)],
+        [twice(x * z, -w * y), twice(y * z, w * x), (w * w + z * z - x * x - y * y) / n],
     ]
 }
 

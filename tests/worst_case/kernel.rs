@@ -67,15 +67,7 @@ pub fn supports_agree<const FLUSH: bool>(tier: Tier) {
         }
         let expected = ordop::support(k, &table, e.map(F::<FLUSH>::new)).get();
         assert!(
-            dispatch(
-                tier,
-                Equals {
-                    k,
-                    ends: &ends,
-                    e,
-                    expected
-                }
-            ),
+            dispatch(tier, Equals { k, ends: &ends, e, expected }),
             "k = {k}, e = {e:?}, scale {scale:e}"
         );
     }
@@ -97,11 +89,7 @@ pub fn decisions_agree<const FLUSH: bool>(tier: Tier) {
             let rows: Vec<_> = bodies.iter().map(|body| body.row).collect();
             let first: Vec<u32> = (0..2 * count as u32).map(|pair| 2 * pair).collect();
             let second: Vec<u32> = first.iter().map(|i| i + 1).collect();
-            let columns = OrDopColumns {
-                rows: RowsByNumber::all(&rows),
-                tables: &tables,
-                overlap,
-            };
+            let columns = OrDopColumns { rows: RowsByNumber::all(&rows), tables: &tables, overlap };
             let mut kept = PairList::default();
             columns.test_pairs(tier, &first, &second, &mut kept);
             // Pairs come in twos: overlapping, then an ulp farther.
@@ -131,9 +119,7 @@ fn separated<const FLUSH: bool>(
         edges::of(k).iter().any(|&f| {
             edges::of(k).iter().any(|&e| {
                 let axis = frames.edge_axis(e, f);
-                frames
-                    .free(k, axis, a, b)
-                    .is_some_and(|axis| separates(&axis))
+                frames.free(k, axis, a, b).is_some_and(|axis| separates(&axis))
             })
         })
     };
@@ -158,19 +144,13 @@ fn entries(k: usize, tables: &SlabTables, shape: u32) -> Table {
     let [low, high] = [0, 1].map(|half| tables.rows()[2 * shape as usize + half]);
     let ends = [low, high].concat();
     let place = |member: usize| members_of(k).iter().position(|&m| m == member).unwrap();
-    ordop::table(k, |member| {
-        [-ends[2 * place(member) + 1], ends[2 * place(member)]]
-    })
+    ordop::table(k, |member| [-ends[2 * place(member) + 1], ends[2 * place(member)]])
 }
 
 /// Twelve random vertices, half of the shapes with the origin outside.
 fn shape(seed: u64, directions: DirectionSet) -> Shape {
     let mut random = Random::new(seed);
-    let away = if seed.is_multiple_of(2) {
-        Vec3::ZERO
-    } else {
-        Vec3::new(1.5, -0.25, 0.5)
-    };
+    let away = if seed.is_multiple_of(2) { Vec3::ZERO } else { Vec3::new(1.5, -0.25, 0.5) };
     let mut vertex =
         || (Vec3::new(random.signed(), random.signed(), random.signed()) + away).to_array();
     let mesh = TriangleMesh {
@@ -179,21 +159,9 @@ fn shape(seed: u64, directions: DirectionSet) -> Shape {
         triangles: (0..4).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         ..TriangleMesh::default()
     };
-    let origin = if seed.is_multiple_of(2) {
-        Origin::Ball
-    } else {
-        Origin::File
-    };
-    Shape::build(
-        &mesh,
-        &ShapeSpec {
-            origin,
-            radius: None,
-            directions,
-            axes: Axes::Principal,
-        },
-    )
-    .unwrap()
+    let origin = if seed.is_multiple_of(2) { Origin::Ball } else { Origin::File };
+    Shape::build(&mesh, &ShapeSpec { origin, radius: None, directions, axes: Axes::Principal })
+        .unwrap()
 }
 
 /// `count` times A, B, A, B': B overlaps A, and B', an ulp of its distance farther, doesn't.
@@ -231,8 +199,5 @@ fn turned(random: &mut Random, shapes: &[Shape]) -> Body {
         row[O + i] = offset[i] as f32;
     }
     row[S] = f32::from_bits(SHAPE + which as u32);
-    Body {
-        row,
-        shape: which as u32,
-    }
+    Body { row, shape: which as u32 }
 }

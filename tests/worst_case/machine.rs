@@ -10,11 +10,7 @@ impl<const FLUSH: bool> F<FLUSH> {
     pub const ZERO: Self = Self(0.0);
 
     pub fn new(x: f32) -> Self {
-        if FLUSH && x.abs() < f32::MIN_POSITIVE {
-            Self(0.0f32.copysign(x))
-        } else {
-            Self(x)
-        }
+        if FLUSH && x.abs() < f32::MIN_POSITIVE { Self(0.0f32.copysign(x)) } else { Self(x) }
     }
     pub fn get(self) -> f32 {
         self.0
@@ -33,11 +29,7 @@ impl<const FLUSH: bool> F<FLUSH> {
     }
     /// Sign bit flipped where that of `sign` is set.
     pub fn flip(self, sign: Self) -> Self {
-        if sign.0.is_sign_negative() {
-            -self
-        } else {
-            self
-        }
+        if sign.0.is_sign_negative() { -self } else { self }
     }
 }
 

@@ -61,11 +61,7 @@ pub struct Axis<const FLUSH: bool> {
 impl<const FLUSH: bool> Row<FLUSH> {
     pub fn new(axes: [[f32; 3]; 3], t: [f32; 3], o: [f32; 3]) -> Self {
         let v = |x: [f32; 3]| x.map(F::new);
-        Self {
-            axes: axes.map(v),
-            t: v(t),
-            o: v(o),
-        }
+        Self { axes: axes.map(v), t: v(t), o: v(o) }
     }
 }
 
@@ -74,10 +70,7 @@ impl<const FLUSH: bool> Frames<FLUSH> {
         let gap = [0, 1, 2].map(|i| (b.t[i] - a.t[i]) + (b.o[i] - a.o[i]));
         Self {
             turn: a.axes.map(|x| b.axes.map(|y| dot(x, y))),
-            gap: [
-                a.axes.map(|x| dot(x, gap)),
-                b.axes.map(|x| F::ZERO - dot(x, gap)),
-            ],
+            gap: [a.axes.map(|x| dot(x, gap)), b.axes.map(|x| F::ZERO - dot(x, gap))],
         }
     }
 
@@ -89,23 +82,14 @@ impl<const FLUSH: bool> Frames<FLUSH> {
         let (group, plus, minus) = slab(member);
         let own = a[8 * group + if tau < F::ZERO { minus } else { plus }];
         let away = e.map(|x| x.flip(F::ZERO - tau));
-        Axis {
-            raw: tau,
-            tau: tau.abs(),
-            own: F::new(own),
-            other: support(k, b, away),
-        }
+        Axis { raw: tau, tau: tau.abs(), own: F::new(own), other: support(k, b, away) }
     }
 
     /// The cross product of two edges, in A's coordinates.
     pub fn edge_axis(&self, edge_a: [f32; 3], edge_b: [f32; 3]) -> V<FLUSH> {
         let [x, y, z] = edge_a.map(F::new);
         let f = self.turn.map(|row| dot(edge_b.map(F::new), row));
-        [
-            y * f[2] - z * f[1],
-            z * f[0] - x * f[2],
-            x * f[1] - y * f[0],
-        ]
+        [y * f[2] - z * f[1], z * f[0] - x * f[2], x * f[1] - y * f[0]]
     }
 
     /// Any vector in A's coordinates as an axis; `None` when too short.
@@ -150,17 +134,8 @@ pub fn multipliers<const FLUSH: bool>(k: usize, [a, b, c]: V<FLUSH>) -> Multipli
     let (zero, half) = (F::ZERO, F::new(0.5));
     let (ab, ac, bc) = (a.min(b), a.min(c), b.min(c));
     let low = ab.min(c);
-    let leads = [
-        (a - b.max(c)).max(zero),
-        (b - a.max(c)).max(zero),
-        (c - a.max(b)).max(zero),
-    ];
-    let none = Multipliers {
-        axes: [a, b, c],
-        pairs: [zero; 3],
-        diagonal: zero,
-        bent: [zero; 3],
-    };
+    let leads = [(a - b.max(c)).max(zero), (b - a.max(c)).max(zero), (c - a.max(b)).max(zero)];
+    let none = Multipliers { axes: [a, b, c], pairs: [zero; 3], diagonal: zero, bent: [zero; 3] };
     match k {
         6 => none,
         14 => Multipliers {
@@ -178,12 +153,9 @@ pub fn multipliers<const FLUSH: bool>(k: usize, [a, b, c]: V<FLUSH>) -> Multipli
                 ..none
             }
         }
-        _ => Multipliers {
-            axes: leads,
-            pairs: [ab, ac, bc].map(|x| x - low),
-            diagonal: low,
-            ..none
-        },
+        _ => {
+            Multipliers { axes: leads, pairs: [ab, ac, bc].map(|x| x - low), diagonal: low, ..none }
+        }
     }
 }
 

@@ -19,18 +19,11 @@ fn start(random: &mut Random) -> [f32; 10] {
 }
 
 fn split(p: &[f32; 10]) -> Posed {
-    (
-        [p[0], p[1], p[2], p[3]],
-        [p[4], p[5], p[6]],
-        [p[7], p[8], p[9]],
-    )
+    ([p[0], p[1], p[2], p[3]], [p[4], p[5], p[6]], [p[7], p[8], p[9]])
 }
 
 fn largest(vectors: &[[f32; 3]]) -> f64 {
-    vectors
-        .iter()
-        .flatten()
-        .fold(0.0, |m: f64, &x| m.max(f64::from(x.abs())))
+    vectors.iter().flatten().fold(0.0, |m: f64, &x| m.max(f64::from(x.abs())))
 }
 
 /// Error of a transformed coordinate in 2⁻⁵³·max(|x|∞, |t|∞).
@@ -38,9 +31,7 @@ pub fn coordinate(seed: u64, evaluations: u64) -> f64 {
     climb(seed, evaluations, start, |p| {
         let (q, x, t) = split(p);
         let (got, wanted) = (transform(&rotation(q), x, t), exact::transform(q, x, t));
-        let error = (0..3)
-            .map(|i| wanted[i].minus(got[i]).abs())
-            .fold(0.0, f64::max);
+        let error = (0..3).map(|i| wanted[i].minus(got[i]).abs()).fold(0.0, f64::max);
         error / (EPSILON * largest(&[x, t]))
     })
     .0
@@ -75,17 +66,12 @@ pub fn extent(seed: u64, evaluations: u64) -> f64 {
         let (q, x, t) = split(p);
         let (got, wanted) = (transform(&rotation(q), x, t), exact::transform(q, x, t));
         let reach = exact::norm(x.map(f64::from)).max(largest(&[t]));
-        let errors = [
-            [1.0, 1.0, 1.0],
-            [-1.0, 1.0, 1.0],
-            [1.0, -1.0, 1.0],
-            [-1.0, -1.0, 1.0],
-        ]
-        .map(|d| {
-            let computed = (d[0] * got[0] + d[1] * got[1]) + d[2] * got[2];
-            let sum = wanted[0] * d[0] + wanted[1] * d[1] + wanted[2] * d[2];
-            sum.minus(computed).abs()
-        });
+        let errors =
+            [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0]].map(|d| {
+                let computed = (d[0] * got[0] + d[1] * got[1]) + d[2] * got[2];
+                let sum = wanted[0] * d[0] + wanted[1] * d[1] + wanted[2] * d[2];
+                sum.minus(computed).abs()
+            });
         errors.into_iter().fold(0.0, f64::max) / (EPSILON * reach)
     })
     .0

@@ -54,16 +54,8 @@ impl Solid {
             }
             let (lo, hi) = (along.min(0.0) as f32, along.max(0.0) as f32);
             [
-                if f64::from(lo) > along {
-                    lo.next_down()
-                } else {
-                    lo
-                },
-                if f64::from(hi) < along {
-                    hi.next_up()
-                } else {
-                    hi
-                },
+                if f64::from(lo) > along { lo.next_down() } else { lo },
+                if f64::from(hi) < along { hi.next_up() } else { hi },
             ]
         };
         let largest = vertex.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -74,11 +66,7 @@ impl Solid {
             centre,
             t: [0.0; 3],
             table: table(target.k, ends),
-            reach: if target.boxes {
-                largest
-            } else {
-                norm(vertex) + norm(centre)
-            },
+            reach: if target.boxes { largest } else { norm(vertex) + norm(centre) },
         }
     }
 
@@ -104,9 +92,8 @@ const N: usize = 36;
 pub fn rounding(target: Target, seed: u64, evaluations: u64) -> f64 {
     let start = |random: &mut Random| start(random, target, 1.0);
     let score = |p: &[f32; N]| {
-        attack::<false>(target, p).map_or(f64::NEG_INFINITY, |found| {
-            found.error / (U * found.reach * found.length)
-        })
+        attack::<false>(target, p)
+            .map_or(f64::NEG_INFINITY, |found| found.error / (U * found.reach * found.length))
     };
     climb(seed, evaluations, start, score).0
 }
@@ -127,9 +114,7 @@ pub fn underflow<const FLUSHED: bool>(target: Target, seed: u64, evaluations: u6
 fn start(random: &mut Random, target: Target, scale: f32) -> [f32; N] {
     let mut p = std::array::from_fn(|_| random.signed());
     p[8..26].iter_mut().for_each(|x| *x *= scale);
-    p[17..20]
-        .iter_mut()
-        .for_each(|x| *x *= if target.boxes { 2.0 } else { 0.01 });
+    p[17..20].iter_mut().for_each(|x| *x *= if target.boxes { 2.0 } else { 0.01 });
     if !target.offset {
         p[20..26].fill(0.0);
     }
@@ -205,10 +190,7 @@ fn pick_axis<const FLUSH: bool>(
         let edges = edges::of(target.k);
         let [e, f] = picks.map(|pick| edges[index(pick, edges.len())]);
         let axis = frames.edge_axis(e, f);
-        Some((
-            frames.free(target.k, axis, &a.table, &b.table)?,
-            axis.map(F::real),
-        ))
+        Some((frames.free(target.k, axis, &a.table, &b.table)?, axis.map(F::real)))
     } else {
         let members = members_of(target.k);
         let member = members[index(picks[0], members.len())];

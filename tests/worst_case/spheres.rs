@@ -15,34 +15,22 @@ fn test<const FLUSH: bool>(a: [f32; 3], b: [f32; 3], ra: f32, rb: f32) -> (F<FLU
 }
 
 fn squared_distance(a: [f32; 3], b: [f32; 3]) -> f64 {
-    (0..3)
-        .map(|i| (f64::from(b[i]) - f64::from(a[i])).powi(2))
-        .sum()
+    (0..3).map(|i| (f64::from(b[i]) - f64::from(a[i])).powi(2)).sum()
 }
 
 fn start(random: &mut Random) -> [f32; 8] {
-    std::array::from_fn(|i| {
-        if i < 6 {
-            random.signed()
-        } else {
-            random.between(0.25, 1.0)
-        }
-    })
+    std::array::from_fn(|i| if i < 6 { random.signed() } else { random.between(0.25, 1.0) })
 }
 
 /// d²/D ÷ t/Q − 1 in u: what the stored radii must gain.
 pub fn decision(seed: u64, evaluations: u64) -> f64 {
-    worst(seed, evaluations, |[d2, exact, t, s2]| {
-        d2 / exact * (s2 / t) - 1.0
-    })
+    worst(seed, evaluations, |[d2, exact, t, s2]| d2 / exact * (s2 / t) - 1.0)
 }
 
 /// √D/(R_A + R_B) − 1 in u, for d² = t: how far beyond the stored radii bodies that are still
 /// reported can be.
 pub fn reported(seed: u64, evaluations: u64) -> f64 {
-    worst(seed, evaluations, |[d2, exact, t, s2]| {
-        (exact / d2 * (t / s2)).sqrt() - 1.0
-    })
+    worst(seed, evaluations, |[d2, exact, t, s2]| (exact / d2 * (t / s2)).sqrt() - 1.0)
 }
 
 /// The worst error in u of a comparison, given d² as computed and exact, then s².
@@ -83,10 +71,7 @@ fn touching_start(random: &mut Random, scale: f32) -> [f32; 8] {
     let [ax, ay, az, bx, by, bz] = [(); 6].map(|()| random.signed() * scale);
     let length = squared_distance([ax, ay, az], [bx, by, bz]).sqrt();
     let share = f64::from(random.between(0.0, 1.0));
-    let (ra, rb) = (
-        (length * share) as f32,
-        ((length * (1.0 - share)) as f32).next_up(),
-    );
+    let (ra, rb) = ((length * share) as f32, ((length * (1.0 - share)) as f32).next_up());
     [ax, ay, az, bx, by, bz, ra, rb]
 }
 

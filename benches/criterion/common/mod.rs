@@ -32,9 +32,8 @@ pub fn one_volume() -> impl Iterator<Item = (Strategy, TestedVolume)> {
 
 /// A scene file of `data/scenes`.
 pub fn scene_file(name: &str) -> SceneFile {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
-        .join("data/scenes")
-        .join(name);
+    let path =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("data/scenes").join(name);
     SceneFile::read(&path.with_extension("toml")).unwrap()
 }
 
@@ -46,12 +45,8 @@ pub fn scene(name: &str) -> Scene {
 /// The calibration scenes of the paper's objects, for as many as fit the cache of 500: named by
 /// their number of bodies and the side of their box.
 pub fn calibration_scenes() -> Vec<(String, Scene)> {
-    let named = |scene: Scene| {
-        (
-            format!("{} in {:.1}", scene.bodies.len(), scene.side.unwrap()),
-            scene,
-        )
-    };
+    let named =
+        |scene: Scene| (format!("{} in {:.1}", scene.bodies.len(), scene.side.unwrap()), scene);
     design::scenes(&scene("paper-500")).map(named).collect()
 }
 
@@ -71,21 +66,14 @@ pub fn stage(
     stage: fn(&Seconds) -> f64,
     count: impl Fn(&Counters) -> u64,
 ) {
-    let settings = CullSettings {
-        strategy,
-        ..scene.cull.clone()
-    };
-    let mut culler = Culler::builder()
-        .settings(&settings)
-        .build(&scene.shapes, &scene.bodies)
-        .unwrap();
+    let settings = CullSettings { strategy, ..scene.cull.clone() };
+    let mut culler =
+        Culler::builder().settings(&settings).build(&scene.shapes, &scene.bodies).unwrap();
     let frames = frames(scene);
     for bodies in &frames {
         culler.cull(bodies).unwrap();
     }
-    group.throughput(Throughput::Elements(
-        count(culler.counters()) / FRAMES as u64,
-    ));
+    group.throughput(Throughput::Elements(count(culler.counters()) / FRAMES as u64));
     group.bench_function(id, |bencher| {
         bencher.iter_custom(|iterations| {
             let before = stage(culler.seconds());

@@ -49,17 +49,11 @@ impl Swarm {
             Kind::Wild => 10,
             _ => 0,
         };
-        let radii: Vec<f32> = (0..=8 * octaves)
-            .map(|i| 2f32.powf(i as f32 / 8.0))
-            .collect();
+        let radii: Vec<f32> = (0..=8 * octaves).map(|i| 2f32.powf(i as f32 / 8.0)).collect();
         let mesh = ProceduralShape::default_of("box").unwrap().build().unwrap();
         let shape = |&radius: &f32| {
             let radius = Some(radius);
-            let spec = ShapeSpec {
-                origin: Origin::Ball,
-                radius,
-                ..ShapeSpec::default()
-            };
+            let spec = ShapeSpec { origin: Origin::Ball, radius, ..ShapeSpec::default() };
             Shape::build(&mesh, &spec).unwrap()
         };
         let shapes: Vec<Shape> = radii.iter().map(shape).collect();
@@ -74,11 +68,7 @@ impl Swarm {
             match kind {
                 Kind::Plane => {
                     let side = (n as f32 * 12.57 / 1.5).sqrt();
-                    at = [
-                        rng.random_range(0.0..side),
-                        3.0,
-                        rng.random_range(0.0..side),
-                    ];
+                    at = [rng.random_range(0.0..side), 3.0, rng.random_range(0.0..side)];
                 }
                 Kind::Clusters => {
                     let centre = [3.0, 5.0, 7.0].map(|k| k * 10.0 * side * (i % 10) as f32);
@@ -86,29 +76,15 @@ impl Swarm {
                 }
                 Kind::Uniform | Kind::Mixed | Kind::Wild => {}
             }
-            bodies.push(
-                rng.random_range(0..radii.len() as u32),
-                true,
-                [0.0, 0.0, 0.0, 1.0],
-                at,
-            );
+            bodies.push(rng.random_range(0..radii.len() as u32), true, [0.0, 0.0, 0.0, 1.0], at);
             step.push(std::array::from_fn(|_| rng.random_range(-most..most)));
         }
-        Self {
-            shapes,
-            bodies,
-            step,
-            frame: 0,
-        }
+        Self { shapes, bodies, step, frame: 0 }
     }
 
     /// Advances one frame: sixteen frames in one direction, then sixteen back.
     pub fn sway(&mut self) {
-        let sign = if (self.frame / 16).is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        };
+        let sign = if (self.frame / 16).is_multiple_of(2) { 1.0 } else { -1.0 };
         for (t, step) in self.bodies.translation.iter_mut().zip(&self.step) {
             for (x, by) in t.iter_mut().zip(step) {
                 *x += sign * by;
@@ -124,11 +100,7 @@ impl Swarm {
 
     /// As [`Self::culler`], with another strategy.
     pub fn culler_by(&mut self, strategy: Strategy, finder: Finder, threads: usize) -> Culler {
-        let settings = CullSettings {
-            strategy,
-            pairs: finder,
-            ..CullSettings::all_pairs()
-        };
+        let settings = CullSettings { strategy, pairs: finder, ..CullSettings::all_pairs() };
         let mut culler = Culler::builder()
             .settings(&settings)
             .threads(threads)

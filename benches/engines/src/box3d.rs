@@ -111,15 +111,11 @@ impl Tree {
         for &body in &self.moved {
             let own = &self.boxes[body as usize];
             let boxes = &self.boxes;
-            self.partners
-                .end(body, |other| meet(own, &boxes[other as usize]));
+            self.partners.end(body, |other| meet(own, &boxes[other as usize]));
         }
         for &body in &self.moved {
-            let mut search = Search {
-                body,
-                is_moved: &self.is_moved,
-                partners: &mut self.partners,
-            };
+            let mut search =
+                Search { body, is_moved: &self.is_moved, partners: &mut self.partners };
             // SAFETY: the callback gets the search, which lives until the query has ended.
             unsafe {
                 b3DynamicTree_Query(
@@ -179,8 +175,5 @@ fn grown(slabs: &Slabs, margin: f32) -> Slabs {
 
 fn aabb(slabs: &Slabs) -> b3AABB {
     let corner = |[x, y, z]: [f32; 3]| b3Vec3 { x, y, z };
-    b3AABB {
-        lowerBound: corner(lower(slabs)),
-        upperBound: corner(upper(slabs)),
-    }
+    b3AABB { lowerBound: corner(lower(slabs)), upperBound: corner(upper(slabs)) }
 }

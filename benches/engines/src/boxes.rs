@@ -39,12 +39,8 @@ impl Frame {
         let boxes = bodies.translation.iter().zip(&bodies.shape);
         let boxes = boxes.map(|(t, &shape)| {
             let order = ORDERS[shape as usize % ORDERS.len()];
-            [0, 1, 2].map(|axis| {
-                [
-                    t[axis] - LONG_SIDES[order[axis]],
-                    t[axis] + LONG_SIDES[order[axis]],
-                ]
-            })
+            [0, 1, 2]
+                .map(|axis| [t[axis] - LONG_SIDES[order[axis]], t[axis] + LONG_SIDES[order[axis]]])
         });
         self.set_boxes(boxes.collect());
     }
@@ -68,14 +64,8 @@ impl Frame {
 pub const LONG_SIDES: [f32; 3] = [0.125, 1.0, 8.0];
 
 /// All orders of three sides.
-pub const ORDERS: [[usize; 3]; 6] = [
-    [0, 1, 2],
-    [1, 2, 0],
-    [2, 0, 1],
-    [2, 1, 0],
-    [1, 0, 2],
-    [0, 2, 1],
-];
+pub const ORDERS: [[usize; 3]; 6] =
+    [[0, 1, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0], [1, 0, 2], [0, 2, 1]];
 
 /// The lower corner.
 pub fn lower(slabs: &Slabs) -> [f32; 3] {

@@ -32,10 +32,7 @@ struct Broccoli {
 
 impl Broccoli {
     fn new(setup: &Setup<'_>) -> Self {
-        let mut broccoli = Self {
-            bodies: Vec::new(),
-            pairs: Vec::new(),
-        };
+        let mut broccoli = Self { bodies: Vec::new(), pairs: Vec::new() };
         broccoli.take(setup.first);
         broccoli
     }

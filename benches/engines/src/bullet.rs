@@ -18,12 +18,7 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: 1,
     ages: true,
-    new: |setup| {
-        new(
-            setup,
-            shim!(bullet_new, bullet_frame, bullet_pairs, bullet_free),
-        )
-    },
+    new: |setup| new(setup, shim!(bullet_new, bullet_frame, bullet_pairs, bullet_free)),
 }];
 
 /// Bullet's margin, and the share of pairs that it looks through in each frame for those that have
@@ -49,13 +44,7 @@ pub const MOVERS: [MoverEntry; 2] = [
         name: "Bullet, margin 0.05",
         margin: MARGIN,
         extras: Extras::Late,
-        new: |setup| {
-            Ok(Box::new(Incrementally::new(
-                setup,
-                MARGIN,
-                CLEANED_PER_CENT,
-            )))
-        },
+        new: |setup| Ok(Box::new(Incrementally::new(setup, MARGIN, CLEANED_PER_CENT))),
         ..EXACT
     },
 ];
@@ -85,11 +74,7 @@ impl Incrementally {
         let boxes = &setup.first.boxes;
         // SAFETY: as many boxes as the call says.
         let peer = unsafe { bullet_movers_new(boxes.as_ptr(), boxes.len(), cleaned) };
-        Self {
-            peer,
-            bodies: boxes.len(),
-            margin,
-        }
+        Self { peer, bodies: boxes.len(), margin }
     }
 }
 

@@ -38,12 +38,7 @@ mod tests {
     #[test]
     fn ended_pairs_leave_the_sum() {
         let mut changes = Changes::default();
-        for (pair, begins) in [
-            ([2, 1], true),
-            ([3, 4], true),
-            ([1, 2], false),
-            ([3, 4], true),
-        ] {
+        for (pair, begins) in [([2, 1], true), ([3, 4], true), ([1, 2], false), ([3, 4], true)] {
             changes.note(pair, begins);
         }
         assert_eq!(changes.pairs(), [[3, 4], [3, 4]]);

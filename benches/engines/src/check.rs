@@ -35,12 +35,7 @@ impl<'a> ExpectedPairs<'a> {
         // Spheres that touch lie in boxes that do. What f64 can't tell from a contact isn't
         // required.
         let touch = |&pair: &[u32; 2]| relative_gap(frame, pair) <= -1e-14;
-        Self {
-            spheres: boxes.iter().copied().filter(touch).collect(),
-            boxes,
-            frame,
-            number,
-        }
+        Self { spheres: boxes.iter().copied().filter(touch).collect(), boxes, frame, number }
     }
 
     /// The number of the frame.
@@ -72,9 +67,7 @@ impl<'a> ExpectedPairs<'a> {
             (first_outside(required, &pairs), "missing"),
             (self.first_wrong(entry, &pairs), "no pair"),
         ];
-        let fault = faults
-            .into_iter()
-            .find_map(|(pair, fault)| Some((pair?, fault)));
+        let fault = faults.into_iter().find_map(|(pair, fault)| Some((pair?, fault)));
         match fault {
             None => Ok(pairs.len()),
             Some((pair, fault)) => Err(Mismatch {
@@ -108,10 +101,7 @@ impl<'a> ExpectedPairs<'a> {
 /// How far two spheres are apart over the sum of their radii; negative when they overlap.
 fn relative_gap(frame: &Frame, pair: [u32; 2]) -> f64 {
     let [a, b] = pair.map(|body| frame.bodies.translation[body as usize].map(f64::from));
-    let distance = (0..3)
-        .map(|axis| (a[axis] - b[axis]).powi(2))
-        .sum::<f64>()
-        .sqrt();
+    let distance = (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt();
     let [ra, rb] = pair.map(|body| f64::from(frame.radii[body as usize]));
     distance / (ra + rb) - 1.0
 }
@@ -133,13 +123,9 @@ mod tests {
     fn row() -> Frame {
         let mut frame = Frame::default();
         for (body, x) in [0.0, 2.0, 4.5_f32].into_iter().enumerate() {
-            frame
-                .bodies
-                .push(0, true, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
+            frame.bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
             frame.radii.push(1.0);
-            frame
-                .boxes
-                .push([[x - 1.0, x + 1.0], [-1.0, 1.0], [-1.0, 1.0]]);
+            frame.boxes.push([[x - 1.0, x + 1.0], [-1.0, 1.0], [-1.0, 1.0]]);
             assert_eq!(frame.bodies.len(), body + 1);
         }
         frame

@@ -130,23 +130,14 @@ fn check<'a>(
     }
     let sampled = [0, 1, count - 1].map(|number| ExpectedPairs::of(&frames[number], number));
     definition_holds(case, &sampled[0])?;
-    let setup = Setup {
-        scene: &course.scene,
-        first: &frames[0],
-        threads: case.threads,
-    };
+    let setup = Setup { scene: &course.scene, first: &frames[0], threads: case.threads };
     let (mut passed, mut left_out) = (Vec::new(), Vec::new());
     for &entry in entries {
         let (tried, memory) = memory::measure(|| tried(entry, &setup, &frames, limit_ms));
         let (peer, ms) = tried?;
         drop(peer);
         if ms > limit_ms && entry.name != OURS {
-            left_out.push(LeftOut {
-                case,
-                engine: entry.name,
-                ms,
-                limit_ms,
-            });
+            left_out.push(LeftOut { case, engine: entry.name, ms, limit_ms });
             continue;
         }
         passed.push((entry, memory));
@@ -211,18 +202,9 @@ fn definition_holds(case: Case, first: &ExpectedPairs<'_>) -> miette::Result<()>
 fn timed(case: Case, entries: &[&Entry]) -> miette::Result<(Vec<TimedEngine>, Vec<usize>)> {
     let schedule = case.schedule;
     let (timed, last) = take_turns(course(case)?, schedule, |course, first| {
-        let setup = Setup {
-            scene: &course.scene,
-            first,
-            threads: case.threads,
-        };
-        let timed = |entry: &&Entry| {
-            Ok(TimedEngine::new(
-                (entry.new)(&setup)?,
-                entry.ages,
-                case.threads,
-            ))
-        };
+        let setup = Setup { scene: &course.scene, first, threads: case.threads };
+        let timed =
+            |entry: &&Entry| Ok(TimedEngine::new((entry.new)(&setup)?, entry.ages, case.threads));
         entries.iter().map(timed).collect()
     })?;
     let truth = ExpectedPairs::of(&last, schedule.warm_up + schedule.timed - 1);

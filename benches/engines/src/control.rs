@@ -79,10 +79,7 @@ struct ControlResults {
 
 /// Measures, prints the table, and writes it if requested.
 pub fn run(args: &Args) -> miette::Result<()> {
-    let mut measured = ControlResults {
-        facts: Facts::new(args.note.clone()),
-        rows: Vec::new(),
-    };
+    let mut measured = ControlResults { facts: Facts::new(args.note.clone()), rows: Vec::new() };
     for &bodies in &args.sizes {
         eprintln!("{bodies} bodies");
         measured.rows.extend(measure(bodies, args.threads)?);
@@ -108,11 +105,7 @@ fn measure(bodies: usize, threads: usize) -> miette::Result<Vec<SpeedUp>> {
             timed.push(TimedEngine::new(engine, true, threads));
         };
         for threads in [1, threads] {
-            let setup = Setup {
-                scene: &course.scene,
-                first,
-                threads,
-            };
+            let setup = Setup { scene: &course.scene, first, threads };
             for entry in &ours::ENTRIES {
                 enter(entry.name, (entry.new)(&setup)?, threads);
             }
@@ -158,11 +151,7 @@ fn rows(
             share_of_memory: f64::NAN,
         });
     }
-    let of = |name| {
-        rows.iter()
-            .find(|row| row.work == name)
-            .map(|row| row.speed_up)
-    };
+    let of = |name| rows.iter().find(|row| row.work == name).map(|row| row.speed_up);
     let [arithmetic, memory] = [ARITHMETIC, MEMORY].map(|name| of(name).unwrap_or(f64::NAN));
     for row in &mut rows {
         row.share_of_arithmetic = row.speed_up / arithmetic;
@@ -191,8 +180,7 @@ impl ControlLoop {
 impl Contestant<Frame> for ControlLoop {
     fn frame(&mut self, _: &Frame) {
         let work = self.work;
-        self.pool
-            .each(&mut self.pieces, |_, piece| work(black_box(piece)));
+        self.pool.each(&mut self.pieces, |_, piece| work(black_box(piece)));
     }
 
     /// None: a control finds nothing.

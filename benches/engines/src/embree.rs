@@ -10,10 +10,5 @@ pub const ENTRIES: [Entry; 1] = [Entry {
     work: Work::Boxes,
     threads: usize::MAX,
     ages: false,
-    new: |setup| {
-        new(
-            setup,
-            shim!(embree_new, embree_frame, embree_pairs, embree_free),
-        )
-    },
+    new: |setup| new(setup, shim!(embree_new, embree_frame, embree_pairs, embree_free)),
 }];

@@ -43,10 +43,7 @@ impl Facts {
         Self {
             command: command(),
             machine: Machine::here(Tier::detect()),
-            compiled_for: match (
-                cfg!(target_feature = "avx512f"),
-                cfg!(target_feature = "avx2"),
-            ) {
+            compiled_for: match (cfg!(target_feature = "avx512f"), cfg!(target_feature = "avx2")) {
                 (true, _) => "AVX-512",
                 (_, true) => "AVX2",
                 _ => "the architecture's baseline",
@@ -99,10 +96,7 @@ impl<R, C> Record<R, C> {
     pub fn new(note: String) -> Self {
         Self {
             facts: Facts::new(note),
-            timings: Timings {
-                rows: Vec::new(),
-                left_out: Vec::new(),
-            },
+            timings: Timings { rows: Vec::new(), left_out: Vec::new() },
         }
     }
 
@@ -129,16 +123,8 @@ impl Display for Facts {
         let [before, now] = &self.load;
         writeln!(f, "- `{}`", self.command)?;
         writeln!(f, "- {}", self.machine)?;
-        writeln!(
-            f,
-            "- engines in Rust are compiled for {}",
-            self.compiled_for
-        )?;
-        writeln!(
-            f,
-            "- load {before} at the beginning, {now} at the end; {}",
-            self.note
-        )
+        writeln!(f, "- engines in Rust are compiled for {}", self.compiled_for)?;
+        writeln!(f, "- load {before} at the beginning, {now} at the end; {}", self.note)
     }
 }
 
@@ -193,9 +179,7 @@ pub fn write(
 ) -> miette::Result<()> {
     let json = serde_json::to_string_pretty(json).into_diagnostic()? + "\n";
     let blame = || format!("writing to {}", directory.display());
-    fs::create_dir_all(directory)
-        .into_diagnostic()
-        .wrap_err_with(blame)?;
+    fs::create_dir_all(directory).into_diagnostic().wrap_err_with(blame)?;
     for (ending, text) in [("csv", csv), ("json", json), ("md", page)] {
         sdop::files::write(&directory.join(name).with_extension(ending), text)
             .into_diagnostic()

@@ -89,9 +89,7 @@ pub fn run(args: &Args) -> miette::Result<()> {
 /// Looks for the newest estimates of every benchmark below a directory.
 fn gather(directory: &Path, rows: &mut Vec<KernelTiming>) -> miette::Result<()> {
     let blame = || format!("reading {}", directory.display());
-    let entries = fs::read_dir(directory)
-        .into_diagnostic()
-        .wrap_err_with(blame)?;
+    let entries = fs::read_dir(directory).into_diagnostic().wrap_err_with(blame)?;
     for entry in entries {
         let path = entry.into_diagnostic()?.path();
         if !path.is_dir() {
@@ -125,10 +123,6 @@ fn row(directory: &Path) -> miette::Result<KernelTiming> {
 
 fn read<T: DeserializeOwned>(path: &Path) -> miette::Result<T> {
     let blame = || format!("reading {}", path.display());
-    let text = fs::read_to_string(path)
-        .into_diagnostic()
-        .wrap_err_with(blame)?;
-    serde_json::from_str(&text)
-        .into_diagnostic()
-        .wrap_err_with(blame)
+    let text = fs::read_to_string(path).into_diagnostic().wrap_err_with(blame)?;
+    serde_json::from_str(&text).into_diagnostic().wrap_err_with(blame)
 }

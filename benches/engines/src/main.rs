@@ -59,11 +59,7 @@ struct Cli {
     #[command(subcommand)]
     other: Option<OtherCommand>,
     /// Numbers of bodies
-    #[arg(
-        long,
-        value_delimiter = ',',
-        default_value = "500,1000,10000,100000,1000000"
-    )]
+    #[arg(long, value_delimiter = ',', default_value = "500,1000,10000,100000,1000000")]
     sizes: Vec<usize>,
     /// How bodies are spread
     #[arg(long, value_delimiter = ',', default_value = "uniform,mixed,clustered")]
@@ -159,13 +155,7 @@ fn cases(cli: &Cli) -> Vec<Case> {
                         timed: cli.timed.unwrap_or(usual.timed).max(1),
                         ..usual
                     };
-                    cases.push(Case {
-                        spread,
-                        order,
-                        bodies,
-                        threads,
-                        schedule,
-                    });
+                    cases.push(Case { spread, order, bodies, threads, schedule });
                 }
             }
         }

@@ -3,10 +3,7 @@
 //!
 //! The allocator counts only in passes that are not timed.
 
-#![allow(
-    unsafe_code,
-    reason = "an allocator and glibc's statistics are unsafe interfaces"
-)]
+#![allow(unsafe_code, reason = "an allocator and glibc's statistics are unsafe interfaces")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicBool, AtomicIsize, Ordering::Relaxed};

@@ -61,18 +61,12 @@ type PairVerdict<'a> = Box<dyn Fn(&Bodies, [u32; 2]) -> miette::Result<bool> + '
 
 /// Tests of single pairs, applied to all pairs: judged like engines, and timed only here.
 pub const ENTRIES: [Entry; 3] = [
-    entry(
-        "sdop GJK on hulls",
-        env!("CARGO_PKG_VERSION"),
-        Work::Hulls,
-        |setup| Ok(Box::new(AllPairs::new(hulls(&setup.scene.shapes)))),
-    ),
-    entry(
-        "parry3d GJK on hulls",
-        parry::VERSION,
-        Work::Hulls,
-        |setup| Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, convex)?))),
-    ),
+    entry("sdop GJK on hulls", env!("CARGO_PKG_VERSION"), Work::Hulls, |setup| {
+        Ok(Box::new(AllPairs::new(hulls(&setup.scene.shapes))))
+    }),
+    entry("parry3d GJK on hulls", parry::VERSION, Work::Hulls, |setup| {
+        Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, convex)?)))
+    }),
     entry("parry3d meshes", parry::VERSION, Work::Meshes, |setup| {
         Ok(Box::new(AllPairs::new(parry(&setup.scene.shapes, mesh)?)))
     }),
@@ -84,14 +78,7 @@ const fn entry(
     work: Work,
     new: fn(&Setup<'_>) -> miette::Result<Engine>,
 ) -> Entry {
-    Entry {
-        name,
-        version,
-        work,
-        threads: 1,
-        ages: false,
-        new,
-    }
+    Entry { name, version, work, threads: 1, ages: false, new }
 }
 
 /// A test of single pairs as an engine.
@@ -102,10 +89,7 @@ struct AllPairs {
 
 impl AllPairs {
     fn new(test: PairVerdict<'static>) -> Self {
-        Self {
-            test,
-            pairs: Vec::new(),
-        }
+        Self { test, pairs: Vec::new() }
     }
 }
 
@@ -144,15 +128,9 @@ pub fn run(args: &Args) -> miette::Result<()> {
 }
 
 fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<MethodTiming>> {
-    let settings = CullSettings {
-        strategy,
-        pairs: Finder::Grid,
-        ..scene.cull.clone()
-    };
-    let mut culler = Culler::builder()
-        .settings(&settings)
-        .build(&scene.shapes, &scene.bodies)
-        .or_report()?;
+    let settings = CullSettings { strategy, pairs: Finder::Grid, ..scene.cull.clone() };
+    let mut culler =
+        Culler::builder().settings(&settings).build(&scene.shapes, &scene.bodies).or_report()?;
     let samples = samples(scene, frames)?;
     let survivors: Vec<_> = samples
         .iter()
@@ -180,10 +158,8 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<M
             let chosen: Vec<(&Bodies, [u32; 2])> = bodies()
                 .zip(survivors.iter().zip(&answers))
                 .flat_map(|(bodies, (pairs, answers))| {
-                    let kept = pairs
-                        .iter()
-                        .zip(answers)
-                        .filter(move |(_, answer)| **answer == wanted);
+                    let kept =
+                        pairs.iter().zip(answers).filter(move |(_, answer)| **answer == wanted);
                     kept.map(move |(&pair, _)| (bodies, pair))
                 })
                 .collect();
@@ -191,8 +167,7 @@ fn study(scene: &Scene, strategy: Strategy, frames: u32) -> miette::Result<Vec<M
         };
         let differ = |answer: bool| {
             let both = truth.iter().flatten().zip(answers.iter().flatten());
-            both.filter(|&(&truth, &given)| given == answer && truth != answer)
-                .count()
+            both.filter(|&(&truth, &given)| given == answer && truth != answer).count()
         };
         rows.push(MethodTiming {
             scene: scene.name.clone(),
@@ -231,18 +206,12 @@ fn nanoseconds(
 
 fn exact(shapes: &[Shape]) -> miette::Result<PairVerdict<'static>> {
     let mesh = |shape: &Shape| Mesh::new(&shape.vertices, &shape.triangles).into_diagnostic();
-    let meshes = shapes
-        .iter()
-        .map(mesh)
-        .collect::<miette::Result<Vec<_>>>()?;
+    let meshes = shapes.iter().map(mesh).collect::<miette::Result<Vec<_>>>()?;
     Ok(Box::new(move |bodies, pair| {
         let posed = |body: u32| {
             let body = body as usize;
             let pose = sdop_reference::Pose::new(bodies.rotation[body], bodies.translation[body]);
-            Ok((
-                &meshes[bodies.shape[body] as usize],
-                pose.into_diagnostic()?,
-            ))
+            Ok((&meshes[bodies.shape[body] as usize], pose.into_diagnostic()?))
         };
         let [(a, pose_a), (b, pose_b)]: [(&Mesh, sdop_reference::Pose); 2] = match pair.map(posed) {
             [Ok(a), Ok(b)] => [a, b],
@@ -264,10 +233,7 @@ fn parry(
     shapes: &[Shape],
     solid: fn(&Shape) -> miette::Result<Box<dyn Solid>>,
 ) -> miette::Result<PairVerdict<'static>> {
-    let solids = shapes
-        .iter()
-        .map(solid)
-        .collect::<miette::Result<Vec<_>>>()?;
+    let solids = shapes.iter().map(solid).collect::<miette::Result<Vec<_>>>()?;
     Ok(Box::new(move |bodies, pair| {
         let [(pose_a, a), (pose_b, b)] = pair.map(|body| {
             let body = body as usize;

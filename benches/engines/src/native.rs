@@ -65,11 +65,7 @@ pub fn new(setup: &Setup<'_>, shim: Shim) -> miette::Result<Engine> {
     if peer.is_null() {
         return Err(miette!("the engine can't be made"));
     }
-    Ok(Box::new(NativeEngine {
-        shim,
-        peer,
-        bodies: boxes.len(),
-    }))
+    Ok(Box::new(NativeEngine { shim, peer, bodies: boxes.len() }))
 }
 
 impl Contestant<Frame> for NativeEngine {

@@ -154,13 +154,7 @@ impl Tree {
 
     /// Searches the moved bodies.
     fn find(&mut self) {
-        let Self {
-            bvh,
-            boxes,
-            partners,
-            is_moved,
-            ..
-        } = self;
+        let Self { bvh, boxes, partners, is_moved, .. } = self;
         partners.begin_frame();
         for &body in &self.moved {
             let own = boxes[body as usize];
@@ -219,8 +213,5 @@ impl Incremental for Tree {
 }
 
 fn grown(slabs: &Slabs, margin: f32) -> Aabb {
-    Aabb::new(
-        lower(slabs).map(|x| x - margin).into(),
-        upper(slabs).map(|x| x + margin).into(),
-    )
+    Aabb::new(lower(slabs).map(|x| x - margin).into(), upper(slabs).map(|x| x + margin).into())
 }

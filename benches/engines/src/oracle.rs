@@ -58,11 +58,7 @@ impl Columns {
         };
         let lo = [0, 1, 2].map(|axis| end(axis, 0, f32::min, f32::INFINITY));
         let hi = [0, 1, 2].map(|axis| end(axis, 1, f32::max, f32::NEG_INFINITY));
-        Self {
-            count,
-            lo,
-            width: [0, 1, 2].map(|axis| (hi[axis] - lo[axis]) / count as f32),
-        }
+        Self { count, lo, width: [0, 1, 2].map(|axis| (hi[axis] - lo[axis]) / count as f32) }
     }
 
     /// Monotonous in x, so that a column between two others is between their ends.

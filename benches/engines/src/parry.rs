@@ -85,8 +85,5 @@ impl Contestant<Frame> for Parry {
 
 /// The box as parry3d's.
 pub fn aabb(slabs: &Slabs) -> Aabb {
-    Aabb::new(
-        Vector::from_array(lower(slabs)),
-        Vector::from_array(upper(slabs)),
-    )
+    Aabb::new(Vector::from_array(lower(slabs)), Vector::from_array(upper(slabs)))
 }

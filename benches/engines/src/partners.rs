@@ -13,10 +13,7 @@ pub struct Partners {
 impl Partners {
     /// No pairs of so many bodies.
     pub fn new(bodies: usize) -> Self {
-        Self {
-            lists: vec![Vec::new(); bodies],
-            changes: Vec::new(),
-        }
+        Self { lists: vec![Vec::new(); bodies], changes: Vec::new() }
     }
 
     /// Begins a frame.

@@ -199,13 +199,6 @@ impl Drop for PhysX {
 }
 
 fn bounds(&[x, y, z]: &Slabs) -> PxBounds3 {
-    let corner = |side: usize| PxVec3 {
-        x: x[side],
-        y: y[side],
-        z: z[side],
-    };
-    PxBounds3 {
-        minimum: corner(0),
-        maximum: corner(1),
-    }
+    let corner = |side: usize| PxVec3 { x: x[side], y: y[side], z: z[side] };
+    PxBounds3 { minimum: corner(0), maximum: corner(1) }
 }

@@ -85,10 +85,7 @@ impl Rapier {
         let handles = setup.first.bodies.shape.iter().map(collider).collect();
         let mut rapier = Self {
             broad_phase: BroadPhaseBvh::new(),
-            parameters: IntegrationParameters {
-                length_unit,
-                ..IntegrationParameters::default()
-            },
+            parameters: IntegrationParameters { length_unit, ..IntegrationParameters::default() },
             colliders,
             bodies: RigidBodySet::new(),
             handles,
@@ -111,17 +108,9 @@ impl Rapier {
     }
 
     fn update(&mut self) {
-        let Self {
-            broad_phase,
-            parameters,
-            colliders,
-            bodies,
-            events,
-            ..
-        } = self;
+        let Self { broad_phase, parameters, colliders, bodies, events, .. } = self;
         events.clear();
-        self.threads
-            .run(|| broad_phase.update(parameters, colliders, bodies, &[], &[], events));
+        self.threads.run(|| broad_phase.update(parameters, colliders, bodies, &[], &[], events));
     }
 
     fn read_events(&mut self) {

@@ -19,9 +19,7 @@ impl Record {
     }
 
     fn csv(&self) -> miette::Result<String> {
-        let mut out = csv::WriterBuilder::new()
-            .has_headers(false)
-            .from_writer(Vec::new());
+        let mut out = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
         out.write_record([
             "spread",
             "order",
@@ -45,22 +43,9 @@ impl Record {
         ])
         .into_diagnostic()?;
         for row in &self.timings.rows {
-            let Case {
-                spread,
-                order,
-                bodies,
-                threads,
-                schedule,
-            } = row.case;
+            let Case { spread, order, bodies, threads, schedule } = row.case;
             out.serialize((
-                (
-                    spread,
-                    order,
-                    bodies,
-                    threads,
-                    schedule.warm_up,
-                    schedule.timed,
-                ),
+                (spread, order, bodies, threads, schedule.warm_up, schedule.timed),
                 (row.engine, row.version, row.work, row.pairs),
                 (row.ms_low, row.ms, row.ms_high, row.ms_p50, row.ms_most),
                 (row.ns_a_body, row.ratio),
@@ -124,9 +109,7 @@ impl Record {
         for (engine, version, work) in engines {
             let _ = write!(out, "| {engine} {version} | {work} |");
             for &size in &sizes {
-                let cell = rows
-                    .iter()
-                    .find(|row| row.engine == engine && row.case.bodies == size);
+                let cell = rows.iter().find(|row| row.engine == engine && row.case.bodies == size);
                 let _ = match cell {
                     None => write!(out, " – | – |"),
                     Some(row) => write!(

@@ -69,12 +69,7 @@ impl Schedule {
             10_001..=100_000 => [60, 60, 10, 4],
             _ => [20, 20, 4, 3],
         };
-        Self {
-            warm_up,
-            timed,
-            turn,
-            checked,
-        }
+        Self { warm_up, timed, turn, checked }
     }
 }
 
@@ -212,9 +207,7 @@ fn permute(scene: &mut Scene, order: &[usize]) {
     fn column<T: Copy>(column: &mut Vec<T>, order: &[usize]) {
         *column = order.iter().map(|&body| column[body]).collect();
     }
-    let Scene {
-        bodies, velocities, ..
-    } = scene;
+    let Scene { bodies, velocities, .. } = scene;
     column(&mut bodies.shape, order);
     column(&mut bodies.dynamic, order);
     column(&mut bodies.rotation, order);
@@ -243,10 +236,7 @@ mod tests {
         let (random, sorted) = (frames(Order::Random), frames(Order::Sorted));
         assert_ne!(random, sorted);
         let bits = |boxes: &[crate::boxes::Slabs]| {
-            let mut bits: Vec<_> = boxes
-                .iter()
-                .map(|b| b.map(|s| s.map(f32::to_bits)))
-                .collect();
+            let mut bits: Vec<_> = boxes.iter().map(|b| b.map(|s| s.map(f32::to_bits))).collect();
             bits.sort_unstable();
             bits
         };

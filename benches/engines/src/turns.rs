@@ -22,12 +22,7 @@ pub struct TimedEngine {
 impl TimedEngine {
     /// An engine without times yet.
     pub fn new(engine: Engine, ages: bool, threads: usize) -> Self {
-        Self {
-            engine,
-            ages,
-            threads,
-            ms: Vec::new(),
-        }
+        Self { engine, ages, threads, ms: Vec::new() }
     }
 
     /// The mean of each turn of `turn` frames. Some engines do work in only some frames (they build
@@ -49,12 +44,7 @@ pub fn take_turns(
     schedule: Schedule,
     build: impl FnOnce(&Course, &Frame) -> miette::Result<Vec<TimedEngine>>,
 ) -> miette::Result<(Vec<TimedEngine>, Frame)> {
-    let Schedule {
-        warm_up,
-        timed,
-        turn,
-        ..
-    } = schedule;
+    let Schedule { warm_up, timed, turn, .. } = schedule;
     let mut frames = vec![Frame::default(); turn];
     course.next_frame(&mut frames[0])?;
     let mut all = build(&course, &frames[0])?;
@@ -64,12 +54,9 @@ pub fn take_turns(
         for frame in &mut frames[usize::from(done == 0)..] {
             course.next_frame(frame)?;
         }
-        let joining = all
-            .iter_mut()
-            .filter(|one| one.ages || done + turn >= warm_up);
-        let (mut engines, mut times): (Vec<_>, Vec<_>) = joining
-            .map(|one| (&mut one.engine, (&mut one.ms, one.threads)))
-            .unzip();
+        let joining = all.iter_mut().filter(|one| one.ages || done + turn >= warm_up);
+        let (mut engines, mut times): (Vec<_>, Vec<_>) =
+            joining.map(|one| (&mut one.engine, (&mut one.ms, one.threads))).unzip();
         turns.round(&mut engines, &frames, |frame| {
             if done + frame.frame >= warm_up {
                 let (ms, threads) = &mut times[frame.number];

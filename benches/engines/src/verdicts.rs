@@ -65,9 +65,7 @@ fn everyone() -> Vec<Entry> {
 /// # Errors
 /// An engine that isn't here, a case that can't be read.
 pub fn answer(args: &AnswerArgs) -> miette::Result<()> {
-    let entry = everyone()
-        .into_iter()
-        .find(|entry| entry.name == args.engine);
+    let entry = everyone().into_iter().find(|entry| entry.name == args.engine);
     let entry = entry.ok_or_else(|| miette!("no engine is called `{}`", args.engine))?;
     let read = ndjson::read(std::io::stdin().lock(), MOST_BYTES);
     let case = read.map_err(|problem| miette!("{problem}"))?.case;
@@ -86,11 +84,7 @@ pub fn answer(args: &AnswerArgs) -> miette::Result<()> {
             let engine = match &mut engine {
                 Some(engine) => engine,
                 none => {
-                    let setup = Setup {
-                        scene: &scene,
-                        first: &frame,
-                        threads: 1,
-                    };
+                    let setup = Setup { scene: &scene, first: &frame, threads: 1 };
                     match (entry.new)(&setup) {
                         Ok(made) => none.insert(made),
                         Err(problem) => {
@@ -121,9 +115,7 @@ fn moves(frame: &Frame, body: u32) -> bool {
 /// The largest coordinate of a case's boxes, for engines that want to know their world.
 fn reach(case: &Case) -> f32 {
     let boxes = case.frames.iter().flat_map(|frame| &frame.boxes);
-    boxes
-        .flatten()
-        .fold(1.0, |most: f32, end| most.max(end.abs()))
+    boxes.flatten().fold(1.0, |most: f32, end| most.max(end.abs()))
 }
 
 /// A frame of a case as engines take it.
@@ -175,11 +167,8 @@ struct Verdicts {
 /// A case that can't be made, a directory that can't be written.
 pub fn run(args: &Args) -> miette::Result<()> {
     let program = std::env::current_exe().into_diagnostic()?;
-    let mut verdicts = Verdicts {
-        facts: Facts::new(args.note.clone()),
-        seed: args.seed,
-        rows: Vec::new(),
-    };
+    let mut verdicts =
+        Verdicts { facts: Facts::new(args.note.clone()), seed: args.seed, rows: Vec::new() };
     for entry in everyone() {
         let subject = Program {
             command: format!("exec '{}' answer '{}'", program.display(), entry.name),

@@ -114,11 +114,7 @@ impl Claims {
     /// command.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut claims: Self = toml::from_str(text).map_err(|error| error.to_string())?;
-        claims.adapter = claims
-            .adapter
-            .into_iter()
-            .flat_map(Adapter::split)
-            .collect();
+        claims.adapter = claims.adapter.into_iter().flat_map(Adapter::split).collect();
         let is_unknown = |adapter: &&Adapter| !claims.run.contains_key(&adapter.language);
         match claims.adapter.iter().find(is_unknown) {
             None => Ok(claims),
@@ -132,9 +128,7 @@ impl Claims {
     #[must_use]
     pub fn command(&self, adapter: &Adapter) -> String {
         let line = self.run[&adapter.language].replace("{folder}", &adapter.folder);
-        format!("{line} {}", adapter.arguments)
-            .trim_end()
-            .to_owned()
+        format!("{line} {}", adapter.arguments).trim_end().to_owned()
     }
 }
 
@@ -162,9 +156,6 @@ impl Adapter {
     #[must_use]
     pub fn disclaims(&self, case: &str) -> Option<&str> {
         let is_about = |unclaimed: &&UnclaimedCases| matches(&unclaimed.cases, case);
-        self.unclaimed
-            .iter()
-            .find(is_about)
-            .map(|it| it.why.as_str())
+        self.unclaimed.iter().find(is_about).map(|it| it.why.as_str())
     }
 }

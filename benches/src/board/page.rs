@@ -26,19 +26,14 @@ pub fn page(board: &Board) -> Result<String, minijinja::Error> {
     let mut families: Vec<String> = cells().map(|cell| cell.family.clone()).collect();
     families.sort_unstable();
     families.dedup();
-    let around = Page::around()
-        .map(|parts| script(&parts))
-        .unwrap_or_default();
+    let around = Page::around().map(|parts| script(&parts)).unwrap_or_default();
     let pictures: Vec<(String, String)> = board
         .adapters
         .iter()
         .flat_map(|row| row.cells.iter().map(move |cell| (row, cell)))
         .filter_map(|(row, cell)| {
             let page = &cell.smallest.as_ref()?.page;
-            Some((
-                format!("{}-{}", row.adapter.name, cell.family),
-                script(page),
-            ))
+            Some((format!("{}-{}", row.adapter.name, cell.family), script(page)))
         })
         .collect();
     environment.get_template("board.html")?.render(context! {
@@ -64,9 +59,7 @@ fn plain(value: &impl serde::Serialize) -> Value {
 
 /// A value as JSON that can't end the element that contains it.
 fn script(value: &(impl serde::Serialize + ?Sized)) -> String {
-    serde_json::to_string(value)
-        .unwrap_or_default()
-        .replace('<', "\\u003c")
+    serde_json::to_string(value).unwrap_or_default().replace('<', "\\u003c")
 }
 
 /// A line of the table of times.
@@ -89,10 +82,7 @@ fn times(board: &Board) -> Vec<Time<'_>> {
     let mut all: Vec<&Speed> = board.times.iter().collect();
     all.sort_by_key(|speed| (speed.claim.name(), speed.median_ns));
     let logs = || all.iter().map(|speed| (speed.median_ns.max(1) as f64).ln());
-    let (low, high) = (
-        logs().fold(f64::INFINITY, f64::min),
-        logs().fold(0.0, f64::max),
-    );
+    let (low, high) = (logs().fold(f64::INFINITY, f64::min), logs().fold(0.0, f64::max));
     let bar = |ns: u64| 4.0 + 96.0 * ((ns.max(1) as f64).ln() - low) / (high - low).max(1e-9);
     let line = |speed| Time {
         time: milliseconds(speed),

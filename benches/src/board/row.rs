@@ -124,11 +124,8 @@ pub fn judge(
     cases: &str,
     progress: impl Fn(usize, usize) + Sync,
 ) -> Result<Row, JudgeError> {
-    let service = Service::new(Program {
-        command: command.to_owned(),
-        wire: Wire::Ndjson,
-        timeout: TIMEOUT,
-    });
+    let service =
+        Service::new(Program { command: command.to_owned(), wire: Wire::Ndjson, timeout: TIMEOUT });
     let mut row = Row {
         adapter: adapter.clone(),
         found: String::new(),
@@ -168,29 +165,17 @@ pub fn judge(
     }
     row.cells.sort_by(|a, b| a.family.cmp(&b.family));
     row.total = total(row.cells.iter().map(|cell| &cell.total));
-    row.outcome = over_all(
-        row.cells
-            .iter()
-            .map(|cell| (cell.outcome, !cell.missed_in.is_empty())),
-    );
+    row.outcome = over_all(row.cells.iter().map(|cell| (cell.outcome, !cell.missed_in.is_empty())));
     Ok(row)
 }
 
 /// The output of the adapter for `--version`.
 fn version(command: &str) -> Result<String, String> {
-    let run = Command::new("sh")
-        .arg("-c")
-        .arg(format!("{command} --version"))
-        .output();
+    let run = Command::new("sh").arg("-c").arg(format!("{command} --version")).output();
     let output = run.map_err(|error| error.to_string())?;
     let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes);
-        text.trim()
-            .lines()
-            .last()
-            .unwrap_or_default()
-            .trim()
-            .to_owned()
+        text.trim().lines().last().unwrap_or_default().trim().to_owned()
     };
     match (output.status.success(), last(&output.stdout)) {
         (true, found) if !found.is_empty() => Ok(found),
@@ -242,9 +227,7 @@ impl Cell {
             };
             *reasons.entry(why).or_default() += 1;
         }
-        let failed = cases
-            .iter()
-            .filter(|case| matches!(case.outcome, Outcome::Fail { .. }));
+        let failed = cases.iter().filter(|case| matches!(case.outcome, Outcome::Fail { .. }));
         Self {
             outcome: match () {
                 () if total.errors > 0 => CellVerdict::Error,
@@ -275,9 +258,7 @@ impl Cell {
         for name in &self.missed_in {
             let case = named(claim, name)?;
             let touches = || !adapter.touching && only_touch(subject, &case);
-            let why = adapter
-                .disclaims(name)
-                .or_else(|| touches().then_some(ONLY_TOUCHING));
+            let why = adapter.disclaims(name).or_else(|| touches().then_some(ONLY_TOUCHING));
             match why {
                 None => claimed.push(case),
                 Some(why) => {
@@ -294,9 +275,7 @@ impl Cell {
         let shown = shown.into_iter().min_by_key(Case::pairs);
         self.smallest = shown.and_then(|case| {
             let mut tries = (0..TRIES).map(|_| shrink(subject, &case, SHRINK));
-            tries
-                .find_map(|smallest| smallest)
-                .map(|it| Counter::of(&it, adapter))
+            tries.find_map(|smallest| smallest).map(|it| Counter::of(&it, adapter))
         });
         // An answer that differs from run to run has no smallest case.
         let unstable =
@@ -326,10 +305,7 @@ fn only_touch(subject: &dyn Subject, case: &Case) -> bool {
         for (number, (frame, list)) in case.frames.iter().zip(lists).enumerate() {
             let required = truth.pairs(frame).unwrap_or_default().into_iter();
             let lost = required.filter(|pair| list.binary_search(pair).is_err());
-            missed.extend(lost.map(|pair| Miss {
-                frame: number,
-                pair,
-            }));
+            missed.extend(lost.map(|pair| Miss { frame: number, pair }));
         }
         missed
     };
@@ -348,20 +324,11 @@ fn only_touch(subject: &dyn Subject, case: &Case) -> bool {
 impl Counter {
     fn of(smallest: &SmallestCase, adapter: &Adapter) -> Self {
         let files = counter_example(smallest).unwrap_or_default();
-        let case = files.first().map_or_else(String::new, |(_, bytes)| {
-            String::from_utf8_lossy(bytes).into_owned()
-        });
-        let says = smallest
-            .to_string()
-            .lines()
-            .map(|line| line.trim().to_owned())
-            .collect();
-        Self {
-            from: smallest.from.clone(),
-            says,
-            case,
-            page: picture(smallest, adapter),
-        }
+        let case = files
+            .first()
+            .map_or_else(String::new, |(_, bytes)| String::from_utf8_lossy(bytes).into_owned());
+        let says = smallest.to_string().lines().map(|line| line.trim().to_owned()).collect();
+        Self { from: smallest.from.clone(), says, case, page: picture(smallest, adapter) }
     }
 }
 

@@ -91,16 +91,8 @@ fn boxes(case: &Case) -> Result<Vec<Answer>, TimingError> {
         let ns = start.elapsed().as_nanos() as u64;
         let is_pair =
             |pair: &[u32; 2]| pair.iter().any(|&body| frame.bodies.dynamic[body as usize]);
-        let pairs = culler
-            .pairs()
-            .sorted()
-            .into_iter()
-            .filter(is_pair)
-            .collect();
-        answers.push(Answer {
-            pairs,
-            ns: Some(ns),
-        });
+        let pairs = culler.pairs().sorted().into_iter().filter(is_pair).collect();
+        answers.push(Answer { pairs, ns: Some(ns) });
     }
     Ok(answers)
 }

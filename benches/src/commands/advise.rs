@@ -41,10 +41,7 @@ pub struct Args {
 /// An invalid scene.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let file = args.scene.read()?;
-    let tried = CandidateFilter {
-        finder: args.scene.finder(),
-        axes: args.scene.axes(),
-    };
+    let tried = CandidateFilter { finder: args.scene.finder(), axes: args.scene.axes() };
     let advice = advise(&file, tried, 1e-9 * args.narrow_ns, args.machine.tier())?
         .ok_or_else(|| miette!("nothing could be timed"))?;
     match args.format {
@@ -56,15 +53,9 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 
 fn text(advice: &Advice) -> String {
     let us = |seconds: f64| format!("{:.1} µs", 1e6 * seconds);
-    let of = |name: &str| {
-        advice
-            .candidates
-            .iter()
-            .find(|candidate| candidate.name == name)
-    };
-    let spheres = of("sphere").map_or(String::new(), |spheres| {
-        format!("; spheres alone take {}", us(spheres.total))
-    });
+    let of = |name: &str| advice.candidates.iter().find(|candidate| candidate.name == name);
+    let spheres = of("sphere")
+        .map_or(String::new(), |spheres| format!("; spheres alone take {}", us(spheres.total)));
     let sum = of(&advice.best).map_or(String::new(), |best| {
         format!(
             ": {} of culling + {:.1} pairs × {:.0} ns = {} per frame{spheres}",
@@ -106,18 +97,8 @@ fn text(advice: &Advice) -> String {
         table(&advice.candidates),
         table(&advice.finders),
     );
-    if let Some(WorldTimes {
-        variant,
-        culler,
-        world,
-        ..
-    }) = &advice.world
-    {
-        let way = if world.mean < culler.mean {
-            "Use"
-        } else {
-            "Don't use"
-        };
+    if let Some(WorldTimes { variant, culler, world, .. }) = &advice.world {
+        let way = if world.mean < culler.mean { "Use" } else { "Don't use" };
         text = format!(
             "{text}\n\n{way} a World, which is given moved bodies and keeps the pairs of all others: {variant} takes {} there, \
              and {} in a Culler.",
@@ -132,15 +113,7 @@ fn text(advice: &Advice) -> String {
 }
 
 fn table(candidates: &[Candidate]) -> String {
-    let header = [
-        "variant",
-        "warm µs",
-        "±",
-        "pairs",
-        "total µs",
-        "above the best, µs",
-        "±",
-    ];
+    let header = ["variant", "warm µs", "±", "pairs", "total µs", "above the best, µs", "±"];
     rows(&header, candidates, |candidate: &Candidate| {
         let us = |seconds: f64| format!("{:.1}", 1e6 * seconds);
         vec![
@@ -158,14 +131,7 @@ fn table(candidates: &[Candidate]) -> String {
 
 /// The advice as a scene file's table, as flags, and as Rust.
 fn to_paste(cull: &CullSettings, hulls: bool) -> String {
-    let CullSettings {
-        strategy,
-        pairs,
-        k,
-        axes,
-        overlap,
-        ..
-    } = cull;
+    let CullSettings { strategy, pairs, k, axes, overlap, .. } = cull;
     let mut toml = format!("[cull]\nstrategy = \"{strategy}\"\npairs = \"{pairs}\"\n");
     let mut flags = format!("--strategy {strategy} --pairs {pairs}");
     let mut rust = format!(
@@ -189,9 +155,7 @@ fn to_paste(cull: &CullSettings, hulls: bool) -> String {
 }
 
 fn nanoseconds(text: &str) -> Result<f64, String> {
-    let value: f64 = text
-        .parse()
-        .map_err(|_| "expected nanoseconds, as in 200".to_owned())?;
+    let value: f64 = text.parse().map_err(|_| "expected nanoseconds, as in 200".to_owned())?;
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {
@@ -250,15 +214,10 @@ mod tests {
         }
         assert!(text.contains("--k 26 --axes model --overlap one-sided"));
         assert!(text.contains("convex hulls"));
-        let boxes = CullSettings {
-            strategy: Strategy::Aabb,
-            ..CullSettings::default()
-        };
+        let boxes = CullSettings { strategy: Strategy::Aabb, ..CullSettings::default() };
         let text = to_paste(&boxes, false);
         let code = compiled!(
-            sdop::Culler::builder()
-                .strategy(sdop::Strategy::Aabb)
-                .finder(sdop::Finder::Auto)
+            sdop::Culler::builder().strategy(sdop::Strategy::Aabb).finder(sdop::Finder::Auto)
         );
         assert!(has(&text, code), "{text}");
         assert!(!text.contains("k =") && !text.contains("hulls"), "{text}");

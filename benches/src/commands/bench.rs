@@ -82,13 +82,7 @@ fn outcome(table: &[ContestantTiming]) -> Outcome {
 }
 
 fn page(table: &[ContestantTiming], args: &Args) -> String {
-    let header = [
-        "contestant",
-        "judged",
-        "pairs",
-        "median ns per frame",
-        "clock",
-    ];
+    let header = ["contestant", "judged", "pairs", "median ns per frame", "clock"];
     let line = |row: &ContestantTiming| {
         let judged = match &row.outcome {
             CaseOutcome::Pass => "pass".to_owned(),
@@ -96,16 +90,8 @@ fn page(table: &[ContestantTiming], args: &Args) -> String {
             CaseOutcome::Skipped { why } => format!("skipped: {why}"),
             CaseOutcome::Error { trouble } => format!("ERROR: {trouble}"),
         };
-        let time = row
-            .median_ns
-            .map_or_else(|| "none".to_owned(), |ns| ns.to_string());
-        vec![
-            row.name.clone(),
-            judged,
-            row.reported.to_string(),
-            time,
-            row.clock.to_owned(),
-        ]
+        let time = row.median_ns.map_or_else(|| "none".to_owned(), |ns| ns.to_string());
+        vec![row.name.clone(), judged, row.reported.to_string(), time, row.clock.to_owned()]
     };
     format!(
         "claim {}, {} frames, {} turns\n{}",

@@ -40,11 +40,7 @@ pub struct Args {
     #[arg(long)]
     check: bool,
     /// The table of claims
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "benches/adapters/claims.toml"
-    )]
+    #[arg(long, value_name = "FILE", default_value = "benches/adapters/claims.toml")]
     claims: PathBuf,
     /// Time the libraries and ours on this scene instead of judging them, and write times.json
     #[arg(long, value_name = "SCENE", conflicts_with_all = ["case", "check", "times"])]
@@ -143,15 +139,8 @@ fn write_json(path: &Path, value: &impl serde::Serialize) -> miette::Result<()> 
 fn chosen<'a>(args: &Args, claims: &'a Claims) -> miette::Result<Vec<&'a Adapter>> {
     let known = |name: &&String| claims.adapter.iter().any(|adapter| adapter.name == **name);
     if let Some(name) = args.names.iter().find(|name| !known(name)) {
-        let names: Vec<&str> = claims
-            .adapter
-            .iter()
-            .map(|adapter| adapter.name.as_str())
-            .collect();
-        return Err(miette!(
-            help = format!("one of: {}", names.join(", ")),
-            "no adapter `{name}`"
-        ));
+        let names: Vec<&str> = claims.adapter.iter().map(|adapter| adapter.name.as_str()).collect();
+        return Err(miette!(help = format!("one of: {}", names.join(", ")), "no adapter `{name}`"));
     }
     let wanted = |adapter: &&Adapter| {
         (args.names.is_empty() || args.names.contains(&adapter.name))
@@ -160,17 +149,16 @@ fn chosen<'a>(args: &Args, claims: &'a Claims) -> miette::Result<Vec<&'a Adapter
     Ok(claims.adapter.iter().filter(wanted).collect())
 }
 
-const HEADER: [&str; 8] = [
-    "adapter", "version", "claim", "cases", "of", "required", "missed", "verdict",
-];
+const HEADER: [&str; 8] =
+    ["adapter", "version", "claim", "cases", "of", "required", "missed", "verdict"];
 
 fn line(row: &Row) -> Vec<String> {
     let (adapter, total) = (&row.adapter, &row.total);
     let judged = total.passed + total.failed;
-    let verdict = row.how.as_ref().map_or_else(
-        || row.outcome.name().to_owned(),
-        |how| format!("not run: {how}"),
-    );
+    let verdict = row
+        .how
+        .as_ref()
+        .map_or_else(|| row.outcome.name().to_owned(), |how| format!("not run: {how}"));
     vec![
         adapter.name.clone(),
         row.found.clone(),
@@ -191,28 +179,15 @@ fn changed(row: &Row) -> Option<String> {
     }
     let [found, known] = [&row.found, &adapter.version];
     if found != known {
-        return Some(format!(
-            "{name} is version {found}, and the table has {known}"
-        ));
+        return Some(format!("{name} is version {found}, and the table has {known}"));
     }
     let (found, known) = (row.outcome, &adapter.verdict);
-    let reasons = || {
-        row.cells
-            .iter()
-            .filter(|cell| cell.outcome == CellVerdict::Error)
-    };
-    let why: Vec<&str> = reasons()
-        .flat_map(|cell| cell.reasons.keys())
-        .take(2)
-        .map(String::as_str)
-        .collect();
+    let reasons = || row.cells.iter().filter(|cell| cell.outcome == CellVerdict::Error);
+    let why: Vec<&str> =
+        reasons().flat_map(|cell| cell.reasons.keys()).take(2).map(String::as_str).collect();
     (found.name() != known).then(|| {
-        format!(
-            "{name}: {}, and the table has {known} {}",
-            found.name(),
-            why.join(", ")
-        )
-        .trim_end()
-        .to_owned()
+        format!("{name}: {}, and the table has {known} {}", found.name(), why.join(", "))
+            .trim_end()
+            .to_owned()
     })
 }

@@ -95,12 +95,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     bar.finish_and_clear();
     if !to_stdout {
-        print(&format!(
-            "{} cases of the claim {} in {}",
-            written,
-            claim,
-            out.display()
-        ))?;
+        print(&format!("{} cases of the claim {} in {}", written, claim, out.display()))?;
     }
     Ok(Outcome::Passed)
 }

@@ -104,8 +104,7 @@ pub fn text(path: &std::path::Path, most: u64) -> miette::Result<Vec<u8>> {
     } else {
         sdop::files::read(path, most)
     };
-    read.into_diagnostic()
-        .wrap_err_with(|| format!("cannot read {}", path.display()))
+    read.into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display()))
 }
 
 /// The answers in a text, one per line.
@@ -113,9 +112,7 @@ pub fn text(path: &std::path::Path, most: u64) -> miette::Result<Vec<u8>> {
 /// # Errors
 /// A line that is not a valid answer, or more lines than frames.
 pub fn said(wire: Wire, text: &[u8], frames: usize) -> Result<Vec<Answer>, StopReason> {
-    let lines = text
-        .split(|byte| *byte == b'\n')
-        .filter(|line| !line.trim_ascii().is_empty());
+    let lines = text.split(|byte| *byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
     let mut answers = Vec::new();
     for line in lines {
         if answers.len() == frames {

@@ -79,9 +79,7 @@ fn why(comparison: &RecordComparison, fail_slower: Option<f64>) -> Option<String
         return Some(format!("{differences} results differ that should be equal"));
     }
     let limit = fail_slower.filter(|percent| slowest > *percent)?;
-    Some(format!(
-        "a time is slower by {slowest:.1} %, more than {limit} %"
-    ))
+    Some(format!("a time is slower by {slowest:.1} %, more than {limit} %"))
 }
 
 /// Where a record can be read.
@@ -132,9 +130,8 @@ fn verdict(change: &MeasuredChange) -> &'static str {
 }
 
 fn cells(change: &MeasuredChange) -> Vec<String> {
-    let interval = change
-        .interval
-        .map_or_else(String::new, |[low, high]| format!("{low:.2} to {high:.2}"));
+    let interval =
+        change.interval.map_or_else(String::new, |[low, high]| format!("{low:.2} to {high:.2}"));
     vec![
         format!("{}: {}", change.file, change.row),
         change.column.clone(),
@@ -149,11 +146,7 @@ fn head(comparison: &RecordComparison) -> String {
     let mut out = format!(
         "{a} and {b}: {} files equal to the bit{}",
         comparison.equal.len(),
-        if comparison.equal.is_empty() {
-            ""
-        } else {
-            ": "
-        }
+        if comparison.equal.is_empty() { "" } else { ": " }
     );
     out.push_str(&comparison.equal.join(", "));
     out.push('\n');
@@ -173,11 +166,7 @@ fn head(comparison: &RecordComparison) -> String {
         let _ = writeln!(out, "note: {note}");
     }
     if comparison.notes.len() > MOST_NOTES {
-        let _ = writeln!(
-            out,
-            "and {} notes more",
-            comparison.notes.len() - MOST_NOTES
-        );
+        let _ = writeln!(out, "and {} notes more", comparison.notes.len() - MOST_NOTES);
     }
     out
 }
@@ -187,22 +176,13 @@ const MOST_NOTES: usize = 10;
 
 /// How many times are listed of how many.
 fn tail(comparison: &RecordComparison, most: usize) -> String {
-    let same = comparison
-        .changes
-        .iter()
-        .filter(|change| change.same == Some(true));
+    let same = comparison.changes.iter().filter(|change| change.same == Some(true));
     let (all, same) = (comparison.changes.len(), same.count());
     let listed = most.min(all);
     format!("{all} times compared, {same} the same within their intervals, {listed} listed")
 }
 
-const HEADER: [&str; 5] = [
-    "measurement",
-    "column",
-    "second / first",
-    "interval",
-    "verdict",
-];
+const HEADER: [&str; 5] = ["measurement", "column", "second / first", "interval", "verdict"];
 
 fn table(comparison: &RecordComparison, most: usize) -> String {
     let listed = &comparison.changes[..most.min(comparison.changes.len())];

@@ -24,10 +24,7 @@ use super::{Outcome, prices};
 
 /// Frames per pass, unless the scene or a flag has fewer.
 const DEFAULT_FRAMES: u32 = 200;
-const EFFORT: Effort = Effort {
-    turns: 1,
-    builds: 9,
-};
+const EFFORT: Effort = Effort { turns: 1, builds: 9 };
 
 /// Predict each strategy's cost by the formula, and measure it
 ///
@@ -116,10 +113,7 @@ fn measure(args: &Args) -> miette::Result<Vec<CostReport>> {
     let plan = CostPlan {
         strategies,
         passes: args.seeds,
-        frames: args
-            .scene
-            .frames()
-            .unwrap_or(DEFAULT_FRAMES.min(scene.frames)),
+        frames: args.scene.frames().unwrap_or(DEFAULT_FRAMES.min(scene.frames)),
         effort: EFFORT,
         tier: args.machine.tier(),
     };
@@ -130,10 +124,7 @@ fn measure(args: &Args) -> miette::Result<Vec<CostReport>> {
 }
 
 fn of(report: &CostReport, regime: Regime) -> impl Iterator<Item = &Cost> {
-    report
-        .costs
-        .iter()
-        .filter(move |cost| cost.regime == regime)
+    report.costs.iter().filter(move |cost| cost.regime == regime)
 }
 
 fn text(report: &CostReport) -> String {
@@ -144,14 +135,7 @@ fn text(report: &CostReport) -> String {
 }
 
 fn write_text(out: &mut String, report: &CostReport) -> std::fmt::Result {
-    let CostReport {
-        scene,
-        bodies,
-        frames,
-        scene_frames,
-        seeds,
-        ..
-    } = report;
+    let CostReport { scene, bodies, frames, scene_frames, seeds, .. } = report;
     writeln!(
         out,
         "{scene}: {bodies} bodies, {} passes of {frames} frames; {}, 1 thread",
@@ -168,9 +152,8 @@ fn write_text(out: &mut String, report: &CostReport) -> std::fmt::Result {
         writeln!(out, "{warning}")?;
     }
     let level = report.costs.first().and_then(|cost| cost.level);
-    let level = level.map_or_else(String::new, |level: CacheLevel| {
-        format!(", working set in {level}")
-    });
+    let level =
+        level.map_or_else(String::new, |level: CacheLevel| format!(", working set in {level}"));
     for &regime in Regime::ALL {
         writeln!(
             out,
@@ -180,11 +163,7 @@ fn write_text(out: &mut String, report: &CostReport) -> std::fmt::Result {
         )?;
         write_failures(out, report, regime)?;
     }
-    writeln!(
-        out,
-        "\nCounts and terms of warm frames, by volume\n{}",
-        volume_rows(report)
-    )?;
+    writeln!(out, "\nCounts and terms of warm frames, by volume\n{}", volume_rows(report))?;
     for &regime in Regime::ALL {
         let of = |price: &&PriceRow| price.regime == regime;
         let prices: Vec<_> = report.prices.iter().filter(of).collect();
@@ -192,17 +171,13 @@ fn write_text(out: &mut String, report: &CostReport) -> std::fmt::Result {
             out,
             "\nPrices for {regime} frames{level}, from {} calibration scenes\n{}",
             design::SCENES,
-            rows(&prices::COLUMNS, &prices, |price| prices::cells(
-                price,
-                |e| plus_minus(e.mean, e.half_width)
-            ))
+            rows(&prices::COLUMNS, &prices, |price| prices::cells(price, |e| plus_minus(
+                e.mean,
+                e.half_width
+            )))
         )?;
     }
-    writeln!(
-        out,
-        "\nWith construction: ms for all {frames} frames, warm\n{}",
-        total_rows(report)
-    )?;
+    writeln!(out, "\nWith construction: ms for all {frames} frames, warm\n{}", total_rows(report))?;
     writeln!(
         out,
         "A term is its count times its price. Quote a price with the machine, the volume, warm or cold, and the cache.\n\
@@ -250,9 +225,7 @@ fn strategy_rows(report: &CostReport, regime: Regime) -> Table {
     ]);
     for cost in of(report, regime) {
         let us = |seconds: f64| hundredths(1e6 * seconds);
-        let CheckedPrediction {
-            measured, residual, ..
-        } = cost.frame;
+        let CheckedPrediction { measured, residual, .. } = cost.frame;
         let mut row = vec![cost.variant.clone()];
         row.extend([
             us(cost.sum(|t| t.update)),
@@ -295,10 +268,7 @@ fn total_rows(report: &CostReport) -> Table {
 }
 
 fn percents(residual: &Estimate) -> [String; 2] {
-    [
-        format!("{:+.1} %", 100.0 * residual.mean),
-        format!("{:.1}", 100.0 * residual.half_width),
-    ]
+    [format!("{:+.1} %", 100.0 * residual.mean), format!("{:.1}", 100.0 * residual.half_width)]
 }
 
 /// The counts of each volume of each strategy, and the resulting terms.
@@ -342,11 +312,7 @@ fn volume_rows(report: &CostReport) -> Table {
 }
 
 fn plus_minus(mean: f64, half_width: f64) -> String {
-    if half_width.is_finite() {
-        format!("{mean:.2} ± {half_width:.2}")
-    } else {
-        hundredths(mean)
-    }
+    if half_width.is_finite() { format!("{mean:.2} ± {half_width:.2}") } else { hundredths(mean) }
 }
 
 fn hundredths(value: f64) -> String {

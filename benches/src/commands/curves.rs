@@ -105,11 +105,7 @@ where
             drawn.draw_series(LineSeries::new(points(), line))?
         };
         series.label(name).legend(move |at| {
-            let ends = if stroke.is_dashed {
-                [(3, 0), (13, 0)]
-            } else {
-                [(0, 0), (16, 0)]
-            };
+            let ends = if stroke.is_dashed { [(3, 0), (13, 0)] } else { [(0, 0), (16, 0)] };
             EmptyElement::at(at) + PathElement::new(ends, line) + stroke.mark((8, 0))
         });
         drawn.draw_series(points().map(|at| stroke.mark(at)))?;
@@ -134,10 +130,7 @@ pub fn page(
 ) -> miette::Result<String> {
     let mut text = String::new();
     let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-    let drawn = area
-        .fill(&WHITE)
-        .map_err(Into::into)
-        .and_then(|()| draw(&area));
+    let drawn = area.fill(&WHITE).map_err(Into::into).and_then(|()| draw(&area));
     drop(area);
     drawn.map_err(|error: Box<dyn Error>| miette::miette!("cannot draw: {error}"))?;
     Ok(text)

@@ -30,9 +30,7 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> miette::Result<()> {
         }
         sdop::files::write(path, &bytes)
     };
-    write()
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot write {}", path.display()))
+    write().into_diagnostic().wrap_err_with(|| format!("cannot write {}", path.display()))
 }
 
 /// Reads a text file within the usual size limit.

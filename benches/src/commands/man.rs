@@ -30,15 +30,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let commands = program.get_subcommands().cloned();
     let pages: Vec<clap::Command> = std::iter::once(program.clone()).chain(commands).collect();
     for command in &pages {
-        let name = command
-            .get_display_name()
-            .unwrap_or_else(|| command.get_name());
+        let name = command.get_display_name().unwrap_or_else(|| command.get_name());
         let path = args.out.join(format!("{name}.1"));
         let mut page = Vec::new();
-        Man::new(command.clone())
-            .title(name)
-            .render(&mut page)
-            .into_diagnostic()?;
+        Man::new(command.clone()).title(name).render(&mut page).into_diagnostic()?;
         write(&path, page)?;
     }
     print(&format!("{} pages in {}", pages.len(), args.out.display()))?;

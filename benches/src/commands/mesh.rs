@@ -74,10 +74,7 @@ struct MeshReport {
 /// # Errors
 /// A mesh that can't be read or written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let options = ReadOptions {
-        tri_format: args.tri_format,
-        max_bytes: args.files.max_bytes(),
-    };
+    let options = ReadOptions { tri_format: args.tri_format, max_bytes: args.files.max_bytes() };
     let mut mesh = read(&args.file, &options).or_report()?;
     if let Some(most) = args.triangles {
         mesh = decimate(&mesh, most as usize);
@@ -93,10 +90,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<MeshReport> {
     let topology = Topology::of(mesh);
     let total = topology.total();
-    let spec = ShapeSpec {
-        origin: Origin::File,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { origin: Origin::File, ..ShapeSpec::default() };
     let shape = Shape::build(&of_used_vertices(mesh), &spec).or_report()?;
     let hull = Hull::of(&shape.vertices);
     let centre = shape.ball.centre;
@@ -131,10 +125,7 @@ fn of_used_vertices(mesh: &TriangleMesh) -> TriangleMesh {
         new_index[old as usize] = new as u32; // no more than there were
     }
     let mut mesh = mesh.clone();
-    mesh.vertices = used
-        .iter()
-        .map(|&old| mesh.vertices[old as usize])
-        .collect();
+    mesh.vertices = used.iter().map(|&old| mesh.vertices[old as usize]).collect();
     for index in mesh.triangles.as_flattened_mut() {
         *index = new_index[*index as usize];
     }
@@ -185,10 +176,7 @@ fn write_text(out: &mut String, report: &MeshReport) -> std::fmt::Result {
     )?;
     if report.offset != [0.0; 3] {
         let [x, y, z] = report.offset;
-        writeln!(
-            out,
-            "far from its origin: vertices are kept about ({x}, {y}, {z})"
-        )?;
+        writeln!(out, "far from its origin: vertices are kept about ({x}, {y}, {z})")?;
     }
     writeln!(
         out,

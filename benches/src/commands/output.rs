@@ -86,9 +86,7 @@ pub fn print(text: &str) -> miette::Result<()> {
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
         // `sdop … | head` has read enough.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        result => result
-            .into_diagnostic()
-            .wrap_err("cannot write to standard output"),
+        result => result.into_diagnostic().wrap_err("cannot write to standard output"),
     }
 }
 
@@ -171,9 +169,7 @@ pub fn csv_text(value: Value) -> miette::Result<String> {
             let found = row.iter().find(|(key, _)| key == name);
             found.map_or("", |(_, value)| value.as_str())
         };
-        writer
-            .write_record(header.iter().map(cell))
-            .into_diagnostic()?;
+        writer.write_record(header.iter().map(cell)).into_diagnostic()?;
     }
     let bytes = writer.into_inner().into_diagnostic()?;
     String::from_utf8(bytes).into_diagnostic()

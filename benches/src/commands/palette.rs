@@ -6,17 +6,11 @@ use plotters::style::RGBColor;
 
 /// The terms of the formula: updates, finding, tests. Light for spheres, middle for or-DOPs, dark
 /// for boxes and k-DOPs.
-pub const UPDATES: [RGBColor; 3] = [
-    RGBColor(235, 199, 217),
-    RGBColor(204, 121, 167),
-    RGBColor(133, 62, 102),
-];
+pub const UPDATES: [RGBColor; 3] =
+    [RGBColor(235, 199, 217), RGBColor(204, 121, 167), RGBColor(133, 62, 102)];
 pub const FINDING: RGBColor = RGBColor(170, 170, 170);
-pub const TESTS: [RGBColor; 3] = [
-    RGBColor(197, 187, 235),
-    RGBColor(123, 99, 207),
-    RGBColor(64, 45, 140),
-];
+pub const TESTS: [RGBColor; 3] =
+    [RGBColor(197, 187, 235), RGBColor(123, 99, 207), RGBColor(64, 45, 140)];
 
 /// The strategies of the paper, of different lightness for the colour-blind.
 pub const SPHERE: RGBColor = RGBColor(86, 180, 233);
@@ -26,12 +20,8 @@ pub const BATCH: RGBColor = RGBColor(158, 150, 0);
 pub const ORDOPS: RGBColor = RGBColor(115, 63, 16);
 
 /// Sequential S-DOP by k, from few half-spaces to many.
-pub const BY_K: [RGBColor; 4] = [
-    RGBColor(166, 219, 160),
-    RGBColor(90, 174, 97),
-    SEQUENTIAL,
-    RGBColor(0, 68, 27),
-];
+pub const BY_K: [RGBColor; 4] =
+    [RGBColor(166, 219, 160), RGBColor(90, 174, 97), SEQUENTIAL, RGBColor(0, 68, 27)];
 
 pub const GREY: RGBColor = RGBColor(110, 110, 110);
 /// Data that matter less.
@@ -77,15 +67,9 @@ mod tests {
     fn a_colour_has_one_meaning() {
         let page = of_page();
         let pairs = ["reported", "meets", "missed", "cells", "pair-0", "pair-1"];
-        let mut meanings: Vec<(&str, RGBColor)> = page
-            .into_iter()
-            .filter(|(name, _)| pairs.contains(name))
-            .collect();
-        assert_eq!(
-            meanings.len(),
-            2 * pairs.len() - 1,
-            "orange is one on both grounds"
-        );
+        let mut meanings: Vec<(&str, RGBColor)> =
+            page.into_iter().filter(|(name, _)| pairs.contains(name)).collect();
+        assert_eq!(meanings.len(), 2 * pairs.len() - 1, "orange is one on both grounds");
         for (names, colours) in [
             (["light updates", "updates", "dark updates"], UPDATES),
             (["light tests", "tests", "dark tests"], TESTS),
@@ -102,10 +86,7 @@ mod tests {
         meanings.extend(BY_K.map(|colour| ("sequential", colour)));
         for (at, (name, colour)) in meanings.iter().enumerate() {
             for (other, own) in &meanings[..at] {
-                assert!(
-                    name == other || distance(*colour, *own) > 40.0,
-                    "{name} is like {other}"
-                );
+                assert!(name == other || distance(*colour, *own) > 40.0, "{name} is like {other}");
             }
         }
     }

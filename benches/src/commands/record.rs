@@ -185,9 +185,7 @@ fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Re
     let mut manifest =
         Manifest::describe(&part, experiment.name, command, experiment.deterministic)?;
     manifest.machine = Some(Machine::here(args.machine.tier()));
-    manifest.load = before
-        .zip(Load::now())
-        .map(|(before, after)| [before, after]);
+    manifest.load = before.zip(Load::now()).map(|(before, after)| [before, after]);
     manifest.seconds = Some(seconds);
     finish(args, experiment, manifest, directory)
 }
@@ -208,9 +206,7 @@ fn prepare(directory: &Path) -> miette::Result<PathBuf> {
         }
         std::fs::create_dir_all(&part)
     };
-    prepare()
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot write {}", part.display()))?;
+    prepare().into_diagnostic().wrap_err_with(|| format!("cannot write {}", part.display()))?;
     Ok(part)
 }
 
@@ -231,19 +227,13 @@ fn finish(
         }
         std::fs::rename(&part, directory)
     };
-    replace()
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot write {}", directory.display()))
+    replace().into_diagnostic().wrap_err_with(|| format!("cannot write {}", directory.display()))
 }
 
 /// What a step's command gets beyond its own arguments: the SIMD level too, which the record names,
 /// so that it is what ran.
 fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> {
-    let behind = |flag: &&&str| {
-        args.more
-            .iter()
-            .any(|argument| argument.starts_with(**flag))
-    };
+    let behind = |flag: &&&str| args.more.iter().any(|argument| argument.starts_with(**flag));
     if let Some(flag) = SHARING.iter().chain(&["--simd"]).find(behind) {
         return Err(miette!(
             help = "put it before the --: it decides what is recorded",
@@ -253,10 +243,7 @@ fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> 
     let mut more = args.more.clone();
     if let Some(tier) = args.machine.asked() {
         let ours = |step: &ExperimentStep| {
-            matches!(
-                step,
-                ExperimentStep::Sdop(_) | ExperimentStep::SdopPrints(..)
-            )
+            matches!(step, ExperimentStep::Sdop(_) | ExperimentStep::SdopPrints(..))
         };
         if !experiment.steps.iter().all(ours) {
             return Err(miette!(
@@ -301,9 +288,7 @@ fn complete(
             command.arg("--out").arg(out);
         }
     }
-    command
-        .args(further(args, experiment)?)
-        .env(COMMAND, command_line(experiment, args));
+    command.args(further(args, experiment)?).env(COMMAND, command_line(experiment, args));
     Ok((command, file))
 }
 
@@ -335,9 +320,8 @@ fn adopt(
         if let Some(command) = value["command"].as_str() {
             command.clone_into(&mut manifest.command);
         }
-        manifest.machine = serde_json::from_value(value["machine"].clone())
-            .ok()
-            .or(manifest.machine);
+        manifest.machine =
+            serde_json::from_value(value["machine"].clone()).ok().or(manifest.machine);
     }
     if manifest.command.is_empty() {
         manifest.command =

@@ -125,9 +125,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         .into_iter()
         .filter(|page| args.root.join(page).is_file())
         .map(|page| (page, None));
-    let made = wholes
-        .iter()
-        .map(|(page, template)| (page.as_str(), Some(template.as_str())));
+    let made = wholes.iter().map(|(page, template)| (page.as_str(), Some(template.as_str())));
     let pages: Vec<(&str, Option<&str>)> = written.chain(made).collect();
     for (page, template) in &pages {
         // A separate store per page records which records it quotes.
@@ -141,9 +139,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     let differing = quantities.given_differently();
     problems.extend(
-        differing
-            .iter()
-            .map(|quantity| format!("two ways to give one number: {quantity}")),
+        differing.iter().map(|quantity| format!("two ways to give one number: {quantity}")),
     );
     if args.quantities {
         list(&quantities)?;
@@ -159,11 +155,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     let table = rows(&["problem"], &problems, |problem| vec![problem.clone()]);
     print(&table.to_string())?;
-    Ok(Outcome::Failed(format!(
-        "{} problems, the first: {}",
-        problems.len(),
-        problems[0]
-    )))
+    Ok(Outcome::Failed(format!("{} problems, the first: {}", problems.len(), problems[0])))
 }
 
 /// Files of a directory, and of those in it, by their path from `root`. A repository may have none.
@@ -193,18 +185,10 @@ fn list(quantities: &Quantities) -> miette::Result<()> {
     let found = quantities.on_several_pages();
     let table = rows(&["number", "as", "pages"], &found, |quantity| {
         let texts: Vec<&str> = quantity.texts.keys().map(String::as_str).collect();
-        let pages: std::collections::BTreeSet<&str> = quantity
-            .texts
-            .values()
-            .flatten()
-            .map(String::as_str)
-            .collect();
+        let pages: std::collections::BTreeSet<&str> =
+            quantity.texts.values().flatten().map(String::as_str).collect();
         let pages: Vec<&str> = pages.into_iter().collect();
-        vec![
-            quantity.value.to_string(),
-            texts.join(" | "),
-            pages.join(", "),
-        ]
+        vec![quantity.value.to_string(), texts.join(" | "), pages.join(", ")]
     });
     print(&table.to_string())
 }
@@ -234,9 +218,9 @@ fn one_page(
     let path = args.root.join(page);
     let text = match std::fs::read_to_string(&path) {
         Err(_) if template.is_some() => String::new(), // not made yet
-        text => text
-            .into_diagnostic()
-            .wrap_err_with(|| format!("cannot read {}", path.display()))?,
+        text => {
+            text.into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display()))?
+        }
     };
     let rendered = match template {
         Some(template) => pages::whole(page, template, sources),

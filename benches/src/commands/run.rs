@@ -172,17 +172,8 @@ fn report<'a>(
     conditions: Conditions,
     shared: RankResults<'a>,
 ) -> RunReport<'a> {
-    let CullSettings {
-        strategy,
-        pairs,
-        k,
-        axes,
-        overlap,
-        updates,
-        interest,
-        budget,
-        ..
-    } = &scene.cull;
+    let CullSettings { strategy, pairs, k, axes, overlap, updates, interest, budget, .. } =
+        &scene.cull;
     RunReport {
         scene: &scene.name,
         seed: scene.seed,
@@ -200,10 +191,7 @@ fn report<'a>(
         simd: tier.name(),
         threads,
         counters: counters(*strategy, &summary.counters),
-        seconds: RunTerms {
-            culling: summary.seconds,
-            border: shared.map(|(border, _)| border),
-        },
+        seconds: RunTerms { culling: summary.seconds, border: shared.map(|(border, _)| border) },
         frame_seconds: summary.frame_seconds,
         conditions,
         effects: summary.effects.iter().map(effect_line).collect(),
@@ -215,11 +203,7 @@ fn report<'a>(
 }
 
 fn effect_line(effect: &EffectReport) -> EffectLine {
-    EffectLine {
-        name: effect.name,
-        steps: effect.steps,
-        seconds: effect.seconds,
-    }
+    EffectLine { name: effect.name, steps: effect.steps, seconds: effect.seconds }
 }
 
 /// The volume of a strategy that has neither spheres nor or-DOPs.
@@ -288,14 +272,9 @@ fn write_text(
     writeln!(out, "{}", stages(&report.seconds, report.frames))?;
     let Percentiles { p50, p99, most } = report.frame_seconds;
     let [p50, p99, most] = [p50, p99, most].map(|seconds| 1e3 * seconds);
-    writeln!(
-        out,
-        "culling per frame, ms: p50 {p50:.3}, p99 {p99:.3}, most {most:.3}"
-    )?;
+    writeln!(out, "culling per frame, ms: p50 {p50:.3}, p99 {p99:.3}, most {most:.3}")?;
     writeln!(out, "{}", volumes(scene.cull.strategy, &summary.counters))?;
-    let Counters {
-        reported, untested, ..
-    } = summary.counters;
+    let Counters { reported, untested, .. } = summary.counters;
     let frames = f64::from(report.frames);
     writeln!(
         out,
@@ -306,9 +285,7 @@ fn write_text(
     writeln!(out, "volumes sha256 {}", report.volumes_sha256)?;
     let hash = match report.pairs_digest {
         None => "– (nothing is culled)",
-        Some(_) => report
-            .pairs_sha256
-            .unwrap_or("– (too many to sort in one place)"),
+        Some(_) => report.pairs_sha256.unwrap_or("– (too many to sort in one place)"),
     };
     writeln!(out, "pairs sha256   {hash}")?;
     if let Some(digest) = report.pairs_digest {
@@ -325,18 +302,11 @@ fn write_text(
 
 /// Seconds per stage. Construction happens once, so it has no time per frame.
 fn stages(seconds: &RunTerms, frames: u32) -> comfy_table::Table {
-    let RunTerms {
-        culling: seconds,
-        border,
-    } = seconds;
+    let RunTerms { culling: seconds, border } = seconds;
     let mut rows = table(&["stage", "seconds", "ns / frame"]);
     rows.add_row(["construct", &format!("{:.6}", seconds.construct), "once"]);
     let border = border.iter().flat_map(|border| {
-        [
-            ("ghosts", border.ghosts),
-            ("migration", border.migration),
-            ("waiting", border.waiting),
-        ]
+        [("ghosts", border.ghosts), ("migration", border.migration), ("waiting", border.waiting)]
     });
     let culling = [
         ("effects", seconds.effects),
@@ -347,11 +317,7 @@ fn stages(seconds: &RunTerms, frames: u32) -> comfy_table::Table {
     ];
     for (stage, value) in culling.into_iter().chain(border) {
         let each = 1e9 * value / f64::from(frames);
-        rows.add_row([
-            stage,
-            format!("{value:.6}").as_str(),
-            format!("{each:.0}").as_str(),
-        ]);
+        rows.add_row([stage, format!("{value:.6}").as_str(), format!("{each:.0}").as_str()]);
     }
     rows
 }
@@ -420,12 +386,7 @@ fn effects(reports: &[EffectReport]) -> comfy_table::Table {
         if effect.listed {
             let each = 1e9 * effect.seconds / effect.visited.max(1) as f64;
             let seconds = format!("{:.6}", effect.seconds);
-            rows.add_row([
-                effect.name,
-                &effect.steps.to_string(),
-                &seconds,
-                &format!("{each:.2}"),
-            ]);
+            rows.add_row([effect.name, &effect.steps.to_string(), &seconds, &format!("{each:.2}")]);
         } else {
             rows.add_row([effect.name, "not simulated", "", ""]);
         }

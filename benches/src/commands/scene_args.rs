@@ -182,9 +182,7 @@ impl CullArgs {
             cull.interest.clone_from(&self.interest);
         }
         let tests = self.budget_tests.map(Budget::Tests);
-        cull.budget = tests
-            .or(self.budget_us.map(Budget::Microseconds))
-            .or(cull.budget);
+        cull.budget = tests.or(self.budget_us.map(Budget::Microseconds)).or(cull.budget);
     }
 }
 
@@ -225,9 +223,7 @@ mod tests {
         let list = interest("0, 5,7").unwrap();
         assert_eq!(list, Interest::Bodies(vec![0, 5, 7]));
         let cone = interest("{ body = 3, direction = [0, 0, 1], half_angle = 30 }").unwrap();
-        let Interest::Cone(cone) = cone else {
-            panic!("a cone")
-        };
+        let Interest::Cone(cone) = cone else { panic!("a cone") };
         assert_eq!(
             (cone.body, cone.direction, cone.half_angle, cone.range),
             (Some(3), [0.0, 0.0, 1.0], 30.0, None)

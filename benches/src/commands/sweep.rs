@@ -98,11 +98,7 @@ impl SweepArgs {
             Ok(())
         };
         units(work, shard.units(header.units), &mut keep)?;
-        let header = Header {
-            shard: Some(shard),
-            line: command(),
-            ..header
-        };
+        let header = Header { shard: Some(shard), line: command(), ..header };
         let name = format!("{}-{}-of-{}.units", header.command, shard.index, shard.of);
         let path = directory.join(name);
         std::fs::create_dir_all(directory)

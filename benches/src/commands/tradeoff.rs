@@ -104,12 +104,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         return Ok(Outcome::Passed);
     }
     let settings = comparison.settings();
-    args.tell(&RecordedTradeoff::new(
-        command(),
-        findings,
-        &settings,
-        before,
-    )?)
+    args.tell(&RecordedTradeoff::new(command(), findings, &settings, before)?)
 }
 
 /// What merged shards give.
@@ -151,11 +146,7 @@ impl Args {
             let paper = self.paper.as_ref().unwrap_or(directory);
             write_all(directory, paper, recorded)?;
         }
-        let text = if self.all {
-            tables::text
-        } else {
-            tables::brief
-        };
+        let text = if self.all { tables::text } else { tables::brief };
         print(recorded, self.format, text)
     }
 }
@@ -172,9 +163,9 @@ fn print(
     match format {
         // A line per number of a variant; the rest is in the other formats.
         Format::Csv => emit(Format::Csv, &csv::lines(result), |_| String::new())?,
-        format => emit_with_reason(format, recorded, why.as_deref(), |recorded| {
-            text(&recorded.result)
-        })?,
+        format => {
+            emit_with_reason(format, recorded, why.as_deref(), |recorded| text(&recorded.result))?
+        }
     }
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
@@ -201,9 +192,7 @@ fn cache() -> Option<PathBuf> {
 
 /// The argument as the JSON of an earlier run, by its name.
 fn recorded(path: &Path) -> Option<&Path> {
-    path.extension()
-        .is_some_and(|ending| ending == "json")
-        .then_some(path)
+    path.extension().is_some_and(|ending| ending == "json").then_some(path)
 }
 
 fn read(path: &Path) -> miette::Result<RecordedTradeoff> {

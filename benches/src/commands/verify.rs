@@ -174,10 +174,7 @@ fn verification(args: &Args) -> miette::Result<Verification> {
         seeds: args.seeds,
         scenes: scenes.iter().map(name).collect(),
         frames: args.frames,
-        tiers: tiers(args)
-            .iter()
-            .map(|tier| tier.name().to_owned())
-            .collect(),
+        tiers: tiers(args).iter().map(|tier| tier.name().to_owned()).collect(),
     })?;
     Ok(run.with_scenes(scenes, deadline))
 }
@@ -255,11 +252,7 @@ fn show(failure: &Failure, out: &Path) -> miette::Result<()> {
     let what = format!(
         "{} {} bodies {i} and {j} ({}, k = {}, {} axes, {}, {}, {}, {} threads)",
         failure.settings.strategy,
-        if failure.missed {
-            "misses"
-        } else {
-            "and all-pairs differ on"
-        },
+        if failure.missed { "misses" } else { "and all-pairs differ on" },
         failure.settings.pairs,
         failure.settings.k,
         failure.settings.axes,

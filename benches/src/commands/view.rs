@@ -81,11 +81,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
             ViewInput::Broken(error) => {
                 let path = args.scene.path();
                 let stem = path.file_stem().unwrap_or(path.as_os_str());
-                (
-                    Page::broken(path, &error),
-                    stem.to_string_lossy().into_owned(),
-                    Some(error),
-                )
+                (Page::broken(path, &error), stem.to_string_lossy().into_owned(), Some(error))
             }
         };
     let written = write(args, &page, &name)?;
@@ -105,10 +101,8 @@ fn culled(args: &Args, show: &ShownRun) -> miette::Result<Vec<ShownStrategy>> {
     };
     culled.push(match beside.parse::<Strategy>() {
         Ok(strategy) => {
-            let settings = CullSettings {
-                strategy,
-                ..show.header.cull.clone().unwrap_or_default()
-            };
+            let settings =
+                CullSettings { strategy, ..show.header.cull.clone().unwrap_or_default() };
             show.cull(&settings, args.machine.tier()).or_report()?
         }
         Err(unknown) if !Path::new(beside).exists() => {
@@ -153,11 +147,8 @@ fn open(path: &Path) -> miette::Result<()> {
         "windows" => "explorer",
         _ => "xdg-open",
     };
-    let started = Command::new(opener)
-        .arg(path)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn();
+    let started =
+        Command::new(opener).arg(path).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
     started.map(drop).map_err(|cause| {
         miette!(
             help = "open it in any browser",
@@ -169,27 +160,16 @@ fn open(path: &Path) -> miette::Result<()> {
 
 fn write_page(page: &Page, path: &Path) -> miette::Result<u64> {
     let cannot = || format!("cannot write {}", path.display());
-    let mut file = WholeFile::create(path)
-        .into_diagnostic()
-        .wrap_err_with(cannot)?;
-    page.write(&mut file)
-        .into_diagnostic()
-        .wrap_err_with(cannot)?;
+    let mut file = WholeFile::create(path).into_diagnostic().wrap_err_with(cannot)?;
+    page.write(&mut file).into_diagnostic().wrap_err_with(cannot)?;
     file.finish().into_diagnostic().wrap_err_with(cannot)?;
-    std::fs::metadata(path)
-        .map(|found| found.len())
-        .into_diagnostic()
-        .wrap_err_with(cannot)
+    std::fs::metadata(path).map(|found| found.len()).into_diagnostic().wrap_err_with(cannot)
 }
 
 /// A scene's name as a file's: it may hold anything.
 fn safe(name: &str) -> String {
     let plain = |c: char| {
-        if c.is_alphanumeric() || "-_.".contains(c) {
-            c
-        } else {
-            '-'
-        }
+        if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }
     };
     let name: String = name.chars().map(plain).collect();
     match name.trim_matches(['.', '-']) {

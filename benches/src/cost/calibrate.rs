@@ -106,10 +106,8 @@ impl Calibration {
         effort: Effort,
     ) -> Result<Self, SimulationError> {
         let spheres = Variant::spheres(&scene.cull);
-        let (worlds, variants): (Vec<Variant>, Vec<Variant>) = variants
-            .iter()
-            .cloned()
-            .partition(|variant| variant.in_world);
+        let (worlds, variants): (Vec<Variant>, Vec<Variant>) =
+            variants.iter().cloned().partition(|variant| variant.in_world);
         let mut all = variants.clone();
         let shared =
             std::iter::once(spheres.clone()).chain(variants.iter().filter_map(explain::anchor));
@@ -123,19 +121,11 @@ impl Calibration {
             Ok((scene, trajectory))
         };
         Ok(Self {
-            prepared: all
-                .iter()
-                .map(|variant| PreparedVariant::new(variant, scene))
-                .collect(),
+            prepared: all.iter().map(|variant| PreparedVariant::new(variant, scene)).collect(),
             variants: variants.len(),
             worlds: WorldCalibration::new(scene, &worlds, &all, tier)?,
-            spheres: all
-                .iter()
-                .position(|one| is_same(one, &spheres))
-                .unwrap_or(0),
-            subjects: design::scenes(scene)
-                .map(subject)
-                .collect::<Result<_, SimulationError>>()?,
+            spheres: all.iter().position(|one| is_same(one, &spheres)).unwrap_or(0),
+            subjects: design::scenes(scene).map(subject).collect::<Result<_, SimulationError>>()?,
             turns: Turns::from_stream(1),
             tier,
             level: CacheLevel::of(scene.bodies.len()),
@@ -162,26 +152,16 @@ impl Calibration {
         for number in 0..SCENES * self.effort.turns {
             self.turn(number * SCENE_STEP % SCENES)?;
         }
-        let round = Round {
-            lanes: expected::lanes(self.tier),
-            level: self.level,
-        };
+        let round = Round { lanes: expected::lanes(self.tier), level: self.level };
         let mut worlds = self.worlds.round(round)?;
         let prices = std::array::from_fn(|regime| {
-            let all: Vec<_> = self
-                .prepared
-                .iter()
-                .map(|one| one.calibrated(regime))
-                .collect();
+            let all: Vec<_> = self.prepared.iter().map(|one| one.calibrated(regime)).collect();
             let mut prices = explain::prices(&all, round);
             prices.truncate(self.variants);
             prices.append(&mut worlds[regime]);
             prices
         });
-        Ok(CalibrationRound {
-            prices,
-            builds: self.effort.builds,
-        })
+        Ok(CalibrationRound { prices, builds: self.effort.builds })
     }
 
     /// One turn of one calibration scene.
@@ -201,14 +181,10 @@ impl Calibration {
         }
         // Before the first timed frame, all cullers run on other poses: so buffers have grown, and
         // the frame is cold.
-        cullers
-            .iter_mut()
-            .for_each(|culler| culler.frame(&scene.bodies));
+        cullers.iter_mut().for_each(|culler| culler.frame(&scene.bodies));
         let before: Vec<Counts> = cullers.iter().map(Culling::counts).collect();
         let mut times = vec![FrameTimes::default(); cullers.len()];
-        self.turns.round(&mut cullers, &poses, |timed| {
-            times[timed.number].push(&timed)
-        });
+        self.turns.round(&mut cullers, &poses, |timed| times[timed.number].push(&timed));
         let listed = cullers[self.spheres].pairs();
         for (at, prepared) in self.prepared.iter_mut().enumerate() {
             let observed = TurnObservation {

@@ -16,9 +16,9 @@ use sdop::volume::{Ball, Shape};
 pub fn construct(volume: Volume, shape: &Shape, axes: Axes) {
     match volume {
         Volume::Sphere => drop(std::hint::black_box(Ball::smallest(&shape.vertices))),
-        Volume::OrDop => drop(std::hint::black_box(
-            shape.ordop_along(axes, shape.ordop.directions),
-        )),
+        Volume::OrDop => {
+            drop(std::hint::black_box(shape.ordop_along(axes, shape.ordop.directions)))
+        }
         // The culler builds these itself, from the hulls.
         Volume::Aabb | Volume::KDop | Volume::Obb | Volume::Hull => {}
     }
@@ -29,9 +29,7 @@ pub(super) fn volume_seconds(variant: &Variant, shapes: &[Shape]) -> Vec<f64> {
     let mut waiting = WaitingTime::of_this_thread();
     let seconds = |volume: Volume| {
         let (waited, start) = (waiting.seconds(), Instant::now());
-        shapes
-            .iter()
-            .for_each(|shape| construct(volume, shape, variant.settings.axes));
+        shapes.iter().for_each(|shape| construct(volume, shape, variant.settings.axes));
         let seconds = start.elapsed().as_secs_f64();
         (seconds - (waiting.seconds() - waited)).max(0.0)
     };

@@ -58,12 +58,7 @@ pub fn scenes(scene: &Scene) -> impl ExactSizeIterator<Item = Scene> + '_ {
 /// Every size of a level at every share of pairs whose balls meet.
 pub(super) fn grid(level: CacheLevel) -> [(usize, f64); SCENES] {
     let sizes = sizes(level);
-    std::array::from_fn(|number| {
-        (
-            sizes[number / DENSITIES],
-            MEETING_SHARES[number % DENSITIES],
-        )
-    })
+    std::array::from_fn(|number| (sizes[number / DENSITIES], MEETING_SHARES[number % DENSITIES]))
 }
 
 /// The smallest size, and those of a level, in a geometric sequence.
@@ -108,20 +103,10 @@ pub(super) fn resample(scene: &Scene, n: usize, share: f64, stream: u64) -> Scen
         ] {
             let [x, y, z] = from[body];
             let length = libm::sqrtf(x * x + y * y + z * z);
-            to.push(draws.vector(Interval {
-                min: length,
-                max: length,
-            }));
+            to.push(draws.vector(Interval { min: length, max: length }));
         }
     }
-    Scene {
-        bodies,
-        velocities,
-        side: Some(side),
-        seed: SEED,
-        share: None,
-        ..scene.clone()
-    }
+    Scene { bodies, velocities, side: Some(side), seed: SEED, share: None, ..scene.clone() }
 }
 
 /// The side of the box in which this share of balls with these radii meets, at least as wide as the

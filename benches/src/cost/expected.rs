@@ -88,10 +88,7 @@ mod tests {
             let per = |count: u32| f64::from(count) / f64::from(rounds);
             let expected = rows(f64::from(moving), f64::from(bodies), per(tests), per(hits));
             let seen = per(rows_seen);
-            assert!(
-                (expected / seen - 1.0).abs() < 0.03,
-                "{share}: {expected} for {seen}"
-            );
+            assert!((expected / seen - 1.0).abs() < 0.03, "{share}: {expected} for {seen}");
         }
         assert_eq!(rows(10.0, 10.0, 45.0, 0.0), 0.0);
     }
@@ -112,10 +109,7 @@ mod tests {
             let seen = f64::from(compared) / f64::from(vectors);
             let share = f64::from(axis).powi(3);
             let expected = further(1.0, share, lanes);
-            assert!(
-                (expected / seen - 1.0).abs() < 0.05,
-                "{axis}: {expected} for {seen}"
-            );
+            assert!((expected / seen - 1.0).abs() < 0.05, "{axis}: {expected} for {seen}");
         }
         assert_eq!(further(0.0, 0.0, 16), 0.0);
     }

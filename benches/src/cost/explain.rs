@@ -58,12 +58,9 @@ pub(super) struct Round {
 
 /// The prices of every variant. They include spheres alone, and for each that refines its [anchor].
 pub(super) fn prices(all: &[VariantTurns<'_>], round: Round) -> Vec<Prices> {
-    let spheres = all
-        .iter()
-        .find(|one| one.variant.volumes() == [Volume::Sphere]);
-    let spheres = spheres.map_or_else(VolumeCosts::default, |one| {
-        alone(Volume::Sphere, one.turns, round.lanes)
-    });
+    let spheres = all.iter().find(|one| one.variant.volumes() == [Volume::Sphere]);
+    let spheres = spheres
+        .map_or_else(VolumeCosts::default, |one| alone(Volume::Sphere, one.turns, round.lanes));
     let refined = |one: &VariantTurns<'_>| {
         let wanted = anchor(one.variant)?;
         let is_anchor = |other: &&VariantTurns<'_>| {
@@ -114,9 +111,7 @@ pub(super) fn constructed(one: &VariantTurns<'_>, mut costs: Vec<VolumeCosts>) -
         costs.construct_body = body;
     }
     let volumes = one.variant.volumes().into_iter().zip(costs);
-    volumes
-        .map(|(volume, costs)| Price { volume, costs })
-        .collect()
+    volumes.map(|(volume, costs)| Price { volume, costs }).collect()
 }
 
 /// The prices of a volume that is tested alone.
@@ -162,24 +157,13 @@ fn refining(anchor: &VariantTurns<'_>, spheres: &VolumeCosts, lanes: usize) -> V
     let [_, update] = update(Volume::OrDop, anchor.turns, known);
     let stage = |turn: &TurnObservation| (Volume::OrDop, turn.stages.refining);
     let [_, _, hit, miss] = second_test(anchor, lanes, stage);
-    VolumeCosts {
-        update,
-        hit,
-        miss,
-        ..VolumeCosts::default()
-    }
+    VolumeCosts { update, hit, miss, ..VolumeCosts::default() }
 }
 
 /// The prices of hulls after spheres, whose poses are computed in their tests.
 fn hulls(one: &VariantTurns<'_>) -> VolumeCosts {
     let [frame, update, hit, miss] = second_test(one, 1, |turn| (Volume::Hull, turn.stages.hulls));
-    VolumeCosts {
-        update,
-        frame,
-        hit,
-        miss,
-        ..VolumeCosts::default()
-    }
+    VolumeCosts { update, frame, hit, miss, ..VolumeCosts::default() }
 }
 
 /// The prices of a second test: per frame, per update (of hulls), per hit, and per miss or idle
@@ -194,18 +178,10 @@ fn second_test(
     let row = |turn: &TurnObservation| {
         let (volume, seconds) = stage(turn);
         let counters = turn.counts.of(volume);
-        let updates = if volume == Volume::Hull {
-            counters.updates
-        } else {
-            0
-        };
+        let updates = if volume == Volume::Hull { counters.updates } else { 0 };
         let tests = turn.per_frame(counters.tests);
         Measurement {
-            counts: [
-                1.0,
-                turn.per_frame(updates),
-                tests + expected::idle(tests, lanes),
-            ],
+            counts: [1.0, turn.per_frame(updates), tests + expected::idle(tests, lanes)],
             seconds: seconds - split * turn.per_frame(counters.hits),
             whole: seconds,
         }
@@ -222,9 +198,7 @@ fn beyond(one: &VariantTurns<'_>, [first, second]: [VolumeCosts; 2], round: Roun
         variant: String::new(),
         level: round.level,
         lanes: round.lanes,
-        volumes: volumes
-            .map(|(volume, costs)| Price { volume, costs })
-            .collect(),
+        volumes: volumes.map(|(volume, costs)| Price { volume, costs }).collect(),
     };
     let row = |turn: &TurnObservation| {
         let terms = known.predict(&turn.counts, turn.frames as u32, turn.bodies);
@@ -237,11 +211,7 @@ fn beyond(one: &VariantTurns<'_>, [first, second]: [VolumeCosts; 2], round: Roun
         }
     };
     let [frame, handle] = fit::prices(&one.turns.iter().map(row).collect::<Vec<_>>());
-    VolumeCosts {
-        frame,
-        handle,
-        ..second
-    }
+    VolumeCosts { frame, handle, ..second }
 }
 
 #[cfg(test)]
@@ -262,16 +232,7 @@ mod tests {
             _ => [14.0, 150.0, 0.0, 0.0, 19.0, 13.0, 0.0],
         };
         let [update, frame, body, row, hit, miss, further] = all.map(|ns| 1e-9 * ns);
-        VolumeCosts {
-            update,
-            frame,
-            body,
-            row,
-            hit,
-            miss,
-            further,
-            ..VolumeCosts::default()
-        }
+        VolumeCosts { update, frame, body, row, hit, miss, further, ..VolumeCosts::default() }
     }
 
     /// Turns of the design's sizes and shares, with the counts of all pairs and the times of known
@@ -304,11 +265,7 @@ mod tests {
                 update: moving * costs.update,
                 finding: costs.frame
                     + n * costs.body
-                    + if first == Volume::Sphere {
-                        rows * costs.row
-                    } else {
-                        0.0
-                    }
+                    + if first == Volume::Sphere { rows * costs.row } else { 0.0 }
                     + hits * costs.hit
                     + (tests - hits) * costs.miss
                     + further * costs.further,
@@ -361,19 +318,12 @@ mod tests {
                 splits: &splits,
             })
             .collect();
-        let round = Round {
-            lanes: LANES,
-            level: CacheLevel::L2,
-        };
+        let round = Round { lanes: LANES, level: CacheLevel::L2 };
         prices(&all, round)
     }
 
     fn assert_near(what: &str, found: f64, truth: f64, within: f64) {
-        let off = if truth == 0.0 {
-            found / 1e-9
-        } else {
-            found / truth - 1.0
-        };
+        let off = if truth == 0.0 { found / 1e-9 } else { found / truth - 1.0 };
         assert!(off.abs() < within, "{what}: {found:e} for {truth:e}");
     }
 
@@ -417,16 +367,8 @@ mod tests {
             let [first, second] = [0, 1].map(|at| prices.volumes[at].costs);
             let of_spheres = spheres.volumes[0].costs;
             assert_eq!(
-                VolumeCosts {
-                    construct: 0.0,
-                    construct_body: 0.0,
-                    ..first
-                },
-                VolumeCosts {
-                    construct: 0.0,
-                    construct_body: 0.0,
-                    ..of_spheres
-                },
+                VolumeCosts { construct: 0.0, construct_body: 0.0, ..first },
+                VolumeCosts { construct: 0.0, construct_body: 0.0, ..of_spheres },
                 "{}",
                 prices.variant
             );

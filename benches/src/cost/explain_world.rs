@@ -17,11 +17,7 @@ pub(super) fn prices(all: &[VariantTurns<'_>], round: Round) -> Vec<Prices> {
         let volumes = one.variant.volumes();
         let mut costs = Vec::new();
         costs.extend(volumes.first().map(|&volume| first(volume, one.turns)));
-        costs.extend(
-            volumes
-                .get(1)
-                .map(|&volume| second(volume, one.turns, round.lanes)),
-        );
+        costs.extend(volumes.get(1).map(|&volume| second(volume, one.turns, round.lanes)));
         Prices {
             variant: one.variant.name.clone(),
             level: round.level,
@@ -37,13 +33,8 @@ fn first(volume: Volume, turns: &[TurnObservation]) -> VolumeCosts {
     let [per_frame, update] = update(volume, turns, (volume, 0.0));
     let row = |turn: &TurnObservation| {
         let (rest, tested) = (turn.counts.culler.rest, turn.counts.of(volume));
-        let counts = [
-            rest.queried,
-            rest.thawed,
-            rest.kept,
-            tested.tests - tested.hits,
-            tested.hits,
-        ];
+        let counts =
+            [rest.queried, rest.thawed, rest.kept, tested.tests - tested.hits, tested.hits];
         let [queried, thawed, kept, misses, hits] = counts.map(|count| turn.per_frame(count));
         let counts = [1.0, queried, thawed, kept, misses, hits];
         Measurement::of(counts, turn.stages.finding)
@@ -67,22 +58,12 @@ fn second(volume: Volume, turns: &[TurnObservation], lanes: usize) -> VolumeCost
     let row = |turn: &TurnObservation| {
         let counters = turn.counts.of(volume);
         let tests = turn.per_frame(counters.tests);
-        let counts = [
-            1.0,
-            turn.per_frame(counters.updates),
-            tests + expected::idle(tests, lanes),
-        ];
+        let counts = [1.0, turn.per_frame(counters.updates), tests + expected::idle(tests, lanes)];
         Measurement::of(counts, turn.stages.refining)
     };
     let found = fit::prices(&turns.iter().map(row).collect::<Vec<_>>());
     let [frame, update, test] = found;
-    VolumeCosts {
-        update,
-        frame,
-        hit: test,
-        miss: test,
-        ..VolumeCosts::default()
-    }
+    VolumeCosts { update, frame, hit: test, miss: test, ..VolumeCosts::default() }
 }
 
 #[cfg(test)]
@@ -106,20 +87,12 @@ mod tests {
             let thawed = queried * (number * 5 % 7) / 7;
             let tests = queried * (1 + number * 3 % 13);
             let hits = tests * (1 + number % 3) / 4;
-            let volume = |updates, tests, hits| VolumeCounters {
-                updates,
-                tests,
-                hits,
-            };
+            let volume = |updates, tests, hits| VolumeCounters { updates, tests, hits };
             let counts = Counts {
                 culler: Counters {
                     sphere: volume(queried + tests, tests, hits),
                     ordop: volume(queried + hits, hits, hits / 2),
-                    rest: RestCounters {
-                        queried,
-                        thawed,
-                        kept: bodies - queried,
-                    },
+                    rest: RestCounters { queried, thawed, kept: bodies - queried },
                     ..Counters::default()
                 },
                 hulls: VolumeCounters::default(),
@@ -163,10 +136,7 @@ mod tests {
             built: vec![1e-3; 2],
             splits: &[],
         };
-        let round = Round {
-            lanes: LANES,
-            level: CacheLevel::L2,
-        };
+        let round = Round { lanes: LANES, level: CacheLevel::L2 };
         let found = prices(&[observed], round).remove(0);
         let [first, second] = [0, 1].map(|at| found.volumes[at].costs);
         for (what, found, nanoseconds) in [

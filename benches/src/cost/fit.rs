@@ -29,11 +29,7 @@ impl<const N: usize> Measurement<N> {
     /// A measurement whose seconds are the whole.
     #[must_use]
     pub fn of(counts: [f64; N], seconds: f64) -> Self {
-        Self {
-            counts,
-            seconds,
-            whole: seconds,
-        }
+        Self { counts, seconds, whole: seconds }
     }
 }
 
@@ -45,11 +41,7 @@ pub fn prices<const N: usize>(rows: &[Measurement<N>]) -> [f64; N] {
     let first = positive_fit(&rows);
     let off = |row: &&Measurement<N>| relative_residual(row, &first).abs();
     let limit = OUTLIER_RATIO * median(rows.iter().map(off).collect());
-    let near: Vec<&Measurement<N>> = rows
-        .iter()
-        .copied()
-        .filter(|row| off(row) <= limit)
-        .collect();
+    let near: Vec<&Measurement<N>> = rows.iter().copied().filter(|row| off(row) <= limit).collect();
     if near.len() == rows.len() || near.len() <= N {
         return first;
     }
@@ -64,10 +56,7 @@ fn positive_fit<const N: usize>(rows: &[&Measurement<N>]) -> [f64; N] {
         let Some(prices) = free_fit(rows, &used) else {
             continue;
         };
-        let residual = rows
-            .iter()
-            .map(|row| relative_residual(row, &prices).powi(2))
-            .sum();
+        let residual = rows.iter().map(|row| relative_residual(row, &prices).powi(2)).sum();
         if prices.iter().all(|&price| price >= 0.0) && residual < best.1 {
             best = (prices, residual);
         }
@@ -77,12 +66,7 @@ fn positive_fit<const N: usize>(rows: &[&Measurement<N>]) -> [f64; N] {
 
 /// (explained − measured)/whole.
 fn relative_residual<const N: usize>(row: &Measurement<N>, prices: &[f64; N]) -> f64 {
-    let explained: f64 = row
-        .counts
-        .iter()
-        .zip(prices)
-        .map(|(count, price)| count * price)
-        .sum();
+    let explained: f64 = row.counts.iter().zip(prices).map(|(count, price)| count * price).sum();
     (explained - row.seconds) / row.whole
 }
 
@@ -91,11 +75,7 @@ fn free_fit<const N: usize>(rows: &[&Measurement<N>], used: &[usize]) -> Option<
     // Columns scaled to their largest entry: a count of tests is a million times one of frames.
     let scale: Vec<f64> = used
         .iter()
-        .map(|&j| {
-            rows.iter()
-                .map(|row| row.counts[j] / row.whole)
-                .fold(0.0, f64::max)
-        })
+        .map(|&j| rows.iter().map(|row| row.counts[j] / row.whole).fold(0.0, f64::max))
         .collect();
     if rows.len() < used.len() || scale.contains(&0.0) {
         return None;
@@ -109,10 +89,7 @@ fn free_fit<const N: usize>(rows: &[&Measurement<N>], used: &[usize]) -> Option<
     for (j, &column) in used.iter().enumerate() {
         prices[column] = solution[(j, 0)] / scale[j];
     }
-    prices
-        .iter()
-        .all(|price| price.is_finite())
-        .then_some(prices)
+    prices.iter().all(|price| price.is_finite()).then_some(prices)
 }
 
 #[cfg(test)]

@@ -41,11 +41,8 @@ impl HitPremium {
             let mut hulls = HullTest::new(shapes);
             [&few, &many].map(|list| time(REPEATS, || hulls.cull(bodies, list)))
         } else {
-            let posed = PosedOrDops::new(
-                shapes.iter().map(|shape| (shape, &shape.ordop)),
-                bodies,
-                tier,
-            );
+            let posed =
+                PosedOrDops::new(shapes.iter().map(|shape| (shape, &shape.ordop)), bodies, tier);
             let columns = posed.columns(variant.settings.overlap);
             let mut out = PairList::default();
             [&few, &many].map(|list| {
@@ -64,9 +61,8 @@ impl HitPremium {
 fn mixture(listed: &[[u32; 2]], kept: &[[u32; 2]], quarters: usize) -> Option<PairList> {
     let mut kept = kept.to_vec();
     kept.sort_unstable();
-    let (mut hits, mut misses): (Vec<_>, Vec<_>) = listed
-        .iter()
-        .partition(|pair| kept.binary_search(pair).is_ok());
+    let (mut hits, mut misses): (Vec<_>, Vec<_>) =
+        listed.iter().partition(|pair| kept.binary_search(pair).is_ok());
     let quarter = hits.len().min(misses.len()) / 3;
     hits.truncate(quarters * quarter);
     misses.truncate((4 - quarters) * quarter);

@@ -38,11 +38,7 @@ impl CacheLevel {
 
     fn among(bodies: usize, caches: [usize; 3]) -> Self {
         let holds = |level: &&Self| bodies <= level.most_bodies(caches);
-        Self::ALL
-            .iter()
-            .find(holds)
-            .copied()
-            .unwrap_or(Self::Memory)
+        Self::ALL.iter().find(holds).copied().unwrap_or(Self::Memory)
     }
 
     /// The fewest and the most bodies of this level on this machine.

@@ -134,10 +134,7 @@ pub fn pass(
     observer: &mut dyn Observer,
 ) -> Result<Pass, SimulationError> {
     let mut culled = vec![VariantRun::default(); variants.len()];
-    let shapes: Vec<Vec<Shape>> = variants
-        .iter()
-        .map(|variant| variant.shapes(scene))
-        .collect();
+    let shapes: Vec<Vec<Shape>> = variants.iter().map(|variant| variant.shapes(scene)).collect();
     let (mut cullers, mut built) = (Vec::new(), vec![Vec::new(); variants.len()]);
     for (at, variant) in variants.iter().enumerate() {
         let (culler, construct) = build(variant, &shapes[at], scene, tier)?;
@@ -156,10 +153,7 @@ pub fn pass(
         observer.between_turns();
         turn += 1;
         // Co is measured repeatedly between the turns.
-        if built
-            .first()
-            .is_some_and(|built| built.len() * all < builds * turn)
-        {
+        if built.first().is_some_and(|built| built.len() * all < builds * turn) {
             for (at, variant) in variants.iter().enumerate() {
                 built[at].push(build(variant, &shapes[at], scene, tier)?.1);
             }
@@ -172,11 +166,7 @@ pub fn pass(
     for (culled, built) in culled.iter_mut().zip(built) {
         culled.construct = median(built);
     }
-    Ok(Pass {
-        culled,
-        prices,
-        step: frames.step(),
-    })
+    Ok(Pass { culled, prices, step: frames.step() })
 }
 
 /// The median seconds per frame of variant number `at`, from passes in the order of time.

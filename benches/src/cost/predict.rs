@@ -69,11 +69,7 @@ impl FirstTest {
         };
         Self {
             bodies,
-            rows: if lists_hits {
-                expected::rows(moving, bodies, tests, hits)
-            } else {
-                0.0
-            },
+            rows: if lists_hits { expected::rows(moving, bodies, tests, hits) } else { 0.0 },
             tests,
             hits,
             is_aligned,
@@ -103,18 +99,11 @@ impl Prices {
             let first = FirstTest::of(price.volume, counts, frames, bodies);
             let [_, _, rows, misses, hits, further] = first.counts(self.lanes);
             // All pairs that pass the test before, whether they are then tested or not.
-            let before = place
-                .checked_sub(1)
-                .and_then(|before| self.volumes.get(before));
+            let before = place.checked_sub(1).and_then(|before| self.volumes.get(before));
             let handed_on = before.map_or(0, |before| counts.of(before.volume).hits);
             let rest = &counts.culler.rest;
-            let [queried, thawed, kept] = [rest.queried, rest.thawed, rest.kept].map(|count| {
-                if place == 0 {
-                    count as f64 / frames
-                } else {
-                    0.0
-                }
-            });
+            let [queried, thawed, kept] = [rest.queried, rest.thawed, rest.kept]
+                .map(|count| if place == 0 { count as f64 / frames } else { 0.0 });
             let idle = match (place, price.volume) {
                 (1.., Volume::OrDop) => expected::idle(first.tests, self.lanes),
                 _ => 0.0,
@@ -152,11 +141,7 @@ impl Prices {
         let n = rounds.clone().count() as f64;
         for (at, price) in mean.volumes.iter_mut().enumerate() {
             let over = |value: fn(&VolumeCosts) -> f64| {
-                rounds
-                    .clone()
-                    .map(|round| value(&round.volumes[at].costs))
-                    .sum::<f64>()
-                    / n
+                rounds.clone().map(|round| value(&round.volumes[at].costs)).sum::<f64>() / n
             };
             price.costs = VolumeCosts {
                 construct: over(|c| c.construct),
@@ -207,11 +192,7 @@ mod tests {
                 price(Volume::OrDop, costs(0.0, 7.0, 3.0)),
             ],
         };
-        let volume = |updates, tests, hits| VolumeCounters {
-            updates,
-            tests,
-            hits,
-        };
+        let volume = |updates, tests, hits| VolumeCounters { updates, tests, hits };
         let counts = Counts {
             culler: Counters {
                 sphere: volume(8, 12, 4),
@@ -221,35 +202,22 @@ mod tests {
             hulls: VolumeCounters::default(),
         };
         let terms = prices.predict(&counts, 2, 4);
-        let parts: Vec<_> = terms
-            .iter()
-            .map(|t| [t.construct, t.update, t.finding, t.test])
-            .collect();
+        let parts: Vec<_> =
+            terms.iter().map(|t| [t.construct, t.update, t.finding, t.test]).collect();
         // Each frame has two of the four listed pairs: 10 + 4·5, and 2·3 for the second test.
         assert_eq!(parts, [[104.0, 8.0, 30.0, 6.0], [104.0, 8.0, 6.0, 11.0]]);
         assert_eq!(terms[0].recurring(), 44.0);
         assert_eq!(terms[0].in_paper(), 14.0);
-        let none = Prices {
-            volumes: Vec::new(),
-            ..prices.clone()
-        };
+        let none = Prices { volumes: Vec::new(), ..prices.clone() };
         assert!(none.predict(&counts, 2, 4).is_empty());
     }
 
     /// Each price is multiplied by its own count and by no other.
     #[test]
     fn every_price_has_one_count() {
-        let counters = VolumeCounters {
-            updates: 300,
-            tests: 9000,
-            hits: 700,
-        };
+        let counters = VolumeCounters { updates: 300, tests: 9000, hits: 700 };
         let counts = Counts {
-            culler: Counters {
-                sphere: counters,
-                aabb: counters,
-                ..Counters::default()
-            },
+            culler: Counters { sphere: counters, aabb: counters, ..Counters::default() },
             hulls: VolumeCounters::default(),
         };
         let seconds = |volume, costs| {
@@ -279,10 +247,7 @@ mod tests {
             (price(|c| c.further = 1.0), 0.0, further),
         ] {
             for (volume, count) in [(Volume::Sphere, of_spheres), (Volume::Aabb, of_boxes)] {
-                assert!(
-                    (seconds(volume, costs) - count).abs() < 1e-9,
-                    "{volume} {costs:?}"
-                );
+                assert!((seconds(volume, costs) - count).abs() < 1e-9, "{volume} {costs:?}");
             }
         }
     }

@@ -144,10 +144,7 @@ impl StudiedScene {
 #[must_use]
 pub fn possible(scene: &Scene) -> Vec<Strategy> {
     let has = |&strategy: &Strategy| {
-        let settings = CullSettings {
-            strategy,
-            ..scene.cull.clone()
-        };
+        let settings = CullSettings { strategy, ..scene.cull.clone() };
         strategy.scheme().culls() && settings.check(scene.bodies.len()).is_ok()
     };
     Strategy::ALL.iter().copied().filter(has).collect()
@@ -221,16 +218,12 @@ fn report(
             ));
         }
     }
-    let prices = Regime::ALL
-        .iter()
-        .flat_map(|&regime| table::prices(&passes, regime));
+    let prices = Regime::ALL.iter().flat_map(|&regime| table::prices(&passes, regime));
     CostReport {
         bodies: scene.bodies.len(),
         frames,
         scene_frames: scene.frames,
-        seeds: (0..plan.passes)
-            .map(|n| scene.seed.wrapping_add(n))
-            .collect(),
+        seeds: (0..plan.passes).map(|n| scene.seed.wrapping_add(n)).collect(),
         machine: Machine::here(plan.tier),
         conditions: before.after(costs.iter().map(|cost: &Cost| cost.frame.measured)),
         prices: prices.collect(),

@@ -48,10 +48,7 @@ impl CheckedPrediction {
 
 /// Adds another, independent uncertainty to an estimate.
 fn widened(estimate: Estimate, by: f64) -> Estimate {
-    Estimate {
-        half_width: estimate.half_width.hypot(by),
-        ..estimate
-    }
+    Estimate { half_width: estimate.half_width.hypot(by), ..estimate }
 }
 
 choices! {
@@ -132,31 +129,21 @@ pub fn cost(
 ) -> Option<Cost> {
     let rounds = rounds(priced, at, regime);
     let prices = Prices::mean(rounds.iter().copied())?;
-    let culled: Vec<&VariantRun> = passes
-        .iter()
-        .map(|pass| pass.culled.get(at))
-        .collect::<Option<_>>()?;
+    let culled: Vec<&VariantRun> =
+        passes.iter().map(|pass| pass.culled.get(at)).collect::<Option<_>>()?;
     let terms_at = |prices: &Prices, culled: &VariantRun| {
         prices.predict(&culled.counts, culled.frames, bodies)
     };
-    let parts: Vec<Vec<Terms>> = culled
-        .iter()
-        .map(|culled| terms_at(&prices, culled))
-        .collect();
+    let parts: Vec<Vec<Terms>> = culled.iter().map(|culled| terms_at(&prices, culled)).collect();
     let is_timed = |culled: &&&VariantRun| !culled.times.of(regime).is_empty();
-    let (first, last) = (
-        parts.first().filter(|terms| !terms.is_empty())?,
-        culled.last()?,
-    );
+    let (first, last) = (parts.first().filter(|terms| !terms.is_empty())?, culled.last()?);
     if culled.iter().filter(is_timed).count() < culled.len() {
         return None;
     }
     let by_round: Vec<Vec<Terms>> = rounds.iter().map(|prices| terms_at(prices, last)).collect();
     let frames = f64::from(last.frames);
-    let seconds: Vec<Quartiles> = culled
-        .iter()
-        .map(|culled| culled.times.quartiles(regime))
-        .collect();
+    let seconds: Vec<Quartiles> =
+        culled.iter().map(|culled| culled.times.quartiles(regime)).collect();
     let compared = |predicted: &dyn Fn(&[Terms]) -> f64, measured: &dyn Fn(usize) -> f64| {
         let pass = |(number, terms): (usize, &Vec<Terms>)| [predicted(terms), measured(number)];
         let passes: Vec<_> = parts.iter().enumerate().map(pass).collect();
@@ -172,9 +159,8 @@ pub fn cost(
         let passes = TermWidths::of(&of_volume(&parts, at))?;
         Some(passes.joined(&TermWidths::of(&of_volume(&by_round, at))?))
     };
-    let terms: Vec<Terms> = (0..first.len())
-        .filter_map(|at| Terms::mean(&of_volume(&parts, at)))
-        .collect();
+    let terms: Vec<Terms> =
+        (0..first.len()).filter_map(|at| Terms::mean(&of_volume(&parts, at))).collect();
     Some(Cost {
         scene: scene.to_owned(),
         bodies,
@@ -207,10 +193,8 @@ fn failing(
     if frame.residual.half_width.is_finite() && frame.residual.covers(0.0) {
         return Assumption::Steady;
     }
-    let stages: Vec<StageSeconds> = culled
-        .iter()
-        .map(|culled| culled.times.medians(regime))
-        .collect();
+    let stages: Vec<StageSeconds> =
+        culled.iter().map(|culled| culled.times.medians(regime)).collect();
     let measured = |stage: fn(&StageSeconds) -> f64| {
         stages.iter().map(stage).sum::<f64>() / stages.len() as f64
     };
@@ -218,28 +202,16 @@ fn failing(
     let refining: f64 = terms.iter().skip(1).map(|terms| terms.test).sum();
     let off = [
         (Assumption::Updates, measured(|s| s.update) - update),
-        (
-            Assumption::Refining,
-            measured(|s| s.refining + s.hulls) - refining,
-        ),
-        (
-            Assumption::Finding,
-            frame.measured.mean - frame.predicted.mean,
-        ),
+        (Assumption::Refining, measured(|s| s.refining + s.hulls) - refining),
+        (Assumption::Finding, frame.measured.mean - frame.predicted.mean),
     ];
     if terms.len() == 1 {
         let [updates, _, whole] = off;
-        return if updates.1.abs() > 0.5 * whole.1.abs() {
-            updates.0
-        } else {
-            whole.0
-        };
+        return if updates.1.abs() > 0.5 * whole.1.abs() { updates.0 } else { whole.0 };
     }
     let [updates, refining, (finding, whole)] = off;
     let off = [updates, refining, (finding, whole - updates.1 - refining.1)];
-    let farthest = off
-        .into_iter()
-        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let farthest = off.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     farthest.map_or(finding, |(assumption, _)| assumption)
 }
 
@@ -296,19 +268,13 @@ pub struct PriceRow {
 
 /// The price 0, for what has none.
 fn nothing() -> Estimate {
-    Estimate {
-        mean: 0.0,
-        half_width: 0.0,
-        seeds: 0,
-    }
+    Estimate { mean: 0.0, half_width: 0.0, seeds: 0 }
 }
 
 /// The prices from the rounds of some passes, in the order of variants and tests.
 #[must_use]
 pub fn prices(priced: &[&Pass], regime: Regime) -> Vec<PriceRow> {
-    let variants = priced
-        .first()
-        .map_or(0, |pass| pass.prices[regime as usize].len());
+    let variants = priced.first().map_or(0, |pass| pass.prices[regime as usize].len());
     let mut rows = Vec::new();
     for at in 0..variants {
         let rounds = rounds(priced, at, regime);

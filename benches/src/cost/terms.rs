@@ -180,9 +180,6 @@ mod tests {
         // JSON has no infinity: one pass reads back.
         let one = TermWidths::of(&[pass(1.0)]);
         let text = serde_json::to_string(&one).unwrap_or_default();
-        assert_eq!(
-            serde_json::from_str::<Option<TermWidths>>(&text).ok(),
-            Some(one)
-        );
+        assert_eq!(serde_json::from_str::<Option<TermWidths>>(&text).ok(), Some(one));
     }
 }

@@ -56,9 +56,7 @@ impl WorldCalibration {
         Ok(Self {
             contestants: worlds.iter().chain(cullers).map(with_shapes).collect(),
             worlds: worlds.len(),
-            subjects: scenes
-                .map(subject)
-                .collect::<Result<_, SimulationError>>()?,
+            subjects: scenes.map(subject).collect::<Result<_, SimulationError>>()?,
             turns: Turns::from_stream(2),
             tier,
         })
@@ -103,10 +101,7 @@ impl WorldCalibration {
         let [first, second, poses @ ..] = &*poses else {
             return Ok(());
         };
-        let begun = Scene {
-            bodies: first.clone(),
-            ..scene.clone()
-        };
+        let begun = Scene { bodies: first.clone(), ..scene.clone() };
         let all = self.contestants.iter();
         let mut all = all
             .map(|(variant, shapes)| variant.culling_of(shapes, &begun, self.tier))

@@ -52,25 +52,15 @@ fn sleeping(mut scene: Scene, movers: usize, radii_per_step: f32, stream: u64) -
     let mut draws = Stream::new(SEED, stream);
     let bodies = &scene.bodies;
     let dynamic: Vec<usize> = (0..bodies.len()).filter(|&b| bodies.dynamic[b]).collect();
-    let radii = bodies
-        .shape
-        .iter()
-        .map(|&shape| scene.shapes[shape as usize].ball.radius);
+    let radii = bodies.shape.iter().map(|&shape| scene.shapes[shape as usize].ball.radius);
     let radius = radii.sum::<f32>() / bodies.len() as f32;
     let speed = |radii: f32| radii * radius / scene.dt;
     let movers = movers.min(dynamic.len());
     let mut is_mover = vec![false; bodies.len()];
     (0..movers).for_each(|n| is_mover[dynamic[n * dynamic.len() / movers]] = true);
     for &body in &dynamic {
-        let speed = speed(if is_mover[body] {
-            radii_per_step
-        } else {
-            SLOW_SPEED
-        });
-        scene.velocities.linear[body] = draws.vector(Interval {
-            min: speed,
-            max: speed,
-        });
+        let speed = speed(if is_mover[body] { radii_per_step } else { SLOW_SPEED });
+        scene.velocities.linear[body] = draws.vector(Interval { min: speed, max: speed });
     }
     scene.effects = EffectsSpec {
         motion: listed(motion::Settings),

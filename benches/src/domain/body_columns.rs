@@ -124,12 +124,7 @@ impl BodyColumns {
 
     /// The body in a place, with velocities where it goes to another owner.
     pub fn record(&self, place: usize, moves: bool) -> BodyMessage {
-        let Bodies {
-            shape,
-            dynamic,
-            rotation,
-            translation,
-        } = &self.bodies;
+        let Bodies { shape, dynamic, rotation, translation } = &self.bodies;
         let Velocities { linear, angular } = &self.velocities;
         BodyMessage {
             number: self.numbers[place],
@@ -177,12 +172,7 @@ impl BodyColumns {
     fn push(&mut self, record: BodyMessage) {
         self.numbers.push(record.number);
         self.owned.push(record.velocities.is_some());
-        self.bodies.push(
-            record.shape,
-            record.dynamic,
-            record.rotation,
-            record.translation,
-        );
+        self.bodies.push(record.shape, record.dynamic, record.rotation, record.translation);
         let [linear, angular] = record.velocities.unwrap_or_default();
         self.velocities.linear.push(linear);
         self.velocities.angular.push(angular);
@@ -211,10 +201,7 @@ mod tests {
             let sent: Vec<_> = (0..5).map(|number| record(number, owned)).collect();
             let mut message = Vec::new();
             sent.iter().for_each(|record| record.write(&mut message));
-            assert_eq!(
-                message.len(),
-                5 * if owned { MOVER_BYTES } else { GHOST_BYTES }
-            );
+            assert_eq!(message.len(), 5 * if owned { MOVER_BYTES } else { GHOST_BYTES });
             let received: Vec<_> = BodyMessage::read_all(&message, owned).collect();
             assert_eq!(received, sent);
         }
@@ -224,14 +211,8 @@ mod tests {
     #[test]
     fn change_keeps_number_order() {
         let mut held = BodyColumns::default();
-        held.change(
-            |_| true,
-            vec![record(9, true), record(2, true), record(5, false)],
-        );
-        held.change(
-            |place| place != 1,
-            vec![record(7, false), record(0, true), record(11, false)],
-        );
+        held.change(|_| true, vec![record(9, true), record(2, true), record(5, false)]);
+        held.change(|place| place != 1, vec![record(7, false), record(0, true), record(11, false)]);
         assert_eq!(held.numbers, [0, 2, 7, 9, 11]);
         assert_eq!(held.owned, [true, true, false, true, false]);
         for (place, &number) in held.numbers.iter().enumerate() {

@@ -26,12 +26,7 @@ enum CutNode {
     /// The cell of a rank.
     Cell(usize),
     /// A plane across an axis, and the nodes on either side.
-    Plane {
-        axis: usize,
-        at: f32,
-        below: usize,
-        above: usize,
-    },
+    Plane { axis: usize, at: f32, below: usize, above: usize },
 }
 
 /// A node that is not cut yet: consecutive ranks that share it.
@@ -56,19 +51,13 @@ impl Cuts {
     /// One cell, that of rank 0.
     #[must_use]
     pub fn none() -> Self {
-        Self {
-            nodes: vec![CutNode::Cell(0)],
-        }
+        Self { nodes: vec![CutNode::Cell(0)] }
     }
 
     /// Cuts space for the centres of all ranks' bodies, of which these are this rank's. Collective.
     pub fn make(network: &impl Network, centres: &[[f32; 3]]) -> Self {
         let mut cuts = Self::none();
-        let mut parts = vec![OpenPart {
-            node: 0,
-            first: 0,
-            ranks: network.size(),
-        }];
+        let mut parts = vec![OpenPart { node: 0, first: 0, ranks: network.size() }];
         // The part that each centre lies in; none once that part is a cell.
         let mut part_of = vec![Some(0); centres.len()];
         loop {
@@ -87,19 +76,10 @@ impl Cuts {
             let mut halves = Vec::new();
             for ((part, axis), at) in parts.iter().zip(axes).zip(planes) {
                 let (below, above) = (cuts.nodes.len(), cuts.nodes.len() + 1);
-                cuts.nodes[part.node] = CutNode::Plane {
-                    axis,
-                    at,
-                    below,
-                    above,
-                };
+                cuts.nodes[part.node] = CutNode::Plane { axis, at, below, above };
                 cuts.nodes.extend([CutNode::Cell(part.first); 2]);
                 let (first, middle) = (part.first, part.first + part.below());
-                halves.push(OpenPart {
-                    node: below,
-                    first,
-                    ranks: part.below(),
-                });
+                halves.push(OpenPart { node: below, first, ranks: part.below() });
                 halves.push(OpenPart {
                     node: above,
                     first: middle,
@@ -125,13 +105,7 @@ impl Cuts {
     /// The node that isn't cut in which a centre lies.
     fn node(&self, centre: [f32; 3]) -> usize {
         let mut node = 0;
-        while let CutNode::Plane {
-            axis,
-            at,
-            below,
-            above,
-        } = self.nodes[node]
-        {
+        while let CutNode::Plane { axis, at, below, above } = self.nodes[node] {
             node = if centre[axis] < at { below } else { above };
         }
         node
@@ -163,12 +137,7 @@ impl Cuts {
     ) {
         match self.nodes[node] {
             CutNode::Cell(rank) => visit(rank, gap[0].max(gap[1]).max(gap[2])),
-            CutNode::Plane {
-                axis,
-                at,
-                below,
-                above,
-            } => {
+            CutNode::Plane { axis, at, below, above } => {
                 // The sign of a difference is that of the comparison, so that the own side is at
                 // distance 0.
                 let beyond = f64::from(centre[axis]) - f64::from(at);
@@ -192,12 +161,7 @@ impl Cuts {
         while let Some((node, cell)) = stack.pop() {
             match self.nodes[node] {
                 CutNode::Cell(rank) => cells[rank] = cell,
-                CutNode::Plane {
-                    axis,
-                    at,
-                    below,
-                    above,
-                } => {
+                CutNode::Plane { axis, at, below, above } => {
                     let [mut lower, mut upper] = [cell; 2];
                     (lower[1][axis], upper[0][axis]) = (at, at);
                     stack.extend([(below, lower), (above, upper)]);
@@ -231,13 +195,7 @@ fn widest_axes(
     let widest = |ends: &[u64; 6]| {
         let end = |key: u64| f64::from(of_key(key as u32));
         let extent = |axis: usize| end(ends[3 + axis]) - end(u64::from(!(ends[axis] as u32)));
-        (1..3).fold(0, |best, axis| {
-            if extent(axis) > extent(best) {
-                axis
-            } else {
-                best
-            }
-        })
+        (1..3).fold(0, |best, axis| if extent(axis) > extent(best) { axis } else { best })
     };
     ends.iter().map(widest).collect()
 }
@@ -284,11 +242,7 @@ fn select(
         }
     }
     // A part without centres has been led beyond all numbers, and any plane will do.
-    let plane = |prefix: u32| {
-        Some(of_key(prefix))
-            .filter(|at| at.is_finite())
-            .unwrap_or(0.0)
-    };
+    let plane = |prefix: u32| Some(of_key(prefix)).filter(|at| at.is_finite()).unwrap_or(0.0);
     prefix.into_iter().map(plane).collect()
 }
 
@@ -299,13 +253,8 @@ mod tests {
 
     /// Points of a lattice with many equal coordinates, and some far away.
     fn points() -> Vec<[f32; 3]> {
-        let lattice = (0..600).map(|i| {
-            [
-                (i % 10) as f32,
-                (i / 10 % 6) as f32 - 3.0,
-                (i / 60) as f32 * 0.25,
-            ]
-        });
+        let lattice =
+            (0..600).map(|i| [(i % 10) as f32, (i / 10 % 6) as f32 - 3.0, (i / 60) as f32 * 0.25]);
         let far = (0..40).map(|i| [-1.0e6 * i as f32, 1.0e-30 * i as f32, -0.0]);
         lattice.chain(far).collect()
     }
@@ -314,13 +263,8 @@ mod tests {
     fn cuts(ranks: usize, points: &[[f32; 3]], dealt: bool) -> Cuts {
         let made = on_ranks(ranks, |net| {
             let mine = points.iter().enumerate();
-            let mine = mine.filter(|(i, _)| {
-                if dealt {
-                    i % ranks == net.rank()
-                } else {
-                    net.rank() == 0
-                }
-            });
+            let mine =
+                mine.filter(|(i, _)| if dealt { i % ranks == net.rank() } else { net.rank() == 0 });
             let mine: Vec<_> = mine.map(|(_, point)| *point).collect();
             Cuts::make(net, &mine)
         });
@@ -331,11 +275,7 @@ mod tests {
     #[test]
     fn planes_depend_on_the_set_alone() {
         for ranks in [1, 2, 3, 8, 13] {
-            assert_eq!(
-                cuts(ranks, &points(), true),
-                cuts(ranks, &points(), false),
-                "{ranks}"
-            );
+            assert_eq!(cuts(ranks, &points(), true), cuts(ranks, &points(), false), "{ranks}");
         }
     }
 
@@ -351,14 +291,9 @@ mod tests {
         for ranks in [2, 3, 5, 8] {
             let cuts = cuts(ranks, &points, true);
             let mut owned = vec![0; ranks];
-            points
-                .iter()
-                .for_each(|point| owned[cuts.owner(*point)] += 1);
+            points.iter().for_each(|point| owned[cuts.owner(*point)] += 1);
             let fair = points.len() / ranks;
-            assert!(
-                owned.iter().all(|&n| n + 8 >= fair && n <= fair + 8),
-                "{owned:?}"
-            );
+            assert!(owned.iter().all(|&n| n + 8 >= fair && n <= fair + 8), "{owned:?}");
         }
     }
 

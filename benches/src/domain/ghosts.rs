@@ -80,10 +80,7 @@ impl GhostPlan {
             moving.map(|place| place as u32).collect()
         };
         let plan = Self {
-            send: numbers
-                .iter()
-                .map(|list| moving(&mut list.iter().copied()))
-                .collect(),
+            send: numbers.iter().map(|list| moving(&mut list.iter().copied())).collect(),
             receive: ghosts
                 .iter()
                 .map(|list| moving(&mut list.iter().map(|ghost| ghost.number)))
@@ -99,11 +96,7 @@ impl GhostPlan {
             let mut message = Vec::new();
             for &place in places {
                 let place = place as usize;
-                write_pose(
-                    bodies.rotation[place],
-                    bodies.translation[place],
-                    &mut message,
-                );
+                write_pose(bodies.rotation[place], bodies.translation[place], &mut message);
             }
             message
         };

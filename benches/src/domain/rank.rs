@@ -99,17 +99,10 @@ impl<'a, N: Network> Rank<'a, N> {
         scene.velocities = Default::default();
         // Nobody is of interest before bodies are there.
         let settings = CullSettings {
-            interest: scene
-                .cull
-                .interest
-                .as_ref()
-                .map(|_| Interest::Bodies(Vec::new())),
+            interest: scene.cull.interest.as_ref().map(|_| Interest::Bodies(Vec::new())),
             ..scene.cull.clone()
         };
-        let culler = Culler::builder()
-            .settings(&settings)
-            .tier(tier)
-            .threads(threads);
+        let culler = Culler::builder().settings(&settings).tier(tier).threads(threads);
         let culler = culler.build(&scene.shapes, &Bodies::default());
         let culler = culler.map_err(|error| SimulationError::Cull(error).into());
         let (culler, _) = agree(network, culler, 0)?;
@@ -189,11 +182,7 @@ impl<'a, N: Network> Rank<'a, N> {
         let start = Instant::now();
         self.select();
         self.work.seconds.ghosts += start.elapsed().as_secs_f64();
-        Ok(RankFrame {
-            number,
-            pairs: &self.pairs,
-            seconds,
-        })
+        Ok(RankFrame { number, pairs: &self.pairs, seconds })
     }
 
     fn step(&mut self) -> Result<(), DomainError> {
@@ -218,21 +207,12 @@ impl<'a, N: Network> Rank<'a, N> {
 
     /// The ball of the body in a place now.
     pub(super) fn ball(&self, place: usize) -> ([f32; 3], f32) {
-        let Bodies {
-            shape,
-            rotation,
-            translation,
-            ..
-        } = &self.held.bodies;
-        self.culler
-            .reach(shape[place], rotation[place], translation[place])
+        let Bodies { shape, rotation, translation, .. } = &self.held.bodies;
+        self.culler.reach(shape[place], rotation[place], translation[place])
     }
 
     fn has_drifted(&self) -> bool {
-        let mut own = self
-            .held
-            .own()
-            .filter(|&place| self.held.bodies.dynamic[place]);
+        let mut own = self.held.own().filter(|&place| self.held.bodies.dynamic[place]);
         let stays = |place| border::stays(self.ball(place), self.then[place], self.skin);
         self.network.size() > 1 && own.any(|place| !stays(place))
     }
@@ -244,9 +224,7 @@ impl<'a, N: Network> Rank<'a, N> {
         self.pairs.clear();
         // Most pairs are of two bodies owned here: nothing is to be looked up for those.
         let both = |pair: [u32; 2]| pair.iter().all(|&place| held.owned[place as usize]);
-        let own = found
-            .iter()
-            .filter(|&pair| both(pair) || held.owned[decider(&self.then, pair)]);
+        let own = found.iter().filter(|&pair| both(pair) || held.owned[decider(&self.then, pair)]);
         let named = own.map(|pair| pair.map(|place| held.numbers[place as usize]));
         self.pairs.extend(named);
         let ghosts = held.owned.iter().filter(|owned| !**owned).count();
@@ -264,18 +242,8 @@ impl<'a, N: Network> Rank<'a, N> {
 
     /// The numbers and poses of the bodies that this rank owns.
     pub fn poses(&self) -> impl Iterator<Item = (u32, [f32; 4], [f32; 3])> + '_ {
-        let Bodies {
-            rotation,
-            translation,
-            ..
-        } = &self.held.bodies;
-        let pose = |place| {
-            (
-                self.held.numbers[place],
-                rotation[place],
-                translation[place],
-            )
-        };
+        let Bodies { rotation, translation, .. } = &self.held.bodies;
+        let pose = |place| (self.held.numbers[place], rotation[place], translation[place]);
         self.held.own().map(pose)
     }
 }

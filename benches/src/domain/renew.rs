@@ -62,9 +62,7 @@ impl<N: Network> Rank<'_, N> {
         let centres: Vec<[f32; 3]> = places.iter().map(|&place| self.ball(place).0).collect();
         let fair = |cuts: &Cuts| {
             let mut owned = vec![0; ranks];
-            centres
-                .iter()
-                .for_each(|centre| owned[cuts.owner(*centre)] += 1);
+            centres.iter().for_each(|centre| owned[cuts.owner(*centre)] += 1);
             network.sum(&mut owned);
             let most = owned.iter().max().map_or(0.0, |&most| most as f64);
             let equal = owned.iter().sum::<u64>() as f64 / ranks as f64;
@@ -89,9 +87,7 @@ impl<N: Network> Rank<'_, N> {
         self.cuts = Some(cuts);
         self.work.bytes_of_migration += outgoing.iter().map(|m| m.len() as u64).sum::<u64>();
         let received = network.exchange(outgoing);
-        let arrived = received
-            .iter()
-            .flat_map(|message| BodyMessage::read_all(message, true));
+        let arrived = received.iter().flat_map(|message| BodyMessage::read_all(message, true));
         self.held.change(|place| stays[place], arrived.collect());
     }
 
@@ -100,11 +96,7 @@ impl<N: Network> Rank<'_, N> {
         let reaches = || self.then.iter().map(|(_, reach)| *reach);
         let widest = reaches().fold(0.0, f32::max);
         let sum: f64 = reaches().map(f64::from).sum();
-        let mine = [
-            self.then.len() as u64,
-            sum.to_bits(),
-            u64::from(widest.to_bits()),
-        ];
+        let mine = [self.then.len() as u64, sum.to_bits(), u64::from(widest.to_bits())];
         let all = self.network.gather(&mine);
         let (ranks, _) = all.as_chunks::<3>();
         // Added up in the order of ranks, so that all come to the same mean.
@@ -116,10 +108,7 @@ impl<N: Network> Rank<'_, N> {
             _ => None,
         };
         BorderFacts {
-            widest: ranks
-                .iter()
-                .map(|[.., widest]| f32::from_bits(*widest as u32))
-                .collect(),
+            widest: ranks.iter().map(|[.., widest]| f32::from_bits(*widest as u32)).collect(),
             skin: border::skin(mean, SKIN_SHARE),
             everywhere,
         }
@@ -128,25 +117,19 @@ impl<N: Network> Rank<'_, N> {
     /// Gives the bodies that the rank holds now to the effects and the culler.
     fn take_up(&mut self) {
         let held = &mut self.held;
-        let movers: Vec<bool> = held
-            .owned
-            .iter()
-            .zip(&held.bodies.dynamic)
-            .map(|(a, b)| *a && *b)
-            .collect();
+        let movers: Vec<bool> =
+            held.owned.iter().zip(&held.bodies.dynamic).map(|(a, b)| *a && *b).collect();
         let velocities = std::mem::take(&mut held.velocities);
-        self.effects
-            .replace(&held.numbers, velocities, runs(&movers));
+        self.effects.replace(&held.numbers, velocities, runs(&movers));
         if let Some(interest) = &self.scene.cull.interest {
             let place = |number: u32| held.place(number).map(|place| place as u32);
             self.culler.set_interest(match interest {
                 Interest::Bodies(list) => {
                     Interest::Bodies(list.iter().filter_map(|&number| place(number)).collect())
                 }
-                Interest::Cone(cone) => Interest::Cone(ViewCone {
-                    body: cone.body.and_then(place),
-                    ..cone.clone()
-                }),
+                Interest::Cone(cone) => {
+                    Interest::Cone(ViewCone { body: cone.body.and_then(place), ..cone.clone() })
+                }
             });
         }
         self.culler.replace(&held.bodies, &vec![true; held.len()]);

@@ -113,23 +113,12 @@ pub fn run<N: Network>(
         ..culling
     };
     take_largest(network, {
-        let Seconds {
-            construct,
-            effects,
-            update,
-            pair_finding,
-            ordop,
-            total,
-        } = &mut seconds;
+        let Seconds { construct, effects, update, pair_finding, ordop, total } = &mut seconds;
         [construct, effects, update, pair_finding, ordop, total]
     });
     let mut border = rank.work.seconds;
     take_largest(network, {
-        let BorderSeconds {
-            ghosts,
-            migration,
-            waiting,
-        } = &mut border;
+        let BorderSeconds { ghosts, migration, waiting } = &mut border;
         [ghosts, migration, waiting]
     });
     let mut frame_seconds = Percentiles::of(frames);
@@ -155,17 +144,11 @@ pub fn run<N: Network>(
 
 /// All ranks' pairs, sorted, on rank 0; nothing elsewhere.
 fn gathered(network: &impl Network, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    let bytes = pairs
-        .as_flattened()
-        .iter()
-        .flat_map(|number| number.to_le_bytes());
+    let bytes = pairs.as_flattened().iter().flat_map(|number| number.to_le_bytes());
     let all = tell_first(network, bytes.collect()).concat();
     let (words, _) = all.as_chunks::<4>();
     let (pairs, _) = words.as_chunks::<2>();
-    let mut pairs: Vec<_> = pairs
-        .iter()
-        .map(|pair| pair.map(u32::from_le_bytes))
-        .collect();
+    let mut pairs: Vec<_> = pairs.iter().map(|pair| pair.map(u32::from_le_bytes)).collect();
     pairs.sort_unstable();
     pairs
 }
@@ -181,10 +164,7 @@ fn updates_of_a_ghost<N: Network>(
 
 /// This rank's counters without the updates of its ghosts, and with the pairs that it reports.
 fn own_counters<N: Network>(rank: &Rank<'_, N>, reported: u64) -> Counters {
-    let mut counters = Counters {
-        reported,
-        ..*rank.culler.counters()
-    };
+    let mut counters = Counters { reported, ..*rank.culler.counters() };
     for volume in updates_of_a_ghost(rank) {
         counters.of_mut(volume).updates -= rank.work.moving_ghosts;
     }
@@ -230,17 +210,8 @@ fn take_largest<const N: usize>(network: &impl Network, mut seconds: [&mut f64; 
 fn lines<N: Network>(rank: &Rank<'_, N>) -> Vec<RankLine> {
     let work = &rank.work;
     let updates = updates_of_a_ghost(rank).count() as u64;
-    let BorderSeconds {
-        ghosts,
-        migration,
-        waiting,
-    } = work.seconds;
-    let effects: f64 = rank
-        .effects
-        .reports()
-        .iter()
-        .map(|effect| effect.seconds)
-        .sum();
+    let BorderSeconds { ghosts, migration, waiting } = work.seconds;
+    let effects: f64 = rank.effects.reports().iter().map(|effect| effect.seconds).sum();
     let mine = [
         rank.bodies()[0] as u64,
         work.ghosts,

@@ -13,10 +13,7 @@ use sdop::bodies::Bodies;
 
 /// `brownian = { share = 0.01, speed = [min, max] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a table such as { share = 0.1, speed = [0, 2] }"
-)]
+#[serde(deny_unknown_fields, expecting = "a table such as { share = 0.1, speed = [0, 2] }")]
 pub struct Settings {
     /// Mean share of the dynamic bodies that a step kicks.
     pub share: Share,

@@ -23,11 +23,7 @@ pub(super) struct Contacts {
 impl Contacts {
     pub fn new(shapes: &[Shape]) -> Self {
         let balls = shapes.iter().map(|s| (s.ball.centre, s.ball.radius));
-        Self {
-            balls: balls.collect(),
-            spheres: Vec::new(),
-            grid: ContactGrid::default(),
-        }
+        Self { balls: balls.collect(), spheres: Vec::new(), grid: ContactGrid::default() }
     }
 
     /// Finds the spheres of all bodies at their poses.
@@ -36,10 +32,7 @@ impl Contacts {
         self.spheres.extend((0..bodies.len()).map(|body| {
             let (centre, radius) = self.balls[bodies.shape[body] as usize];
             let world = world_centre(centre, &bodies.rotation[body], &bodies.translation[body]);
-            WorldSphere {
-                centre: world.map(f64::from),
-                radius: f64::from(radius),
-            }
+            WorldSphere { centre: world.map(f64::from), radius: f64::from(radius) }
         }));
         self.grid.sort(&self.spheres);
     }
@@ -117,10 +110,7 @@ impl ContactGrid {
     /// rounding, and at most about one per body.
     fn fit(&mut self, spheres: &[WorldSphere]) {
         let along = |axis: usize| spheres.iter().map(move |sphere| sphere.centre[axis]);
-        let widest = spheres
-            .iter()
-            .map(|sphere| 2.0 * sphere.radius)
-            .fold(0.0, f64::max);
+        let widest = spheres.iter().map(|sphere| 2.0 * sphere.radius).fold(0.0, f64::max);
         let most = libm::ceil(libm::cbrt(spheres.len() as f64));
         for axis in 0..3 {
             self.low[axis] = along(axis).fold(f64::MAX, f64::min);
@@ -129,11 +119,7 @@ impl ContactGrid {
             let count = libm::floor(extent / width) + 1.0;
             // One cell where everything lies in one point, or where nothing does.
             self.per_length[axis] = if width > 0.0 { 1.0 / width } else { 0.0 };
-            self.cells[axis] = if count <= most + 1.0 {
-                count as usize
-            } else {
-                1
-            };
+            self.cells[axis] = if count <= most + 1.0 { count as usize } else { 1 };
         }
     }
 

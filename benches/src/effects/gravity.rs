@@ -52,24 +52,13 @@ impl<'de> Visitor<'de> for GravityVisitor {
 
     fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Settings, A::Error> {
         let acceleration = Deserialize::deserialize(SeqAccessDeserializer::new(seq))?;
-        Ok(Settings {
-            acceleration,
-            period: None,
-            axis: None,
-        })
+        Ok(Settings { acceleration, period: None, axis: None })
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Settings, A::Error> {
-        let Table {
-            acceleration,
-            period,
-            axis,
-        } = Deserialize::deserialize(MapAccessDeserializer::new(map))?;
-        Ok(Settings {
-            acceleration,
-            period,
-            axis,
-        })
+        let Table { acceleration, period, axis } =
+            Deserialize::deserialize(MapAccessDeserializer::new(map))?;
+        Ok(Settings { acceleration, period, axis })
     }
 }
 
@@ -96,9 +85,8 @@ pub(super) fn new(settings: &Settings, start: &InitialState<'_>) -> BuiltEffect 
             "any vector but zero, for example axis = [0, 0, 1]",
         ));
     }
-    let turns_a_step = settings
-        .period
-        .map(|Positive(period)| f64::from(start.dt) / f64::from(period));
+    let turns_a_step =
+        settings.period.map(|Positive(period)| f64::from(start.dt) / f64::from(period));
     Ok(Box::new(Gravity {
         dt: start.dt,
         acceleration: vector(settings.acceleration).map(f64::from),
@@ -140,11 +128,7 @@ impl Effect for Gravity {
 fn rotated(a: [f64; 3], k: [f64; 3], angle: f64) -> [f64; 3] {
     let (sin, cos) = libm::sincos(angle);
     let along = dot(k, a) * (1.0 - cos);
-    let across = [
-        k[1] * a[2] - k[2] * a[1],
-        k[2] * a[0] - k[0] * a[2],
-        k[0] * a[1] - k[1] * a[0],
-    ];
+    let across = [k[1] * a[2] - k[2] * a[1], k[2] * a[0] - k[0] * a[2], k[0] * a[1] - k[1] * a[0]];
     [0, 1, 2].map(|i| a[i] * cos + across[i] * sin + k[i] * along)
 }
 

@@ -238,9 +238,7 @@ impl Effects {
             report.visited += visited as u64;
             report.changed += changed;
         }
-        self.awake
-            .iter()
-            .try_for_each(|run| check_poses(bodies, run.clone()))
+        self.awake.iter().try_for_each(|run| check_poses(bodies, run.clone()))
     }
 
     /// Replaces the set of bodies: their `numbers` in the scene in ascending order, their

@@ -25,11 +25,7 @@ impl<'de> Deserialize<'de> for Settings {
             }
 
             fn visit_bool<E: Error>(self, on: bool) -> Result<Settings, E> {
-                if on {
-                    Ok(Settings)
-                } else {
-                    Err(E::invalid_value(Unexpected::Bool(on), &self))
-                }
+                if on { Ok(Settings) } else { Err(E::invalid_value(Unexpected::Bool(on), &self)) }
             }
         }
         deserializer.deserialize_bool(TrueVisitor)

@@ -29,9 +29,7 @@ struct Elastic {
 }
 
 pub(super) fn new(Settings::Elastic: &Settings, start: &InitialState<'_>) -> BuiltEffect {
-    Ok(Box::new(Elastic {
-        contacts: Contacts::new(start.shapes),
-    }))
+    Ok(Box::new(Elastic { contacts: Contacts::new(start.shapes) }))
 }
 
 impl Effect for Elastic {

@@ -46,11 +46,7 @@ struct Rest {
 }
 
 pub(super) fn new(settings: &Settings, start: &InitialState<'_>) -> BuiltEffect {
-    let Settings {
-        speed: Positive(speed),
-        rate,
-        after: Positive(after),
-    } = *settings;
+    let Settings { speed: Positive(speed), rate, after: Positive(after) } = *settings;
     // The cast saturates.
     let steps = libm::ceil(f64::from(after) / f64::from(start.dt)).max(1.0) as u32;
     let square = |limit: f32| f64::from(limit) * f64::from(limit);
@@ -87,12 +83,7 @@ impl Rest {
     fn find_awake(&mut self, dynamic: &[Range<usize>]) {
         let mut awake = std::mem::take(&mut self.awake);
         awake.clear();
-        for body in dynamic
-            .iter()
-            .cloned()
-            .flatten()
-            .filter(|&b| self.is_awake(b))
-        {
+        for body in dynamic.iter().cloned().flatten().filter(|&b| self.is_awake(b)) {
             match awake.last_mut() {
                 Some(run) if run.end == body => run.end += 1,
                 _ => awake.push(body..body + 1),
@@ -109,8 +100,7 @@ impl Rest {
         self.contacts.find_spheres(bodies);
         for &body in fast {
             // A static body's steps are never read, and a fast one's are 0.
-            self.contacts
-                .each_touching(body, |other| self.slow_steps[other] = 0);
+            self.contacts.each_touching(body, |other| self.slow_steps[other] = 0);
         }
     }
 }

@@ -27,9 +27,7 @@ struct Spin {
 }
 
 pub(super) fn new(_: &Settings, start: &InitialState<'_>) -> BuiltEffect {
-    Ok(Box::new(Spin {
-        half_dt: 0.5 * start.dt,
-    }))
+    Ok(Box::new(Spin { half_dt: 0.5 * start.dt }))
 }
 
 impl Effect for Spin {

@@ -40,14 +40,8 @@ pub(super) fn new(kind: &Settings, start: &InitialState<'_>) -> BuiltEffect {
         ));
     };
     let half = 0.5 * side;
-    let shapes = start
-        .shapes
-        .iter()
-        .map(|s| (s.ball.centre, half - s.ball.radius));
-    let walls = Walls {
-        kind: *kind,
-        shapes: shapes.collect(),
-    };
+    let shapes = start.shapes.iter().map(|s| (s.ball.centre, half - s.ball.radius));
+    let walls = Walls { kind: *kind, shapes: shapes.collect() };
     let bodies = &start.bodies;
     for body in (0..bodies.len()).filter(|&body| bodies.dynamic[body]) {
         let (centre, limit) = walls.shapes[bodies.shape[body] as usize];

@@ -49,10 +49,7 @@ impl HullGraph {
         Self {
             starts: (0..=points.len()).map(start).collect(),
             links: edges.iter().map(|&[_, to]| to).collect(),
-            points: points
-                .iter()
-                .map(|p| DVec3::from_array(p.map(f64::from)))
-                .collect(),
+            points: points.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect(),
             reach: f64::from(shape.reach),
         }
     }
@@ -162,10 +159,7 @@ impl GjkWalk<'_> {
     /// The certificate: along `direction` all of A is below all of B.
     fn separates(&self, direction: DVec3) -> bool {
         let unit = direction.normalize();
-        let (towards, away) = (
-            self.a.turn.transpose() * unit,
-            self.b.turn.transpose() * -unit,
-        );
+        let (towards, away) = (self.a.turn.transpose() * unit, self.b.turn.transpose() * -unit);
         let top = |graph: &HullGraph, d: DVec3| graph.points[graph.scan(d) as usize].dot(d);
         let reach = top(self.a.graph, towards) + top(self.b.graph, away);
         reach - self.gap.dot(unit) < -self.margin
@@ -239,11 +233,7 @@ impl Simplex {
     fn tetrahedron(&mut self, a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Option<DVec3> {
         for (b, c, opposite) in [(b, c, d), (c, d, b), (d, b, c)] {
             let normal = (b - a).cross(c - a);
-            let outward = if normal.dot(opposite - a) > 0.0 {
-                -normal
-            } else {
-                normal
-            };
+            let outward = if normal.dot(opposite - a) > 0.0 { -normal } else { normal };
             if outward.dot(-a) > 0.0 {
                 return Some(self.triangle(a, b, c));
             }

@@ -27,11 +27,7 @@ impl Conditions {
     /// Before anything is measured.
     #[must_use]
     pub fn before() -> Self {
-        Self {
-            others: [load(), None],
-            wide: 0,
-            of: 0,
-        }
+        Self { others: [load(), None], wide: 0, of: 0 }
     }
 
     /// After everything is: with the times that will be quoted.
@@ -42,10 +38,7 @@ impl Conditions {
         let others = load().map(|load| (load - 1.0).max(0.0));
         Self {
             others: [self.others[0], others],
-            wide: times
-                .iter()
-                .filter(|time| time.relative() > WIDE_INTERVAL)
-                .count(),
+            wide: times.iter().filter(|time| time.relative() > WIDE_INTERVAL).count(),
             of: times.len(),
         }
     }
@@ -53,12 +46,7 @@ impl Conditions {
     /// Whether the times shouldn't be quoted.
     #[must_use]
     pub fn disturbed(&self) -> bool {
-        self.wide > 0
-            || self
-                .others
-                .iter()
-                .flatten()
-                .any(|&others| others > BUSY_PROCESSES)
+        self.wide > 0 || self.others.iter().flatten().any(|&others| others > BUSY_PROCESSES)
     }
 
     /// What to say of it; `None` of an undisturbed machine.
@@ -94,21 +82,10 @@ mod tests {
     /// A wide interval or a load is a disturbance.
     #[test]
     fn wide_interval_or_load_disturbs() {
-        let quiet = Conditions {
-            others: [Some(0.1), Some(0.2)],
-            wide: 0,
-            of: 2,
-        };
+        let quiet = Conditions { others: [Some(0.1), Some(0.2)], wide: 0, of: 2 };
         assert_eq!(quiet.warning(), None);
-        let loaded = Conditions {
-            others: [Some(0.1), Some(3.0)],
-            ..quiet
-        };
-        assert!(
-            loaded
-                .warning()
-                .is_some_and(|text| text.contains("3.0 after"))
-        );
+        let loaded = Conditions { others: [Some(0.1), Some(3.0)], ..quiet };
+        assert!(loaded.warning().is_some_and(|text| text.contains("3.0 after")));
         let times = [[1.0, 1.01, 0.99], [1.0, 2.0, 0.5]];
         let wide = quiet.after(times.iter().map(|times| Estimate::of(times)));
         assert_eq!((wide.wide, wide.of), (1, 2));

@@ -55,10 +55,7 @@ impl Counts {
     /// What was counted since `before`.
     #[must_use]
     pub fn since(&self, before: &Self) -> Self {
-        Self {
-            culler: self.culler.since(&before.culler),
-            hulls: self.hulls.since(&before.hulls),
-        }
+        Self { culler: self.culler.since(&before.culler), hulls: self.hulls.since(&before.hulls) }
     }
 
     /// The counters of one volume.

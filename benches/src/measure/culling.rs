@@ -40,12 +40,7 @@ impl StageSeconds {
     /// where the interruption most likely was.
     #[must_use]
     pub fn without(mut self, waited: f64) -> Self {
-        let stages = [
-            &mut self.update,
-            &mut self.finding,
-            &mut self.refining,
-            &mut self.hulls,
-        ];
+        let stages = [&mut self.update, &mut self.finding, &mut self.refining, &mut self.hulls];
         let longest = stages.into_iter().max_by(|a, b| a.total_cmp(b));
         if let Some(longest) = longest {
             *longest = (*longest - waited).max(0.0);
@@ -125,13 +120,7 @@ impl Culling {
     }
 
     fn of(engine: Engine, construct: f64) -> Self {
-        Self {
-            engine,
-            hulls: None,
-            last: StageSeconds::default(),
-            construct,
-            refused: None,
-        }
+        Self { engine, hulls: None, last: StageSeconds::default(), construct, refused: None }
     }
 
     /// Adds a test of each pair that the culler reports by its convex hulls; none in a world.
@@ -182,10 +171,7 @@ impl Culling {
     /// All counters, summed over frames.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        Counts {
-            culler: self.counters(),
-            hulls: self.hull_counters(),
-        }
+        Counts { culler: self.counters(), hulls: self.hull_counters() }
     }
 }
 

@@ -94,11 +94,7 @@ impl Estimate {
     /// The estimate in another unit.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        Self {
-            mean: factor * self.mean,
-            half_width: factor.abs() * self.half_width,
-            ..*self
-        }
+        Self { mean: factor * self.mean, half_width: factor.abs() * self.half_width, ..*self }
     }
 }
 
@@ -157,11 +153,8 @@ mod tests {
         let mut scatter = drift.clone();
         (0..20).for_each(|i| scatter.swap(i, (7 * i + 3) % 20));
         assert!(lag_1(&drift) > 0.8 && lag_1(&scatter) < 0.4);
-        let [plain, drift, scatter] = [
-            Estimate::of(&drift),
-            Estimate::in_order(&drift),
-            Estimate::in_order(&scatter),
-        ];
+        let [plain, drift, scatter] =
+            [Estimate::of(&drift), Estimate::in_order(&drift), Estimate::in_order(&scatter)];
         assert_eq!(drift.mean, plain.mean);
         assert!(drift.half_width > 3.0 * plain.half_width, "{drift:?}");
         assert!(scatter.half_width < drift.half_width, "{scatter:?}");

@@ -46,11 +46,7 @@ impl std::fmt::Display for Machine {
             "{}, {} cores, {}, {}; sdop {}, {}",
             self.cpu, self.cores, self.os, self.simd, self.version, self.rustc
         )?;
-        if self.optimised {
-            Ok(())
-        } else {
-            f.write_str(", a build with debug assertions")
-        }
+        if self.optimised { Ok(()) } else { f.write_str(", a build with debug assertions") }
     }
 }
 
@@ -58,9 +54,7 @@ impl std::fmt::Display for Machine {
 fn cpu() -> Option<String> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let value = |key: &str| {
-        let line = text
-            .lines()
-            .find(|line| line.split(':').next().map(str::trim) == Some(key))?;
+        let line = text.lines().find(|line| line.split(':').next().map(str::trim) == Some(key))?;
         Some(line.split_once(':')?.1.trim().to_owned())
     };
     let name = value("model name")?;
@@ -71,11 +65,6 @@ fn cpu() -> Option<String> {
 /// The system and its release, as far as a file says.
 fn os() -> String {
     let kernel = std::fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
-    let release: String = kernel
-        .chars()
-        .take_while(|c| c.is_ascii_digit() || *c == '.')
-        .collect();
-    format!("{} {}", std::env::consts::OS, release.trim_matches('.'))
-        .trim()
-        .to_owned()
+    let release: String = kernel.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+    format!("{} {}", std::env::consts::OS, release.trim_matches('.')).trim().to_owned()
 }

@@ -44,16 +44,11 @@ impl SceneWorld {
         let mut waiting = WaitingTime::of_this_thread();
         let (waited, start) = (waiting.seconds(), Instant::now());
         // Strategies that a world is timed with have no use for bodies of interest.
-        let settings = CullSettings {
-            interest: None,
-            ..settings.clone()
-        };
+        let settings = CullSettings { interest: None, ..settings.clone() };
         let builder = Culler::builder().settings(&settings).tier(tier);
         let mut world = World::with(shapes.to_vec(), &builder)?;
         let posed = (0..bodies.len()).map(|body| world_body(bodies, None, body));
-        let ids = posed
-            .map(|body| world.insert(body))
-            .collect::<Result<Vec<_>, _>>()?;
+        let ids = posed.map(|body| world.insert(body)).collect::<Result<Vec<_>, _>>()?;
         world.cull()?;
         let moving = (0..bodies.len()).find(|&body| bodies.dynamic[body]);
         if let Some(id) = moving.map(|body| ids[body]) {
@@ -98,8 +93,7 @@ impl SceneWorld {
     pub fn cull(&mut self, bodies: &Bodies) -> Result<(), WorldError> {
         for &body in &self.moved {
             let t = bodies.translation[body].map(f64::from);
-            self.world
-                .set_pose(self.ids[body], bodies.rotation[body], t)?;
+            self.world.set_pose(self.ids[body], bodies.rotation[body], t)?;
         }
         self.world.cull().map(|_| ())
     }

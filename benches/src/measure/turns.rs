@@ -94,10 +94,7 @@ impl Turns {
     /// Rounds whose orders are drawn from a separate stream.
     #[must_use]
     pub fn from_stream(stream: u32) -> Self {
-        Self {
-            round: u64::from(stream) << 32,
-            displacement: 0,
-        }
+        Self { round: u64::from(stream) << 32, displacement: 0 }
     }
 
     /// Runs a round: every contestant takes all frames of the round in one turn. `each` gets every
@@ -126,19 +123,8 @@ impl Turns {
                 let seconds = seconds - waited;
                 watched = seconds > LEAST_WATCHED_SECONDS;
                 contestant.settle();
-                let regime = if frame == 0 {
-                    Regime::Cold
-                } else {
-                    Regime::Warm
-                };
-                each(TimedFrame {
-                    number,
-                    contestant,
-                    frame,
-                    seconds,
-                    waited,
-                    regime,
-                });
+                let regime = if frame == 0 { Regime::Cold } else { Regime::Warm };
+                each(TimedFrame { number, contestant, frame, seconds, waited, regime });
             }
         }
     }
@@ -204,12 +190,7 @@ impl FrameTimes {
             |stage: fn(&StageSeconds) -> f64| median(self.of(regime).iter().map(stage).collect());
         let (update, refining, hulls) = (of(|s| s.update), of(|s| s.refining), of(|s| s.hulls));
         let total = of(StageSeconds::total);
-        StageSeconds {
-            update,
-            finding: total - update - refining - hulls,
-            refining,
-            hulls,
-        }
+        StageSeconds { update, finding: total - update - refining - hulls, refining, hulls }
     }
 
     /// Whole frames: the median with its quartiles.
@@ -232,9 +213,8 @@ impl FrameTimes {
 }
 
 fn mean<'a>(frames: impl Iterator<Item = &'a StageSeconds>) -> f64 {
-    let (sum, count) = frames.fold((0.0, 0_u32), |(sum, count), frame| {
-        (sum + frame.total(), count + 1)
-    });
+    let (sum, count) =
+        frames.fold((0.0, 0_u32), |(sum, count), frame| (sum + frame.total(), count + 1));
     sum / f64::from(count)
 }
 
@@ -260,22 +240,14 @@ impl Quartiles {
                 .map(|place| values.get(place as usize).copied().unwrap_or(0.0));
             below + place.fract() * (above - below)
         };
-        Self {
-            low: at(1),
-            median: at(2),
-            high: at(3),
-        }
+        Self { low: at(1), median: at(2), high: at(3) }
     }
 
     /// The means of the quartiles of several sets of frames.
     #[must_use]
     pub fn mean(all: &[Self]) -> Self {
         let over = |value: fn(&Self) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
-        Self {
-            low: over(|q| q.low),
-            median: over(|q| q.median),
-            high: over(|q| q.high),
-        }
+        Self { low: over(|q| q.low), median: over(|q| q.median), high: over(|q| q.high) }
     }
 }
 
@@ -366,10 +338,7 @@ mod tests {
 
     #[test]
     fn contestants_alternate_over_all_frames() {
-        let frame = |bodies: usize| Bodies {
-            shape: vec![0; bodies],
-            ..Bodies::default()
-        };
+        let frame = |bodies: usize| Bodies { shape: vec![0; bodies], ..Bodies::default() };
         let mut contestants: Vec<FrameRecorder> =
             (0..3).map(|_| FrameRecorder::default()).collect();
         let (mut turns, mut begins) = (Turns::default(), Vec::new());

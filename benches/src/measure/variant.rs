@@ -26,31 +26,19 @@ impl Variant {
     /// Culling by some settings.
     #[must_use]
     pub fn of(name: String, settings: CullSettings) -> Self {
-        Self {
-            name,
-            settings,
-            hulls: false,
-            in_world: false,
-        }
+        Self { name, settings, hulls: false, in_world: false }
     }
 
     /// The same in a world.
     #[must_use]
     pub fn in_world(self) -> Self {
-        Self {
-            name: format!("{}, world", self.name),
-            in_world: true,
-            ..self
-        }
+        Self { name: format!("{}, world", self.name), in_world: true, ..self }
     }
 
     /// A strategy with a scene's other settings, named after the strategy.
     #[must_use]
     pub fn strategy(own: &CullSettings, strategy: Strategy) -> Self {
-        let settings = CullSettings {
-            strategy,
-            ..own.clone()
-        };
+        let settings = CullSettings { strategy, ..own.clone() };
         Self::of(strategy.name().to_owned(), settings)
     }
 
@@ -72,11 +60,7 @@ impl Variant {
     /// Spheres, then convex hulls.
     #[must_use]
     pub fn hulls(own: &CullSettings) -> Self {
-        Self {
-            name: "sphere + hull".into(),
-            hulls: true,
-            ..Self::spheres(own)
-        }
+        Self { name: "sphere + hull".into(), hulls: true, ..Self::spheres(own) }
     }
 
     /// The volumes that it tests, in the order of the tests.
@@ -96,11 +80,7 @@ impl Variant {
     /// The scene with these settings and with the or-DOPs that they need.
     #[must_use]
     pub fn apply(&self, scene: &Scene) -> Scene {
-        Scene {
-            shapes: self.shapes(scene),
-            cull: self.settings.clone(),
-            ..scene.clone()
-        }
+        Scene { shapes: self.shapes(scene), cull: self.settings.clone(), ..scene.clone() }
     }
 
     /// The scene's shapes with the or-DOPs that the settings need.
@@ -111,10 +91,7 @@ impl Variant {
             if axes == scene.cull.axes && k == shape.ordop.directions {
                 return shape.clone();
             }
-            Shape {
-                ordop: shape.ordop_along(axes, k),
-                ..shape.clone()
-            }
+            Shape { ordop: shape.ordop_along(axes, k), ..shape.clone() }
         };
         scene.shapes.iter().map(refit).collect()
     }
@@ -141,10 +118,6 @@ impl Variant {
             return Culling::in_world(shapes, &scene.bodies, &self.settings, tier);
         }
         let culling = Culling::new(shapes, &scene.bodies, &self.settings, tier)?;
-        Ok(if self.hulls {
-            culling.with_hulls(shapes)
-        } else {
-            culling
-        })
+        Ok(if self.hulls { culling.with_hulls(shapes) } else { culling })
     }
 }

@@ -27,14 +27,10 @@ pub fn on_ranks<T: Send>(ranks: usize, work: impl Fn(&LocalRank) -> T + Sync) ->
         }
     }
     let ends = to.into_iter().zip(from).enumerate();
-    let ranks: Vec<_> = ends
-        .map(|(rank, (to, from))| LocalRank { rank, to, from })
-        .collect();
+    let ranks: Vec<_> = ends.map(|(rank, (to, from))| LocalRank { rank, to, from }).collect();
     let work = &work;
     std::thread::scope(|scope| {
-        let threads = ranks
-            .into_iter()
-            .map(|rank| scope.spawn(move || work(&rank)));
+        let threads = ranks.into_iter().map(|rank| scope.spawn(move || work(&rank)));
         let threads: Vec<_> = threads.collect();
         let ended = threads.into_iter().map(|thread| match thread.join() {
             Ok(value) => value,
@@ -82,16 +78,10 @@ impl Network for LocalRank {
     }
 
     fn gather(&self, mine: &[u64]) -> Vec<u64> {
-        let bytes: Vec<u8> = mine
-            .iter()
-            .flat_map(|number| number.to_le_bytes())
-            .collect();
+        let bytes: Vec<u8> = mine.iter().flat_map(|number| number.to_le_bytes()).collect();
         let all = self.exchange(vec![bytes; self.size()]).concat();
         let (numbers, _) = all.as_chunks::<8>();
-        numbers
-            .iter()
-            .map(|bytes| u64::from_le_bytes(*bytes))
-            .collect()
+        numbers.iter().map(|bytes| u64::from_le_bytes(*bytes)).collect()
     }
 
     fn sum(&self, numbers: &mut [u64]) {
@@ -128,9 +118,8 @@ mod tests {
                 (received, net.gather(&[7, net.rank() as u64]), sum, max)
             });
             for (rank, (received, gathered, sum, max)) in seen.into_iter().enumerate() {
-                let expected: Vec<_> = (0..ranks)
-                    .map(|from| vec![from as u8, rank as u8])
-                    .collect();
+                let expected: Vec<_> =
+                    (0..ranks).map(|from| vec![from as u8, rank as u8]).collect();
                 assert_eq!(received, expected);
                 let expected: Vec<_> = (0..ranks as u64).flat_map(|from| [7, from]).collect();
                 assert_eq!(gathered, expected);

@@ -67,28 +67,19 @@ impl Network for MpiNetwork {
 
     fn exchange(&self, outgoing: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
         let piece = MOST_BYTES_PER_CALL / self.size();
-        let lengths: Vec<u64> = outgoing
-            .iter()
-            .map(|message| message.len() as u64)
-            .collect();
+        let lengths: Vec<u64> = outgoing.iter().map(|message| message.len() as u64).collect();
         let mut theirs = vec![0_u64; self.size()];
         self.world.all_to_all_into(&lengths[..], &mut theirs[..]);
         let mut most = [lengths.into_iter().max().unwrap_or(0)];
         self.max(&mut most);
-        let mut received: Vec<Vec<u8>> = theirs
-            .iter()
-            .map(|&length| Vec::with_capacity(length as usize))
-            .collect();
+        let mut received: Vec<Vec<u8>> =
+            theirs.iter().map(|&length| Vec::with_capacity(length as usize)).collect();
         for start in (0..most[0] as usize).step_by(piece) {
             let part = |length: usize| start.min(length)..(start + piece).min(length);
-            let pieces: Vec<&[u8]> = outgoing
-                .iter()
-                .map(|message| &message[part(message.len())])
-                .collect();
-            let lengths: Vec<usize> = theirs
-                .iter()
-                .map(|&length| part(length as usize).len())
-                .collect();
+            let pieces: Vec<&[u8]> =
+                outgoing.iter().map(|message| &message[part(message.len())]).collect();
+            let lengths: Vec<usize> =
+                theirs.iter().map(|&length| part(length as usize).len()).collect();
             let bytes = self.exchange_pieces(&pieces, &lengths);
             let mut rest = &bytes[..];
             for (message, length) in received.iter_mut().zip(lengths) {
@@ -108,14 +99,12 @@ impl Network for MpiNetwork {
 
     fn sum(&self, numbers: &mut [u64]) {
         let mine = numbers.to_vec();
-        self.world
-            .all_reduce_into(&mine[..], numbers, SystemOperation::sum());
+        self.world.all_reduce_into(&mine[..], numbers, SystemOperation::sum());
     }
 
     fn max(&self, numbers: &mut [u64]) {
         let mine = numbers.to_vec();
-        self.world
-            .all_reduce_into(&mine[..], numbers, SystemOperation::max());
+        self.world.all_reduce_into(&mine[..], numbers, SystemOperation::max());
     }
 
     fn wait(&self) {

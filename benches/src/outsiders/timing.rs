@@ -95,18 +95,13 @@ pub(crate) fn ours(strategy: Strategy, case: &Case) -> Result<Vec<Answer>, CullE
     let Some(first) = case.frames.first() else {
         return Ok(Vec::new());
     };
-    let mut culler = Culler::builder()
-        .strategy(strategy)
-        .build(&case.shapes, &first.bodies)?;
+    let mut culler = Culler::builder().strategy(strategy).build(&case.shapes, &first.bodies)?;
     let mut answers = Vec::new();
     for frame in &case.frames {
         let start = Instant::now();
         culler.cull(&frame.bodies)?;
         let ns = start.elapsed().as_nanos() as u64;
-        answers.push(Answer {
-            pairs: culler.pairs().sorted(),
-            ns: Some(ns),
-        });
+        answers.push(Answer { pairs: culler.pairs().sorted(), ns: Some(ns) });
     }
     Ok(answers)
 }
@@ -133,11 +128,7 @@ pub fn compare(
             theirs.add(case, subject.answer(case), true)?;
         }
     }
-    Ok(own
-        .into_iter()
-        .chain([theirs])
-        .map(TimedContestant::timing)
-        .collect())
+    Ok(own.into_iter().chain([theirs]).map(TimedContestant::timing).collect())
 }
 
 /// A contestant between its turns.
@@ -151,13 +142,7 @@ struct TimedContestant {
 
 impl TimedContestant {
     fn new(name: String, clock: &'static str) -> Self {
-        Self {
-            name,
-            clock,
-            outcome: Outcome::Pass,
-            reported: 0,
-            times: Vec::new(),
-        }
+        Self { name, clock, outcome: Outcome::Pass, reported: 0, times: Vec::new() }
     }
 
     fn add(
@@ -182,8 +167,7 @@ impl TimedContestant {
         }
         self.reported = answers.iter().map(|answer| answer.pairs.len() as u64).sum();
         // The first frame builds what later ones keep.
-        self.times
-            .extend(answers.iter().skip(1).filter_map(|answer| answer.ns));
+        self.times.extend(answers.iter().skip(1).filter_map(|answer| answer.ns));
         Ok(())
     }
 
@@ -191,11 +175,7 @@ impl TimedContestant {
         self.times.sort_unstable();
         let passed = self.outcome == Outcome::Pass;
         ContestantTiming {
-            median_ns: self
-                .times
-                .get(self.times.len() / 2)
-                .copied()
-                .filter(|_| passed),
+            median_ns: self.times.get(self.times.len() / 2).copied().filter(|_| passed),
             name: self.name,
             outcome: self.outcome,
             reported: self.reported,

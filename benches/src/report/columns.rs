@@ -98,10 +98,9 @@ pub(super) fn kinds(columns: &[String], a: &Table, b: &Table) -> Vec<ColumnKind>
 /// `x.half_width` next to `x.mean`, or `half_width` next to `value`.
 pub(super) fn interval(row: &serde_json::Map<String, Value>, column: &str) -> Option<[f64; 2]> {
     let number = |name: String| row.get(&name)?.as_f64();
-    if let (Some(low), Some(high)) = (
-        number(format!("{column}_low")),
-        number(format!("{column}_high")),
-    ) {
+    if let (Some(low), Some(high)) =
+        (number(format!("{column}_low")), number(format!("{column}_high")))
+    {
         return Some([low, high]);
     }
     // Tidy tables have a number per line: `value` with `half_width`.

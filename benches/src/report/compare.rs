@@ -165,13 +165,8 @@ impl RecordComparison {
     /// The largest growth of a measured number that its interval confirms: 0.1 is ten percent.
     #[must_use]
     pub fn slowest(&self) -> f64 {
-        let confirmed = self
-            .changes
-            .iter()
-            .filter(|change| change.same == Some(false));
-        confirmed
-            .map(|change| change.ratio - 1.0)
-            .fold(0.0, f64::max)
+        let confirmed = self.changes.iter().filter(|change| change.same == Some(false));
+        confirmed.map(|change| change.ratio - 1.0).fold(0.0, f64::max)
     }
 
     fn differ(&mut self, file: &str, row: &str, column: Option<&str>, first: &str, second: &str) {
@@ -197,19 +192,14 @@ impl RecordComparison {
 
     /// Compares the columns that both tables have; of a strict table, all must be equal.
     fn tables(&mut self, file: &str, a: &Table, b: &Table, strict: bool) {
-        let columns: Vec<String> = a
-            .columns
-            .iter()
-            .filter(|column| b.columns.contains(column))
-            .cloned()
-            .collect();
+        let columns: Vec<String> =
+            a.columns.iter().filter(|column| b.columns.contains(column)).cloned().collect();
         if columns != a.columns || columns != b.columns {
             if strict {
                 let (a, b) = (a.columns.join(","), b.columns.join(","));
                 return self.differ(file, "header", None, &a, &b);
             }
-            self.notes
-                .push(format!("{file}: only the columns of both are compared"));
+            self.notes.push(format!("{file}: only the columns of both are compared"));
         }
         let kinds = kinds(&columns, a, b);
         let (Some(ours), Some(mut others)) =
@@ -235,13 +225,7 @@ impl RecordComparison {
         let (common, extra) = (ours.len() - lacking, others.len());
         if strict && common == 0 && lacking + extra > 0 {
             let rows = |count: usize| format!("{count} rows");
-            self.differ(
-                file,
-                "no row is in both",
-                None,
-                &rows(lacking),
-                &rows(extra),
-            );
+            self.differ(file, "no row is in both", None, &rows(lacking), &rows(extra));
         } else if lacking + extra > 0 {
             self.notes.push(format!(
                 "{file}: {common} rows compared; {lacking} rows only in the first, {extra} only in the second"
@@ -257,10 +241,8 @@ impl RecordComparison {
         cells: [&Map<String, Value>; 2],
     ) {
         let [a, b] = cells.map(|cells| &cells[column]);
-        let measured = matches!(
-            kind,
-            ColumnKind::Measured | ColumnKind::Interval | ColumnKind::Found
-        );
+        let measured =
+            matches!(kind, ColumnKind::Measured | ColumnKind::Interval | ColumnKind::Found);
         if kind == ColumnKind::Count || (strict && measured) {
             if a != b {
                 self.differ(file, row, Some(column), &a.to_string(), &b.to_string());
@@ -268,8 +250,7 @@ impl RecordComparison {
         } else if kind == ColumnKind::Measured {
             self.changes.extend(change(file, row, column, cells));
         } else if kind == ColumnKind::Found && a != b {
-            self.notes
-                .push(format!("{file}: {row}: {column} {a} and {b}"));
+            self.notes.push(format!("{file}: {row}: {column} {a} and {b}"));
         }
     }
 }
@@ -292,9 +273,7 @@ fn over_seeds(changes: Vec<MeasuredChange>) -> Vec<MeasuredChange> {
     }
     rest.extend(groups.into_iter().map(|((row, column), of)| {
         let logarithms: Vec<f64> = of.iter().map(|change| change.ratio.ln()).collect();
-        let Estimate {
-            mean, half_width, ..
-        } = Estimate::of(&logarithms);
+        let Estimate { mean, half_width, .. } = Estimate::of(&logarithms);
         let ends = [(mean - half_width).exp(), (mean + half_width).exp()];
         let interval = half_width.is_finite().then_some(ends);
         let average = |of_one: fn(&MeasuredChange) -> f64| {
@@ -351,10 +330,7 @@ fn by_name<'a>(
 
 /// What names a row: its naming cells, joined.
 fn row_name(row: &Map<String, Value>, columns: &[String], kinds: &[ColumnKind]) -> String {
-    let naming = columns
-        .iter()
-        .zip(kinds)
-        .filter(|(_, kind)| **kind == ColumnKind::Name);
+    let naming = columns.iter().zip(kinds).filter(|(_, kind)| **kind == ColumnKind::Name);
     let cells = naming.filter_map(|(column, _)| match &row[column] {
         Value::Null => None,
         Value::String(text) => Some(text.clone()),

@@ -30,42 +30,28 @@ impl Quantities {
         }
         let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
         let texts = shown.entry(value.to_bits()).or_default();
-        texts
-            .entry(text.to_owned())
-            .or_default()
-            .insert(page.to_owned());
+        texts.entry(text.to_owned()).or_default().insert(page.to_owned());
     }
 
     /// The numbers that stand on more than one page.
     #[must_use]
     pub fn on_several_pages(&self) -> Vec<Quantity> {
         self.all()
-            .filter(|quantity| {
-                quantity
-                    .texts
-                    .values()
-                    .flatten()
-                    .collect::<BTreeSet<_>>()
-                    .len()
-                    > 1
-            })
+            .filter(|quantity| quantity.texts.values().flatten().collect::<BTreeSet<_>>().len() > 1)
             .collect()
     }
 
     /// The numbers that are given in more than one way.
     #[must_use]
     pub fn given_differently(&self) -> Vec<Quantity> {
-        self.all()
-            .filter(|quantity| quantity.texts.len() > 1)
-            .collect()
+        self.all().filter(|quantity| quantity.texts.len() > 1).collect()
     }
 
     fn all(&self) -> impl Iterator<Item = Quantity> {
         let shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        let all = shown.iter().map(|(bits, texts)| Quantity {
-            value: f64::from_bits(*bits),
-            texts: texts.clone(),
-        });
+        let all = shown
+            .iter()
+            .map(|(bits, texts)| Quantity { value: f64::from_bits(*bits), texts: texts.clone() });
         all.collect::<Vec<_>>().into_iter()
     }
 }
@@ -126,12 +112,10 @@ pub(super) fn markdown_table(
     };
     let columns = cells(&table[0]);
     let row = |line| {
-        let values = cells(line)
-            .into_iter()
-            .map(|cell| match cell.parse::<f64>() {
-                Ok(number) => number.into(),
-                Err(_) => cell.into(),
-            });
+        let values = cells(line).into_iter().map(|cell| match cell.parse::<f64>() {
+            Ok(number) => number.into(),
+            Err(_) => cell.into(),
+        });
         columns.iter().cloned().zip(values).collect()
     };
     table[2..].iter().map(row).collect()
@@ -140,9 +124,7 @@ pub(super) fn markdown_table(
 /// Mean ± half-width: two significant digits of the half-width, but no more than six of the mean.
 #[must_use]
 pub fn interval(estimate: &Estimate) -> String {
-    let Estimate {
-        mean, half_width, ..
-    } = *estimate;
+    let Estimate { mean, half_width, .. } = *estimate;
     if !half_width.is_finite() || half_width <= 1e-6 * mean.abs() {
         return number(mean);
     }
@@ -194,17 +176,10 @@ mod tests {
         assert!(quantities.given_differently().is_empty());
         quantities.note("b.md", ratio, "6.7");
         let found = quantities.given_differently();
-        assert_eq!(
-            found[0].to_string(),
-            "6.7067453 is 6.7 in b.md; 6.71 in a.md, b.md"
-        );
+        assert_eq!(found[0].to_string(), "6.7067453 is 6.7 in b.md; 6.71 in a.md, b.md");
         quantities.note("a.md", 64.0, "64");
         quantities.note("b.md", 64.0, "64.0");
-        assert_eq!(
-            quantities.given_differently().len(),
-            1,
-            "64 is a round number"
-        );
+        assert_eq!(quantities.given_differently().len(), 1, "64 is a round number");
     }
 
     /// A table of a page is rows.
@@ -212,31 +187,19 @@ mod tests {
     fn page_table_parses_to_rows() {
         let text = "above\n\n| bodies | ns |\n|--:|--:|\n| 100 | 1.5 |\n| all | – |\n\n| x |\n|---|\n| 3 |\n";
         let rows = markdown_table(text, 0);
-        assert_eq!(
-            (rows[0]["ns"].as_f64(), rows[1]["bodies"].as_str()),
-            (Some(1.5), Some("all"))
-        );
+        assert_eq!((rows[0]["ns"].as_f64(), rows[1]["bodies"].as_str()), (Some(1.5), Some("all")));
         assert_eq!(markdown_table(text, 1)[0]["x"].as_f64(), Some(3.0));
         assert!(markdown_table(text, 2).is_empty());
     }
 
     #[test]
     fn intervals_show_meaningful_digits() {
-        let of = |mean, half_width| {
-            interval(&Estimate {
-                mean,
-                half_width,
-                seeds: 3,
-            })
-        };
+        let of = |mean, half_width| interval(&Estimate { mean, half_width, seeds: 3 });
         assert_eq!(of(1.01374, 0.0123), "1.014 ± 0.012");
         assert_eq!(of(1234.5, 56.0), "1234 ± 56");
         assert_eq!(of(59.877952, 0.00002), "59.88");
         assert_eq!(of(59.877952, 0.002), "59.8780 ± 0.0020");
         assert_eq!(of(2.0, f64::INFINITY), "2.000");
-        assert_eq!(
-            [0.0, 12.3456, 123_456.0].map(number),
-            ["0", "12.35", "123456"]
-        );
+        assert_eq!([0.0, 12.3456, 123_456.0].map(number), ["0", "12.35", "123456"]);
     }
 }

@@ -30,13 +30,7 @@ const fn kernels(
     about: &'static str,
     steps: &'static [ExperimentStep],
 ) -> Experiment {
-    Experiment {
-        name,
-        about,
-        steps,
-        deterministic: &[],
-        scenes: PAPER_500,
-    }
+    Experiment { name, about, steps, deterministic: &[], scenes: PAPER_500 }
 }
 
 /// Every experiment.
@@ -56,10 +50,7 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "tradeoff",
         about: "precision against time on the paper's 500 bodies",
-        steps: &[ExperimentStep::Sdop(&[
-            "tradeoff",
-            "data/scenes/paper-500.toml",
-        ])],
+        steps: &[ExperimentStep::Sdop(&["tradeoff", "data/scenes/paper-500.toml"])],
         deterministic: &["tradeoff-seeds.csv"],
         scenes: PAPER_500,
     },
@@ -111,10 +102,7 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     kernels(
         "kernels/stages",
         "ns per update and per construction",
-        &[ExperimentStep::Estimates(
-            "stages.csv",
-            &["update", "construct"],
-        )],
+        &[ExperimentStep::Estimates("stages.csv", &["update", "construct"])],
     ),
     kernels(
         "kernels/finders",
@@ -159,10 +147,7 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "instructions",
         about: "instructions of a frame's culling, by callgrind",
-        steps: &[ExperimentStep::Script(
-            "instructions.csv",
-            &[".ci/instructions"],
-        )],
+        steps: &[ExperimentStep::Script("instructions.csv", &[".ci/instructions"])],
         deterministic: &[],
         scenes: &[
             "data/scenes/paper-500.toml",
@@ -195,10 +180,7 @@ const OWN_EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "memory",
         about: "the address sanitizer in our crates in every tier, memcheck where it knows the tier",
-        steps: &[ExperimentStep::Script(
-            "memory.txt",
-            &[".ci/full", "memory"],
-        )],
+        steps: &[ExperimentStep::Script("memory.txt", &[".ci/full", "memory"])],
         deterministic: &[],
         scenes: &[],
     },

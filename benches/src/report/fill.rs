@@ -75,10 +75,7 @@ fn flush(block: &mut Vec<&str>, out: &mut String) {
     let indentation = " ".repeat(marker(first).max(own));
     out.push_str(&first[..own]);
     let mut column = own;
-    let mut words = lines
-        .iter()
-        .flat_map(|line| line.split_ascii_whitespace())
-        .peekable();
+    let mut words = lines.iter().flat_map(|line| line.split_ascii_whitespace()).peekable();
     let mut is_start = true;
     while let Some(word) = words.next() {
         // Words that would mark a line stay on that of the word before.
@@ -114,10 +111,7 @@ mod tests {
         let text = format!("{words} a - b\n\n- {words}\n  end\n- short\n");
         let [full, rest] = [["word"; 20].join(" "), ["word"; 5].join(" ")];
         let item = format!("- {}\n  word {rest} end\n", ["word"; 19].join(" "));
-        assert_eq!(
-            filled(&text),
-            format!("{full}\n{rest} a - b\n\n{item}- short\n")
-        );
+        assert_eq!(filled(&text), format!("{full}\n{rest} a - b\n\n{item}- short\n"));
     }
 
     /// A minus sign never starts a line, where it would be an item.
@@ -131,10 +125,7 @@ mod tests {
 
     #[test]
     fn sentences_may_end_in_numbers() {
-        assert_eq!(
-            filled("It takes\n12. Then\n1. it ends.\n"),
-            "It takes 12. Then 1. it ends.\n"
-        );
+        assert_eq!(filled("It takes\n12. Then\n1. it ends.\n"), "It takes 12. Then 1. it ends.\n");
         assert_eq!(filled("1. one\n2. two\n"), "1. one\n2. two\n");
     }
 

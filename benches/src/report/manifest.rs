@@ -154,8 +154,7 @@ impl Manifest {
             let path = root.join(&input);
             let bytes =
                 std::fs::read(&path).map_err(|source| ManifestError::Io { path, source })?;
-            self.inputs
-                .insert(input.display().to_string(), sha256(&bytes));
+            self.inputs.insert(input.display().to_string(), sha256(&bytes));
         }
         Ok(())
     }
@@ -163,10 +162,7 @@ impl Manifest {
     /// The manifest as text, with its digest.
     #[must_use]
     pub fn text(&self) -> String {
-        let sealed = Self {
-            digest: self.own_digest(),
-            ..self.clone()
-        };
+        let sealed = Self { digest: self.own_digest(), ..self.clone() };
         // Plain data: no map with keys that aren't text.
         serde_json::to_string_pretty(&sealed).unwrap_or_default() + "\n"
     }
@@ -177,23 +173,13 @@ impl Manifest {
     /// What is missing, new or changed.
     pub fn read(directory: &Path) -> Result<Self, ManifestError> {
         let path = directory.join(FILE);
-        let text = std::fs::read_to_string(&path).map_err(|source| ManifestError::Io {
-            path: path.clone(),
-            source,
-        })?;
-        let manifest: Self = serde_json::from_str(&text).map_err(|source| ManifestError::Form {
-            path: path.clone(),
-            source,
-        })?;
-        let Self {
-            format, version, ..
-        } = &manifest;
+        let text = std::fs::read_to_string(&path)
+            .map_err(|source| ManifestError::Io { path: path.clone(), source })?;
+        let manifest: Self = serde_json::from_str(&text)
+            .map_err(|source| ManifestError::Form { path: path.clone(), source })?;
+        let Self { format, version, .. } = &manifest;
         if format != "sdop-measurement" || *version != VERSION {
-            return Err(ManifestError::Version {
-                path,
-                format: format.clone(),
-                version: *version,
-            });
+            return Err(ManifestError::Version { path, format: format.clone(), version: *version });
         }
         if manifest.digest != manifest.own_digest() {
             return Err(ManifestError::Changed { path });
@@ -210,19 +196,13 @@ impl Manifest {
 
     fn check_files(&self, directory: &Path) -> Result<(), ManifestError> {
         let now = digests(directory)?;
-        let problem = |name: &str, problem| {
-            Err(ManifestError::Files {
-                path: directory.join(name),
-                problem,
-            })
-        };
+        let problem =
+            |name: &str, problem| Err(ManifestError::Files { path: directory.join(name), problem });
         for (name, digest) in &self.files {
             match now.get(name) {
                 None => return problem(name, "missing"),
                 Some(other) if other != digest => {
-                    return Err(ManifestError::Changed {
-                        path: directory.join(name),
-                    });
+                    return Err(ManifestError::Changed { path: directory.join(name) });
                 }
                 Some(_) => {}
             }
@@ -234,10 +214,7 @@ impl Manifest {
     }
 
     fn own_digest(&self) -> String {
-        let open = Self {
-            digest: String::new(),
-            ..self.clone()
-        };
+        let open = Self { digest: String::new(), ..self.clone() };
         sha256(serde_json::to_string(&open).unwrap_or_default().as_bytes())
     }
 }
@@ -293,12 +270,8 @@ mod tests {
     fn record() -> (tempfile::TempDir, Manifest) {
         let directory = tempfile::tempdir().unwrap();
         std::fs::write(directory.path().join("counts.csv"), "a,b\n1,2\n").unwrap();
-        let manifest = Manifest::describe(
-            directory.path(),
-            "test",
-            "sdop test".to_owned(),
-            &["counts.csv"],
-        );
+        let manifest =
+            Manifest::describe(directory.path(), "test", "sdop test".to_owned(), &["counts.csv"]);
         let manifest = manifest.unwrap();
         std::fs::write(directory.path().join(FILE), manifest.text()).unwrap();
         (directory, manifest)
@@ -333,11 +306,9 @@ mod tests {
     fn nested_records_are_separate() {
         let directory = tempfile::tempdir().unwrap();
         let place = directory.path();
-        for (name, text) in [
-            ("figures/a.svg", "1"),
-            ("other/b.csv", "2"),
-            ("other/record.json", "{}"),
-        ] {
+        for (name, text) in
+            [("figures/a.svg", "1"), ("other/b.csv", "2"), ("other/record.json", "{}")]
+        {
             std::fs::create_dir_all(place.join(name).parent().unwrap()).unwrap();
             std::fs::write(place.join(name), text).unwrap();
         }

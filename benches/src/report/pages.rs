@@ -93,11 +93,8 @@ pub fn blocks(page: &str, text: &str, sources: &PageSources) -> Result<String, P
         let Some(name) = marked(line, "BEGIN") else {
             continue;
         };
-        let failed = |problem: String| PageError {
-            page: page.to_owned(),
-            line: index + 1,
-            problem,
-        };
+        let failed =
+            |problem: String| PageError { page: page.to_owned(), line: index + 1, problem };
         let template = sources
             .templates
             .get(name)
@@ -164,10 +161,7 @@ fn environment<'s>(page: &str, sources: &'s PageSources) -> Result<Environment<'
     environment.add_filter("fixed", format(page, |x, digits| format!("{x:.digits$}")));
     environment.add_filter("sig", format(page, significant));
     environment.add_filter("thousands", format(page, |x, _| thousands(x)));
-    environment.add_filter(
-        "percent",
-        format(page, |x, digits| format!("{:.digits$}", 100.0 * x)),
-    );
+    environment.add_filter("percent", format(page, |x, digits| format!("{:.digits$}", 100.0 * x)));
     environment.add_filter("interval", interval);
     environment.add_filter("in_order", in_order);
     environment.add_filter("number", digits::number);
@@ -207,9 +201,7 @@ fn add_readers(environment: &mut Environment<'_>, store: &Arc<Store>) {
     });
     let from = store.clone();
     environment.add_function("json", move |path: &str| {
-        from.json(path)
-            .map(|json| Value::from(Serde(json)))
-            .map_err(lost)
+        from.json(path).map(|json| Value::from(Serde(json))).map_err(lost)
     });
     let from = store.clone();
     environment.add_function("text", move |path: &str| from.text(path).map_err(lost));
@@ -220,12 +212,10 @@ fn add_readers(environment: &mut Environment<'_>, store: &Arc<Store>) {
     let from = store.clone();
     environment.add_function("records", move |experiment: &str| {
         let names = from.names();
-        let of = names.iter().filter(|name| {
-            name.split_once('/')
-                .is_some_and(|(_, own)| own == experiment)
-        });
-        of.map(|name| described(&from, name))
-            .collect::<Result<Vec<_>, _>>()
+        let of = names
+            .iter()
+            .filter(|name| name.split_once('/').is_some_and(|(_, own)| own == experiment));
+        of.map(|name| described(&from, name)).collect::<Result<Vec<_>, _>>()
     });
 }
 
@@ -256,20 +246,14 @@ fn lost(error: impl std::fmt::Display) -> Error {
 }
 
 /// An estimate from values in the order of time. As in JSON, one value alone has no half-width.
-#[allow(
-    clippy::needless_pass_by_value,
-    reason = "the signature is minijinja's"
-)]
+#[allow(clippy::needless_pass_by_value, reason = "the signature is minijinja's")]
 fn in_order(values: Vec<f64>) -> Result<Value, Error> {
     let estimate = serde_json::to_value(Estimate::in_order(&values)).map_err(lost)?;
     Ok(Value::from(Serde(estimate)))
 }
 
 /// An estimate, scaled; one without a half-width is its mean alone.
-#[allow(
-    clippy::needless_pass_by_value,
-    reason = "the signature is minijinja's"
-)]
+#[allow(clippy::needless_pass_by_value, reason = "the signature is minijinja's")]
 fn interval(estimate: Value, scale: Option<f64>) -> Result<String, Error> {
     let scale = scale.unwrap_or(1.0);
     let half_width = estimate.get_attr("half_width")?;
@@ -285,10 +269,7 @@ fn interval(estimate: Value, scale: Option<f64>) -> Result<String, Error> {
 }
 
 /// Rows whose cells equal all that are named.
-#[allow(
-    clippy::needless_pass_by_value,
-    reason = "the signature is minijinja's"
-)]
+#[allow(clippy::needless_pass_by_value, reason = "the signature is minijinja's")]
 fn matching(rows: Value, cells: Kwargs) -> Result<Vec<Value>, Error> {
     let names: Vec<&str> = cells.args().collect();
     let mut wanted = Vec::new();

@@ -6,13 +6,8 @@ use std::process::Command;
 use serde::{Deserialize, Serialize};
 
 /// What is measured: changes of anything else leave a record as young as it was.
-const MEASURED: [&str; 5] = [
-    "src",
-    "reference/src",
-    "reference/judge/src",
-    "benches",
-    "Cargo.lock",
-];
+const MEASURED: [&str; 5] =
+    ["src", "reference/src", "reference/judge/src", "benches", "Cargo.lock"];
 
 /// The code that was measured, as its repository names it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,10 +25,7 @@ impl CodeVersion {
     /// The code in the work tree around `place`; `None` without a repository or without git.
     #[must_use]
     pub fn here(place: &Path) -> Option<Self> {
-        let status = git(
-            place,
-            &[&["status", "--porcelain", "--"], &MEASURED[..]].concat(),
-        )?;
+        let status = git(place, &[&["status", "--porcelain", "--"], &MEASURED[..]].concat())?;
         let mut code = Self::at(place, "HEAD")?;
         code.dirty = !status.is_empty();
         Some(code)
@@ -63,10 +55,7 @@ impl CodeVersion {
             .ok_or_else(|| refused(&tree))?;
         for name in names.lines() {
             let file = format!("{tree}/{name}");
-            let output = Command::new("git")
-                .current_dir(place)
-                .args(["show", &file])
-                .output()?;
+            let output = Command::new("git").current_dir(place).args(["show", &file]).output()?;
             if !output.status.success() {
                 return Err(refused(&file));
             }
@@ -96,11 +85,7 @@ fn refused(what: &str) -> std::io::Error {
 
 /// The output of a git command that succeeds.
 fn git(place: &Path, arguments: &[&str]) -> Option<String> {
-    let output = Command::new("git")
-        .current_dir(place)
-        .args(arguments)
-        .output()
-        .ok()?;
+    let output = Command::new("git").current_dir(place).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
     output.status.success().then(|| text.trim().to_owned())
 }
@@ -120,10 +105,7 @@ impl Load {
     pub fn now() -> Option<Self> {
         let text = std::fs::read_to_string("/proc/loadavg").ok()?;
         let mut numbers = text.split(' ').map(str::parse);
-        Some(Self {
-            one_minute: numbers.next()?.ok()?,
-            five_minutes: numbers.next()?.ok()?,
-        })
+        Some(Self { one_minute: numbers.next()?.ok()?, five_minutes: numbers.next()?.ok()? })
     }
 }
 
@@ -135,11 +117,8 @@ pub fn caches() -> Vec<String> {
         Some(std::fs::read_to_string(path).ok()?.trim().to_owned())
     };
     let cache = |index| {
-        let (level, kind, size) = (
-            read(index, "level")?,
-            read(index, "type")?,
-            read(index, "size")?,
-        );
+        let (level, kind, size) =
+            (read(index, "level")?, read(index, "type")?, read(index, "size")?);
         Some((kind, format!("L{level} {size}")))
     };
     let caches = (0..8).map_while(cache);

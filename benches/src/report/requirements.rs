@@ -32,11 +32,7 @@ impl Experiment {
     /// The first file of the repository that it reads or runs and that isn't below `root`.
     #[must_use]
     pub fn missing(&self, root: &Path) -> Option<PathBuf> {
-        let programs = self
-            .steps
-            .iter()
-            .filter_map(ExperimentStep::file)
-            .map(PathBuf::from);
+        let programs = self.steps.iter().filter_map(ExperimentStep::file).map(PathBuf::from);
         let mut files = programs.chain(inputs(self.scenes));
         files.find(|file| !root.join(file).is_file())
     }
@@ -83,9 +79,6 @@ mod tests {
             assert!(experiment.missing(empty.path()).is_some());
         }
         let reproduce = Experiment::named("reproduce").unwrap();
-        assert_eq!(
-            reproduce.missing(empty.path()),
-            Some("data/scenes/paper-50.toml".into())
-        );
+        assert_eq!(reproduce.missing(empty.path()), Some("data/scenes/paper-50.toml".into()));
     }
 }

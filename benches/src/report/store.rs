@@ -64,21 +64,14 @@ impl Store {
     pub fn new(root: impl Into<PathBuf>) -> Result<Self, StoreError> {
         let root = root.into();
         let path = root.join(QUOTED);
-        let failed = |problem: String| StoreError::File {
-            path: path.clone(),
-            problem,
-        };
+        let failed = |problem: String| StoreError::File { path: path.clone(), problem };
         let quoted = if path.is_file() {
             let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
             Some(toml::from_str(&text).map_err(|error| failed(error.to_string()))?)
         } else {
             None
         };
-        Ok(Self {
-            root,
-            quoted,
-            manifests: Mutex::default(),
-        })
+        Ok(Self { root, quoted, manifests: Mutex::default() })
     }
 
     /// The full path of a record or of its file: with the machine that is quoted, where `path`
@@ -86,11 +79,7 @@ impl Store {
     #[must_use]
     pub fn place(&self, path: &str) -> String {
         let first = path.split('/').next().unwrap_or(path);
-        let Some(quoted) = self
-            .quoted
-            .as_ref()
-            .filter(|_| !self.root.join(first).is_dir())
-        else {
+        let Some(quoted) = self.quoted.as_ref().filter(|_| !self.root.join(first).is_dir()) else {
             return path.to_owned();
         };
         let belongs = |name: &String| {
@@ -122,10 +111,7 @@ impl Store {
     /// # Errors
     /// See [`Manifest::read`].
     pub fn manifest(&self, record: &str) -> Result<Manifest, ManifestError> {
-        let mut known = self
-            .manifests
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let mut known = self.manifests.lock().unwrap_or_else(PoisonError::into_inner);
         let record = self.place(record);
         if let Some(manifest) = known.get(&record) {
             return Ok(manifest.clone());
@@ -138,10 +124,7 @@ impl Store {
     /// The manifests that were used so far.
     #[must_use]
     pub fn used(&self) -> BTreeMap<String, Manifest> {
-        let known = self
-            .manifests
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let known = self.manifests.lock().unwrap_or_else(PoisonError::into_inner);
         known.clone()
     }
 
@@ -171,10 +154,8 @@ impl Store {
     /// The record or the file can't be read.
     pub fn text(&self, path: &str) -> Result<String, StoreError> {
         let path = self.checked(path)?;
-        std::fs::read_to_string(&path).map_err(|error| StoreError::File {
-            path,
-            problem: error.to_string(),
-        })
+        std::fs::read_to_string(&path)
+            .map_err(|error| StoreError::File { path, problem: error.to_string() })
     }
 
     /// The path of a record's file, once the record is known to be whole.
@@ -204,11 +185,7 @@ fn collect(directory: &Path, name: &str, names: &mut Vec<String>) {
         let path = entry.path();
         if path.is_dir() {
             let own = entry.file_name().to_string_lossy().into_owned();
-            let below = if name.is_empty() {
-                own
-            } else {
-                format!("{name}/{own}")
-            };
+            let below = if name.is_empty() { own } else { format!("{name}/{own}") };
             collect(&path, &below, names);
         }
     }

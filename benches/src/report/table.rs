@@ -28,10 +28,7 @@ impl Table {
     /// # Errors
     /// The file can't be read, or a row has more or fewer cells than the header.
     pub fn read(path: &Path) -> Result<Self, TableError> {
-        let failed = |source| TableError {
-            path: path.to_path_buf(),
-            source,
-        };
+        let failed = |source| TableError { path: path.to_path_buf(), source };
         let mut reader = csv::Reader::from_path(path).map_err(failed)?;
         let header = reader.headers().map_err(failed)?;
         let columns: Vec<String> = header.iter().map(str::to_owned).collect();

@@ -61,10 +61,7 @@ impl PaperClaim {
     /// How many checks came out so.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
-        self.checks
-            .iter()
-            .filter(|check| check.verdict == verdict)
-            .count()
+        self.checks.iter().filter(|check| check.verdict == verdict).count()
     }
 }
 
@@ -85,13 +82,7 @@ impl ClaimCheck {
             (true, false) => format!("< {hi}"),
             (false, false) => format!("{lo} to {hi}"),
         };
-        Self {
-            quantity,
-            value: value.mean,
-            half_width: value.half_width,
-            expected,
-            verdict,
-        }
+        Self { quantity, value: value.mean, half_width: value.half_width, expected, verdict }
     }
 
     /// Claimed to lie above `bound`.
@@ -124,20 +115,10 @@ impl ClaimCheck {
     /// A number computed from the paper's, claimed to lie in a closed range.
     #[must_use]
     pub fn computed(quantity: String, value: f64, [lo, hi]: [f64; 2]) -> Self {
-        let verdict = if (lo..=hi).contains(&value) {
-            Verdict::Supported
-        } else {
-            Verdict::Contradicted
-        };
-        let exact = Estimate {
-            mean: value,
-            half_width: 0.0,
-            seeds: 0,
-        };
-        Self {
-            verdict,
-            ..Self::between(quantity, exact, [lo, hi])
-        }
+        let verdict =
+            if (lo..=hi).contains(&value) { Verdict::Supported } else { Verdict::Contradicted };
+        let exact = Estimate { mean: value, half_width: 0.0, seeds: 0 };
+        Self { verdict, ..Self::between(quantity, exact, [lo, hi]) }
     }
 }
 
@@ -146,11 +127,7 @@ mod tests {
     use super::*;
 
     fn estimate(mean: f64, half_width: f64) -> Estimate {
-        Estimate {
-            mean,
-            half_width,
-            seeds: 9,
-        }
+        Estimate { mean, half_width, seeds: 9 }
     }
 
     #[test]
@@ -163,10 +140,7 @@ mod tests {
         assert_eq!(above(1.0, 0.0), Verdict::Contradicted, "equal is not above");
         assert_eq!(above(5.0, f64::INFINITY), Verdict::Undecided);
         let near = ClaimCheck::between(String::new(), estimate(0.97, 0.01), [0.95, 1.05]);
-        assert_eq!(
-            (near.verdict, near.expected.as_str()),
-            (Verdict::Supported, "0.95 to 1.05")
-        );
+        assert_eq!((near.verdict, near.expected.as_str()), (Verdict::Supported, "0.95 to 1.05"));
     }
 
     /// Equality allows for the size of the family.
@@ -192,12 +166,7 @@ mod tests {
                 ..ClaimCheck::computed(String::new(), 0.0, [0.0, 1.0])
             };
             let checks = verdicts.iter().map(check).collect();
-            PaperClaim {
-                source: "",
-                claim: "",
-                checks,
-            }
-            .verdict()
+            PaperClaim { source: "", claim: "", checks }.verdict()
         };
         use Verdict::{Contradicted, InPart, Supported, Undecided};
         assert_eq!(claim(&[Supported, Supported]), Supported);

@@ -39,34 +39,18 @@ fn frame_rates(results: &Results) -> Vec<PaperClaim> {
     };
     let mut order = faster(&[[Control, Sphere], [Ooi, Seq], [Seq, All], [All, OrDop]]);
     order.extend(rate_checks(results, [Ooi, Sphere], SIMILAR_RATIO));
-    let claim = |claim, checks| PaperClaim {
-        source: "6.1",
-        claim,
-        checks,
-    };
+    let claim = |claim, checks| PaperClaim { source: "6.1", claim, checks };
     vec![
         claim(
             "The control, without bounding volumes, has the highest frame rate.",
             over(Control, &STRATEGIES[1..]),
         ),
-        claim(
-            "Spheres alone come next.",
-            over(Sphere, &[Ooi, Seq, All, OrDop]),
-        ),
-        claim(
-            "S-DOP on all objects lowers the frame rate.",
-            over(Sphere, &[All]),
-        ),
-        claim(
-            "S-DOP on all objects still outperforms homogeneous or-DOPs.",
-            over(All, &[OrDop]),
-        ),
+        claim("Spheres alone come next.", over(Sphere, &[Ooi, Seq, All, OrDop])),
+        claim("S-DOP on all objects lowers the frame rate.", over(Sphere, &[All])),
+        claim("S-DOP on all objects still outperforms homogeneous or-DOPs.", over(All, &[OrDop])),
         claim(
             "Sequential S-DOP improves on S-DOP by list (fps: in blocks of 256 pairs; t: truly at once).",
-            over(Seq, &[All])
-                .into_iter()
-                .chain(at_once(results))
-                .collect(),
+            over(Seq, &[All]).into_iter().chain(at_once(results)).collect(),
         ),
         claim(
             "With an object of interest the frame rate almost reaches the control's.",
@@ -76,10 +60,7 @@ fn frame_rates(results: &Results) -> Vec<PaperClaim> {
             "With an object of interest the frame rate is similar to spheres'.",
             rate_checks(results, [Ooi, Sphere], SIMILAR_RATIO),
         ),
-        claim(
-            "The object of interest stands out among the others.",
-            over(Ooi, &[Seq, All, OrDop]),
-        ),
+        claim("The object of interest stands out among the others.", over(Ooi, &[Seq, All, OrDop])),
         claim(
             "Altogether: control > sphere ≈ object of interest > sequential > list > or-DOPs.",
             order,
@@ -91,10 +72,9 @@ fn frame_rates(results: &Results) -> Vec<PaperClaim> {
 fn at_once(results: &Results) -> Vec<ClaimCheck> {
     let mut checks = Vec::new();
     for scene in largest(results) {
-        for [list, once] in [
-            [Handing::ScalarList, Handing::EachPair],
-            [Handing::List, Handing::Sixteen],
-        ] {
+        for [list, once] in
+            [[Handing::ScalarList, Handing::EachPair], [Handing::List, Handing::Sixteen]]
+        {
             let of = |run: &HandingTimes| {
                 let [list, once] = [list, once].map(|way| {
                     let place = Handing::ALL.iter().position(|&other| other == way);
@@ -105,22 +85,14 @@ fn at_once(results: &Results) -> Vec<ClaimCheck> {
             let runs = results.immediacies.iter().filter(|run| run.scene == scene);
             let ratios: Vec<f64> = runs.map(of).collect();
             let quantity = format!("t of {list} / {once}, {scene}");
-            checks.push(ClaimCheck::above(
-                quantity,
-                Estimate::in_order(&ratios),
-                1.0,
-            ));
+            checks.push(ClaimCheck::above(quantity, Estimate::in_order(&ratios), 1.0));
         }
     }
     checks
 }
 
 fn percentages(results: &Results) -> Vec<PaperClaim> {
-    let claim = |claim, checks| PaperClaim {
-        source: "6.2",
-        claim,
-        checks,
-    };
+    let claim = |claim, checks| PaperClaim { source: "6.2", claim, checks };
     let mut highest = Vec::new();
     for reading in Reading::ALL {
         for scene in results.scenes() {
@@ -143,27 +115,17 @@ fn percentages(results: &Results) -> Vec<PaperClaim> {
         }));
     }
     vec![
-        claim(
-            "Sequential S-DOP has the highest percentage in all experiments.",
-            highest,
-        ),
+        claim("Sequential S-DOP has the highest percentage in all experiments.", highest),
         claim("So most of its tests are useful ones.", useful),
     ]
 }
 
 fn conclusion(results: &Results) -> Vec<PaperClaim> {
-    let claim = |claim, checks| PaperClaim {
-        source: "7",
-        claim,
-        checks,
-    };
+    let claim = |claim, checks| PaperClaim { source: "7", claim, checks };
     let largest = largest(results);
     let faster = |pair| rate_checks(results, pair, [1.0, f64::INFINITY]);
-    let crowded: Vec<PaperScene> = largest
-        .iter()
-        .copied()
-        .filter(|scene| scene.crowded())
-        .collect();
+    let crowded: Vec<PaperScene> =
+        largest.iter().copied().filter(|scene| scene.crowded()).collect();
     let mut interest = faster([Ooi, Seq]);
     interest.extend(faster([Ooi, All]));
     vec![
@@ -171,14 +133,8 @@ fn conclusion(results: &Results) -> Vec<PaperClaim> {
             "S-DOP culls better than the homogeneous bounding volumes.",
             advantage(results, &largest),
         ),
-        claim(
-            "The crowded environment supports this further.",
-            advantage(results, &crowded),
-        ),
-        claim(
-            "An object of interest is the option for higher frame rates.",
-            interest,
-        ),
+        claim("The crowded environment supports this further.", advantage(results, &crowded)),
+        claim("An object of interest is the option for higher frame rates.", interest),
     ]
 }
 
@@ -194,11 +150,7 @@ fn advantage(results: &Results, scenes: &[PaperScene]) -> Vec<ClaimCheck> {
         });
         let ratios: Vec<f64> = kept.iter().zip(&spheres).map(|(a, b)| a / b).collect();
         let quantity = format!("pairs passed on, Seq/Sphere, {scene}");
-        checks.push(ClaimCheck::between(
-            quantity,
-            Estimate::of(&ratios),
-            [f64::NEG_INFINITY, 1.0],
-        ));
+        checks.push(ClaimCheck::between(quantity, Estimate::of(&ratios), [f64::NEG_INFINITY, 1.0]));
     }
     checks
 }

@@ -24,11 +24,7 @@ pub fn inverse(p: f64) -> f64 {
     let (mut lo, mut hi) = (0.0, 1.0);
     for _ in 0..60 {
         let middle = 0.5 * (lo + hi);
-        if probability(middle) < p {
-            lo = middle
-        } else {
-            hi = middle
-        }
+        if probability(middle) < p { lo = middle } else { hi = middle }
     }
     0.5 * (lo + hi)
 }

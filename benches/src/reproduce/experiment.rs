@@ -123,19 +123,10 @@ pub(super) fn run_pass(
     tier: Tier,
     calibration: Option<CalibrationRound>,
 ) -> Result<(Vec<StrategyRun>, Pass), SimulationError> {
-    let mut hashing = VariantHashes {
-        hashes: vec![PairsHash::default(); variants.len()],
-        reported: Vec::new(),
-    };
+    let mut hashing =
+        VariantHashes { hashes: vec![PairsHash::default(); variants.len()], reported: Vec::new() };
     let mut simulated = SceneFrames::new(scene, frames)?;
-    let pass = pass(
-        scene,
-        variants,
-        tier,
-        &mut simulated,
-        calibration,
-        &mut hashing,
-    )?;
+    let pass = pass(scene, variants, tier, &mut simulated, calibration, &mut hashing)?;
     let bodies = &scene.bodies;
     let radius = |&shape: &u32| f64::from(scene.shapes[shape as usize].ball.radius);
     let run = |((variant, culled), hash): ((&Variant, &VariantRun), PairsHash)| {
@@ -165,12 +156,7 @@ pub(super) fn run_pass(
             pairs_sha256: strategy.scheme().culls().then(|| hash.finish()),
         }
     };
-    let runs = variants
-        .iter()
-        .zip(&pass.culled)
-        .zip(hashing.hashes)
-        .map(run)
-        .collect();
+    let runs = variants.iter().zip(&pass.culled).zip(hashing.hashes).map(run).collect();
     Ok((runs, pass))
 }
 

@@ -18,10 +18,7 @@ pub const TABLE_1: [(Strategy, [f64; 4]); 4] = [
 /// Table 1's percentages of a strategy.
 #[must_use]
 pub fn row(strategy: Strategy) -> Option<&'static [f64; 4]> {
-    TABLE_1
-        .iter()
-        .find(|(of, _)| *of == strategy)
-        .map(|(_, row)| row)
+    TABLE_1.iter().find(|(of, _)| *of == strategy).map(|(_, row)| row)
 }
 
 /// Table 1's percentage of a strategy for a number of objects.
@@ -42,11 +39,8 @@ pub fn pairs() -> [f64; 4] {
 /// frame in each column.
 #[must_use]
 pub fn constant_row(row: &[f64; 4], tests: &[f64; 4]) -> (f64, f64, f64) {
-    let hits: Vec<f64> = row
-        .iter()
-        .zip(tests)
-        .map(|(percent, tests)| 0.01 * percent * tests)
-        .collect();
+    let hits: Vec<f64> =
+        row.iter().zip(tests).map(|(percent, tests)| 0.01 * percent * tests).collect();
     let pooled = hits.iter().sum::<f64>() / tests.iter().sum::<f64>();
     let term = |(hits, tests): (&f64, &f64)| {
         let expected = pooled * tests;
@@ -61,11 +55,8 @@ pub fn constant_row(row: &[f64; 4], tests: &[f64; 4]) -> (f64, f64, f64) {
 /// pairs × sphere.
 #[must_use]
 pub fn extra_tests_of_all() -> Option<[f64; 4]> {
-    let (sphere, sequential, all) = (
-        row(Strategy::Sphere)?,
-        row(Strategy::SDopSequential)?,
-        row(Strategy::SDopBatch)?,
-    );
+    let (sphere, sequential, all) =
+        (row(Strategy::Sphere)?, row(Strategy::SDopSequential)?, row(Strategy::SDopBatch)?);
     let pairs = pairs();
     Some(std::array::from_fn(|i| {
         let tests = 0.01 * sphere[i] * pairs[i];
@@ -84,10 +75,7 @@ mod tests {
         let sphere = &TABLE_1[0].1;
         let (chi_squared, p, pooled) = constant_row(sphere, &pairs());
         assert!((chi_squared - 10.05).abs() < 0.05, "{chi_squared}");
-        assert!(
-            p > 0.01 && p < 0.02 && (pooled - 1.01).abs() < 0.01,
-            "{p} {pooled}"
-        );
+        assert!(p > 0.01 && p < 0.02 && (pooled - 1.01).abs() < 0.01, "{p} {pooled}");
         let listed: [f64; 4] = std::array::from_fn(|i| 0.01 * sphere[i] * pairs()[i]);
         let (chi_squared, p, pooled) = constant_row(&TABLE_1[2].1, &listed);
         assert!((chi_squared - 3.6).abs() < 0.2 && p > 0.2 && (pooled - 51.0).abs() < 0.5);
@@ -97,9 +85,6 @@ mod tests {
     #[test]
     fn batch_row_has_extra_tests() {
         let extra = extra_tests_of_all().unwrap_or_default();
-        assert!(
-            extra[1..].iter().all(|x| (0.26..0.30).contains(x)),
-            "{extra:?}"
-        );
+        assert!(extra[1..].iter().all(|x| (0.26..0.30).contains(x)), "{extra:?}");
     }
 }

@@ -29,12 +29,8 @@ choices! {
 }
 
 /// The strategies of the paper's Table 1, in its order.
-pub const TABLE_1_STRATEGIES: [Strategy; 4] = [
-    Strategy::Sphere,
-    Strategy::OrDop,
-    Strategy::SDopSequential,
-    Strategy::SDopBatch,
-];
+pub const TABLE_1_STRATEGIES: [Strategy; 4] =
+    [Strategy::Sphere, Strategy::OrDop, Strategy::SDopSequential, Strategy::SDopBatch];
 
 impl Reading {
     /// The reading under which figures show a strategy: where a list is kept, its entries count.
@@ -49,11 +45,7 @@ impl Reading {
     /// Hits in percent of the tests of `frames` frames with `bodies` bodies.
     #[must_use]
     pub fn percentage(self, strategy: Strategy, run: &Counters, frames: u32, bodies: usize) -> f64 {
-        let own = if strategy.scheme().has_overlap_test() {
-            run.ordop
-        } else {
-            run.sphere
-        };
+        let own = if strategy.scheme().has_overlap_test() { run.ordop } else { run.sphere };
         let all = run.sphere.tests + run.ordop.tests;
         let entries = match strategy.scheme().flow {
             Flow::Batch => run.sphere.hits,
@@ -137,35 +129,16 @@ mod tests {
 
     #[test]
     fn readings_count_what_they_say() {
-        let volume = |tests, hits| VolumeCounters {
-            updates: 0,
-            tests,
-            hits,
-        };
-        let run = Counters {
-            sphere: volume(1000, 20),
-            ordop: volume(20, 9),
-            ..Counters::default()
-        };
+        let volume = |tests, hits| VolumeCounters { updates: 0, tests, hits };
+        let run =
+            Counters { sphere: volume(1000, 20), ordop: volume(20, 9), ..Counters::default() };
         let read = |strategy| {
-            Reading::ALL
-                .iter()
-                .map(|r| r.percentage(strategy, &run, 2, 25))
-                .collect::<Vec<_>>()
+            Reading::ALL.iter().map(|r| r.percentage(strategy, &run, 2, 25)).collect::<Vec<_>>()
         };
         let all = 900.0 / 1020.0;
-        assert_eq!(
-            read(Strategy::SDopSequential),
-            [45.0, all, 45.0, all, 900.0 / 1250.0]
-        );
-        assert_eq!(
-            read(Strategy::SDopBatch),
-            [45.0, all, 22.5, 900.0 / 1040.0, 900.0 / 1250.0]
-        );
-        let spheres = Counters {
-            ordop: volume(0, 0),
-            ..run
-        };
+        assert_eq!(read(Strategy::SDopSequential), [45.0, all, 45.0, all, 900.0 / 1250.0]);
+        assert_eq!(read(Strategy::SDopBatch), [45.0, all, 22.5, 900.0 / 1040.0, 900.0 / 1250.0]);
+        let spheres = Counters { ordop: volume(0, 0), ..run };
         let read = |reading: Reading| reading.percentage(Strategy::Sphere, &spheres, 2, 25);
         assert_eq!(
             Reading::ALL.iter().map(|&r| read(r)).collect::<Vec<_>>(),

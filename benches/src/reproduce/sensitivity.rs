@@ -188,13 +188,8 @@ fn count(
 fn run(scene: &Scene, lengths: &[u32], tier: Tier) -> Result<Vec<Vec<Counters>>, SimulationError> {
     let mut cullers: Vec<Culling> = Vec::new();
     for (k, axes, overlap) in kinds() {
-        let settings = CullSettings {
-            strategy: Strategy::SDopBatch,
-            k,
-            axes,
-            overlap,
-            ..scene.cull.clone()
-        };
+        let settings =
+            CullSettings { strategy: Strategy::SDopBatch, k, axes, overlap, ..scene.cull.clone() };
         cullers.push(Variant::of(String::new(), settings).culling(scene, tier)?);
     }
     let mut looks = Vec::new();
@@ -222,17 +217,7 @@ fn interpretation(
     let alone = counted.map(|[tests, .., hits]| share(hits, tests));
     let percent = [sphere, alone, sequential, list];
     let (sigma, likelihood) = likelihood(&percent);
-    Interpretation {
-        start,
-        bounce,
-        frames,
-        k: k.k(),
-        axes,
-        overlap,
-        percent,
-        sigma,
-        likelihood,
-    }
+    Interpretation { start, bounce, frames, k: k.k(), axes, overlap, percent, sigma, likelihood }
 }
 
 /// σ and ln L of percentages in the order of the paper's rows.
@@ -256,10 +241,7 @@ fn assume(usual: &SceneFile, (start, bounce): (Start, Bounce)) -> SceneFile {
     let quarter = Positive(0.25 * side.map_or(1.0, |side| side.get_ref().0));
     let placement = match start {
         Start::Uniform => Placement::Uniform,
-        Start::Balls => Placement::Clusters {
-            number: NonZeroU32::MIN,
-            radius: quarter,
-        },
+        Start::Balls => Placement::Clusters { number: NonZeroU32::MIN, radius: quarter },
         Start::Slice => Placement::Plane { thickness: quarter },
     };
     for group in &mut spec.bodies {

@@ -17,32 +17,19 @@ const EXTRA_TESTS: f64 = 0.28;
 /// All of them.
 #[must_use]
 pub fn all(results: &Results) -> Vec<PaperClaim> {
-    let claim = |claim, checks| PaperClaim {
-        source: SOURCE,
-        claim,
-        checks,
-    };
+    let claim = |claim, checks| PaperClaim { source: SOURCE, claim, checks };
     vec![
         claim(
             "The sphere percentage is the closed form's for the box, 100·P(2r/L), whatever N.",
             closed_form(results),
         ),
-        claim(
-            "The paper's sphere row corresponds to 2r/L from .128 to .144.",
-            paper_reach(),
-        ),
-        claim(
-            "A fixed box can't show the sphere row's rise with N.",
-            no_trend(results),
-        ),
+        claim("The paper's sphere row corresponds to 2r/L from .128 to .144.", paper_reach()),
+        claim("A fixed box can't show the sphere row's rise with N.", no_trend(results)),
         claim(
             "Sequential S-DOP is or-DOP hits over or-DOP tests: with sphere tests among the tests it can't exceed the sphere row.",
             sequential(results),
         ),
-        claim(
-            "43 to 52 % fits an or-DOP of k = 18 on compact meshes.",
-            survival(results),
-        ),
+        claim("43 to 52 % fits an or-DOP of k = 18 on compact meshes.", survival(results)),
         claim(
             "ALL S-DOP counts list entries as tests, and up to .28·N tests a frame more.",
             list(results),
@@ -51,10 +38,7 @@ pub fn all(results: &Results) -> Vec<PaperClaim> {
             "The paper's or-DOP row contradicts its others: it should be sphere × sequential and can't exceed the sphere row.",
             ordop_row(),
         ),
-        claim(
-            "Measured, or-DOP hits over tests are sphere × sequential.",
-            product(results),
-        ),
+        claim("Measured, or-DOP hits over tests are sphere × sequential.", product(results)),
     ]
 }
 
@@ -71,12 +55,7 @@ fn closed_form(results: &Results) -> Vec<ClaimCheck> {
         let s = relative_reach(run.side, run.radius);
         let measured = Estimate::of(&percent(results, scene, Sphere, Reading::OwnTests));
         let quantity = format!("Sphere, {scene}, 2r/L = {s:.4}, %");
-        Some(ClaimCheck::equal(
-            quantity,
-            measured,
-            100.0 * probability(s),
-            family,
-        ))
+        Some(ClaimCheck::equal(quantity, measured, 100.0 * probability(s), family))
     };
     results.scenes().filter_map(check).collect()
 }
@@ -102,11 +81,7 @@ fn no_trend(results: &Results) -> Vec<ClaimCheck> {
     {
         let [few, many] =
             [first, last].map(|scene| percent(results, scene, Sphere, Reading::OwnTests));
-        let rises: Vec<f64> = few
-            .iter()
-            .zip(&many)
-            .map(|(few, many)| many - few)
-            .collect();
+        let rises: Vec<f64> = few.iter().zip(&many).map(|(few, many)| many - few).collect();
         let [first_paper, .., last_paper] = paper::TABLE_1[0].1;
         let quantity = format!(
             "Sphere, {last} − {first}, points (the paper: {:.2})",
@@ -128,21 +103,13 @@ fn sequential(results: &Results) -> Vec<ClaimCheck> {
     if let (Some(sphere), Some(sequential)) = (paper::row(Sphere), paper::row(Seq)) {
         for ((n, sphere), sequential) in paper::TABLE_1_BODIES.iter().zip(sphere).zip(sequential) {
             let quantity = format!("the paper's sequential over its sphere row, N = {n}");
-            checks.push(ClaimCheck::computed(
-                quantity,
-                sequential / sphere,
-                [1.0, f64::INFINITY],
-            ));
+            checks.push(ClaimCheck::computed(quantity, sequential / sphere, [1.0, f64::INFINITY]));
         }
     }
     checks.extend(results.scenes().map(|scene| {
         let [all, sphere] = [(Seq, Reading::AllTests), (Sphere, Reading::OwnTests)]
             .map(|(strategy, reading)| percent(results, scene, strategy, reading));
-        let ratios: Vec<f64> = all
-            .iter()
-            .zip(&sphere)
-            .map(|(all, sphere)| all / sphere)
-            .collect();
+        let ratios: Vec<f64> = all.iter().zip(&sphere).map(|(all, sphere)| all / sphere).collect();
         let quantity = format!("Seq by hits/all tests over Sphere, {scene}");
         ClaimCheck::between(quantity, Estimate::of(&ratios), [f64::NEG_INFINITY, 1.0])
     }));
@@ -162,17 +129,12 @@ fn survival(results: &Results) -> Vec<ClaimCheck> {
             )
         })
         .collect();
-    let two_sided = results
-        .survival
-        .iter()
-        .filter(|row| row.overlap == Overlap::TwoSided && row.k.k() == 18);
+    let two_sided =
+        results.survival.iter().filter(|row| row.overlap == Overlap::TwoSided && row.k.k() == 18);
     checks.extend(two_sided.map(|row| {
         let share = Estimate::of(&row.shares).scaled(100.0);
         ClaimCheck::between(
-            format!(
-                "or-DOP hits among sphere hits, k = {}, {}, %",
-                row.k, row.overlap
-            ),
+            format!("or-DOP hits among sphere hits, k = {}, {}, %", row.k, row.overlap),
             share,
             [lo, hi],
         )
@@ -192,9 +154,7 @@ fn list(results: &Results) -> Vec<ClaimCheck> {
     };
     let mut checks: Vec<ClaimCheck> = paper::TABLE_1_BODIES.iter().zip(extra).map(check).collect();
     for scene in results.paper_scenes() {
-        let Some(paper) = results
-            .example(scene)
-            .and_then(|run| paper::percentage(All, run.bodies))
+        let Some(paper) = results.example(scene).and_then(|run| paper::percentage(All, run.bodies))
         else {
             continue;
         };
@@ -224,11 +184,7 @@ fn ordop_row() -> Vec<ClaimCheck> {
         let quantity = format!(
             "the paper's or-DOP percentage over its sphere × sequential ({product:.2} %), N = {n}"
         );
-        checks.push(ClaimCheck::computed(
-            quantity,
-            ordop[i] / product,
-            [1.1, f64::INFINITY],
-        ));
+        checks.push(ClaimCheck::computed(quantity, ordop[i] / product, [1.1, f64::INFINITY]));
     }
     let exceeds = |i: &usize| ordop[*i] > sphere[*i];
     let columns = (0..4).filter(exceeds).count() as f64;
@@ -245,20 +201,12 @@ fn product(results: &Results) -> Vec<ClaimCheck> {
     for scene in results.scenes() {
         let [ordop, sphere, sequential] = [OrDop, Sphere, Seq]
             .map(|strategy| percent(results, scene, strategy, Reading::OwnTests));
-        let ratios: Vec<f64> = (0..ordop.len())
-            .map(|i| ordop[i] / (0.01 * sphere[i] * sequential[i]))
-            .collect();
+        let ratios: Vec<f64> =
+            (0..ordop.len()).map(|i| ordop[i] / (0.01 * sphere[i] * sequential[i])).collect();
         let quantity = format!("or-DOPs over Sphere × Seq, {scene}");
-        checks.push(ClaimCheck::between(
-            quantity,
-            Estimate::of(&ratios),
-            [0.95, 1.05],
-        ));
-        let below: Vec<f64> = ordop
-            .iter()
-            .zip(&sphere)
-            .map(|(ordop, sphere)| ordop / sphere)
-            .collect();
+        checks.push(ClaimCheck::between(quantity, Estimate::of(&ratios), [0.95, 1.05]));
+        let below: Vec<f64> =
+            ordop.iter().zip(&sphere).map(|(ordop, sphere)| ordop / sphere).collect();
         checks.push(ClaimCheck::between(
             format!("or-DOPs over Sphere, {scene}"),
             Estimate::of(&below),

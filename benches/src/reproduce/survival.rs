@@ -24,11 +24,7 @@ impl Survival {
     /// Every or-DOP with every test, not measured yet.
     pub(super) fn every() -> Vec<Self> {
         let with = |&k: &DirectionSet| {
-            let row = move |&overlap: &Overlap| Self {
-                k,
-                overlap,
-                shares: Vec::new(),
-            };
+            let row = move |&overlap: &Overlap| Self { k, overlap, shares: Vec::new() };
             Overlap::ALL.iter().map(row)
         };
         DirectionSet::ALL.iter().flat_map(with).collect()

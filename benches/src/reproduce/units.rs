@@ -110,10 +110,7 @@ impl Experiments {
         let mut scenes = Vec::new();
         for &name in &plan.names {
             let file = load(name)?;
-            let scene = Scene {
-                construct_seconds: 0.0,
-                ..file.build()?
-            };
+            let scene = Scene { construct_seconds: 0.0, ..file.build()? };
             inputs.insert(name.to_string(), digest(&scene));
             scenes.push((name, file, scene));
         }
@@ -155,11 +152,7 @@ impl Experiments {
     /// How many units there are.
     #[must_use]
     pub fn units(&self) -> usize {
-        let readings = if self.interpretations {
-            sensitivity::ways().len()
-        } else {
-            0
-        };
+        let readings = if self.interpretations { sensitivity::ways().len() } else { 0 };
         self.plan.steps() + readings
     }
 
@@ -195,18 +188,8 @@ impl Experiments {
     }
 
     fn scene(&self, prepared: &PreparedScene, seed: u64) -> Result<UnitResult, ReproduceError> {
-        let PreparedScene {
-            name,
-            file,
-            largest,
-            variants,
-        } = prepared;
-        let ExperimentPlan {
-            frames,
-            tier,
-            effort,
-            ..
-        } = self.plan;
+        let PreparedScene { name, file, largest, variants } = prepared;
+        let ExperimentPlan { frames, tier, effort, .. } = self.plan;
         let held = self.calibrations.lock();
         let mut held = held.unwrap_or_else(PoisonError::into_inner);
         let mut calibration = match held.remove(name) {
@@ -323,13 +306,7 @@ impl Results {
     /// The same of what a unit found.
     pub(super) fn add(&mut self, found: UnitResult) {
         match found {
-            UnitResult::Scene {
-                name,
-                runs,
-                pass,
-                variants,
-                immediacy,
-            } => {
+            UnitResult::Scene { name, runs, pass, variants, immediacy } => {
                 self.runs.extend(runs);
                 self.passes.push((name, pass));
                 self.immediacies.extend(immediacy);

@@ -234,10 +234,8 @@ impl SceneFile {
             let bounds = self.spec.bounds.as_ref().map_or(count_span, Spanned::span);
             let message =
                 format!("a box of side {side} is too small for bodies of radius {widest}");
-            let hint = format!(
-                "the side must be at least {}, and larger for room to move",
-                2.0 * widest
-            );
+            let hint =
+                format!("the side must be at least {}, and larger for room to move", 2.0 * widest);
             return Err(self.wrong(bounds, &message, &hint));
         }
         let wished = group.spec.placement.as_ref();
@@ -262,9 +260,7 @@ impl SceneFile {
             // origin = "ball".
             let offset = world_centre(ball.centre, &rotation, &[0.0; 3]);
             bodies.rotation.push(rotation);
-            bodies
-                .translation
-                .push([0, 1, 2].map(|axis| centre[axis] - offset[axis]));
+            bodies.translation.push([0, 1, 2].map(|axis| centre[axis] - offset[axis]));
         }
         Ok(())
     }

@@ -83,10 +83,9 @@ impl SceneText {
     pub(super) fn read(path: &Path, max_bytes: u64) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         match files::read_text(path, max_bytes) {
-            Err(error) if error.kind() == ErrorKind::FileTooLarge => Err(SceneError::TooLong {
-                file,
-                most: max_bytes,
-            }),
+            Err(error) if error.kind() == ErrorKind::FileTooLarge => {
+                Err(SceneError::TooLong { file, most: max_bytes })
+            }
             Ok(text) => Ok(Self { file, text }),
             Err(cause) => Err(SceneError::Unreadable { file, cause }),
         }
@@ -118,9 +117,7 @@ impl SceneText {
         let span = error.span().unwrap_or(end..end);
         let message = error.message().trim_end();
         let hint = hint_of(message).or_else(|| {
-            let named_so = Path::new(&self.file)
-                .extension()
-                .is_some_and(|e| e == "toml");
+            let named_so = Path::new(&self.file).extension().is_some_and(|e| e == "toml");
             (!named_so).then(|| "a scene file is written in TOML; see data/scenes".to_owned())
         });
         self.error(span, message, hint)
@@ -131,11 +128,7 @@ impl SceneText {
 /// all in backticks.
 fn hint_of(message: &str) -> Option<String> {
     let names = |text: &str| -> Vec<String> {
-        text.split('`')
-            .skip(1)
-            .step_by(2)
-            .map(str::to_owned)
-            .collect()
+        text.split('`').skip(1).step_by(2).map(str::to_owned).collect()
     };
     if message.starts_with("missing field") {
         return names(message).first().map(|key| format!("add `{key}`"));

@@ -171,21 +171,13 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::read`].
     pub fn parse(text: &str, file: &str, directory: &Path) -> Result<Self, SceneError> {
-        let source = SceneText {
-            file: file.to_owned(),
-            text: text.to_owned(),
-        };
+        let source = SceneText { file: file.to_owned(), text: text.to_owned() };
         Self::parse_source(source, directory.to_owned())
     }
 
     fn parse_source(source: SceneText, directory: PathBuf) -> Result<Self, SceneError> {
         match read_spec(&source.text) {
-            Ok(spec) => Ok(Self {
-                source,
-                directory,
-                max_bytes: files::MAX_BYTES,
-                spec,
-            }),
+            Ok(spec) => Ok(Self { source, directory, max_bytes: files::MAX_BYTES, spec }),
             Err(error) => Err(source.toml_error(&error)),
         }
     }
@@ -197,10 +189,7 @@ fn read_spec(text: &str) -> Result<SceneSpec, toml::de::Error> {
     for value in table.get_ref().values() {
         find_double_roundings(value, &mut nearest);
     }
-    table
-        .get_mut()
-        .iter_mut()
-        .for_each(|(_, value)| round_once(value, &nearest));
+    table.get_mut().iter_mut().for_each(|(_, value)| round_once(value, &nearest));
     SceneSpec::deserialize(Deserializer::from(table))
 }
 
@@ -218,9 +207,7 @@ fn find_double_roundings(value: &Spanned<DeValue<'_>>, nearest: &mut BTreeMap<us
                 nearest.insert(value.span().start, format!("{:?}", f64::from(once)));
             }
         }
-        DeValue::Array(list) => list
-            .iter()
-            .for_each(|item| find_double_roundings(item, nearest)),
+        DeValue::Array(list) => list.iter().for_each(|item| find_double_roundings(item, nearest)),
         DeValue::Table(table) => {
             for (key, item) in table {
                 match (key.get_ref().as_ref(), item.get_ref()) {
@@ -253,9 +240,7 @@ fn round_once<'i>(value: &mut Spanned<DeValue<'i>>, nearest: &'i BTreeMap<usize,
             }
         }
         DeValue::Array(list) => list.iter_mut().for_each(|item| round_once(item, nearest)),
-        DeValue::Table(table) => table
-            .iter_mut()
-            .for_each(|(_, item)| round_once(item, nearest)),
+        DeValue::Table(table) => table.iter_mut().for_each(|(_, item)| round_once(item, nearest)),
         _ => {}
     }
 }

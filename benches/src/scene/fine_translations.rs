@@ -66,9 +66,7 @@ impl FineTranslations {
             (body, (0..3).fold(0.0, far))
         });
         let radius = |body: usize| f64::from(shapes[bodies.shape[body] as usize].ball.radius);
-        moved
-            .into_iter()
-            .find(|&(body, moved)| moved > MOST_ROUNDING_SHARE * radius(body))
+        moved.into_iter().find(|&(body, moved)| moved > MOST_ROUNDING_SHARE * radius(body))
     }
 }
 
@@ -86,10 +84,7 @@ mod tests {
     fn moved_bodies_use_f32_positions() {
         let mut fine = FineTranslations::default();
         let mut bodies = Bodies::default();
-        for (body, t) in [[0.5, 1.0, 2.0], [0.1, 1.0e9 + 0.5, -0.0]]
-            .into_iter()
-            .enumerate()
-        {
+        for (body, t) in [[0.5, 1.0, 2.0], [0.1, 1.0e9 + 0.5, -0.0]].into_iter().enumerate() {
             bodies.push(0, true, [0.0, 0.0, 0.0, 1.0_f32], fine.add(body, t));
         }
         assert_eq!(bodies.translation[1], [0.1_f32, 1.0e9, -0.0]);

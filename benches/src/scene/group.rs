@@ -255,11 +255,8 @@ impl SceneFile {
                 ));
             }
         }
-        let moving = spec
-            .speed
-            .as_ref()
-            .map(Spanned::span)
-            .or(spec.velocities.as_ref().map(Spanned::span));
+        let moving =
+            spec.speed.as_ref().map(Spanned::span).or(spec.velocities.as_ref().map(Spanned::span));
         match moving {
             Some(span) if spec.fixed => Err(self.wrong(
                 span,

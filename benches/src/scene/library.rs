@@ -64,8 +64,7 @@ impl ShapeLibrary {
             Some(scale) => {
                 let Factors(factors) = *scale.get_ref();
                 let wrong = |error: MeshError| {
-                    file.source
-                        .error(scale.span(), error.to_string(), Some(error.help()))
+                    file.source.error(scale.span(), error.to_string(), Some(error.help()))
                 };
                 mesh.scaled(factors).map_err(wrong)?
             }
@@ -88,12 +87,7 @@ impl ShapeLibrary {
         if let Some(&known) = self.built.get(&key) {
             return Ok(known);
         }
-        let spec = ShapeSpec {
-            origin,
-            radius,
-            directions: cull.k,
-            axes: cull.axes,
-        };
+        let spec = ShapeSpec { origin, radius, directions: cull.k, axes: cull.axes };
         let start = Instant::now();
         let shape = Shape::build(&self.meshes[mesh], &spec)
             .map_err(|error| (error.to_string(), Some(error.help().to_owned())))?;
@@ -121,16 +115,9 @@ fn read_mesh(
     name: &Spanned<String>,
     path: &Path,
 ) -> Result<TriangleMesh, SceneError> {
-    let options = ReadOptions {
-        max_bytes: file.max_bytes,
-        ..ReadOptions::default()
-    };
+    let options = ReadOptions { max_bytes: file.max_bytes, ..ReadOptions::default() };
     read(path, &options).map_err(|error| {
-        let hint = if path.exists() {
-            Some(error.help())
-        } else {
-            nearest_file(path)
-        };
+        let hint = if path.exists() { Some(error.help()) } else { nearest_file(path) };
         file.source.error(name.span(), error.to_string(), hint)
     })
 }
@@ -143,11 +130,7 @@ fn procedural(
     let known = ProceduralShape::NAMES;
     if !known.contains(&name.get_ref().as_str()) {
         let message = format!("there is no shape `{}`", name.get_ref());
-        return Err(source.error(
-            name.span(),
-            message,
-            suggest(name.get_ref(), known.into_iter()),
-        ));
+        return Err(source.error(name.span(), message, suggest(name.get_ref(), known.into_iter())));
     }
     let values: Vec<(&str, f64)> = sizes
         .iter()
@@ -157,21 +140,15 @@ fn procedural(
         .and_then(|shape| Ok((shape, shape.build()?)));
     made.map_err(|error| {
         let blamed = match &error {
-            ShapeError::UnknownSize { size, .. } => sizes
-                .keys()
-                .find(|key| key.get_ref() == size)
-                .map(Spanned::span),
-            ShapeError::BadSize { size, .. } => sizes
-                .iter()
-                .find(|(key, _)| key.get_ref() == size)
-                .map(|(_, value)| value.span()),
+            ShapeError::UnknownSize { size, .. } => {
+                sizes.keys().find(|key| key.get_ref() == size).map(Spanned::span)
+            }
+            ShapeError::BadSize { size, .. } => {
+                sizes.iter().find(|(key, _)| key.get_ref() == size).map(|(_, value)| value.span())
+            }
             ShapeError::UnknownShape { .. } => None,
         };
-        source.error(
-            blamed.unwrap_or(name.span()),
-            error.to_string(),
-            error.help(),
-        )
+        source.error(blamed.unwrap_or(name.span()), error.to_string(), error.help())
     })
 }
 
@@ -186,12 +163,8 @@ fn nearest_file(path: &Path) -> Option<String> {
     let Ok(directory) = std::fs::read_dir(parent) else {
         return Some(format!("{relative}; the directory doesn't exist either"));
     };
-    let mut names: Vec<String> = directory
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .collect();
+    let mut names: Vec<String> =
+        directory.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
     names.sort();
-    Some(format!(
-        "{relative}; {}",
-        suggest(wanted, names.iter().map(String::as_str))
-    ))
+    Some(format!("{relative}; {}", suggest(wanted, names.iter().map(String::as_str))))
 }

@@ -29,10 +29,7 @@ impl Placer {
         let mut clusters = Vec::new();
         match placement {
             Placement::Uniform => {}
-            Placement::Clusters {
-                number,
-                radius: Positive(radius),
-            } => {
+            Placement::Clusters { number, radius: Positive(radius) } => {
                 // A u32 fits into the usize of every machine that holds such a scene.
                 let number = number.get() as usize;
                 if number > count {
@@ -47,25 +44,16 @@ impl Placer {
                 // Whole clusters inside of the walls, spheres included.
                 clusters.extend((0..number).map(|_| point(draws, [room - radius; 3])));
             }
-            Placement::Plane {
-                thickness: Positive(thickness),
-            } => {
+            Placement::Plane { thickness: Positive(thickness) } => {
                 if thickness > 2.0 * room {
                     let problem = format!(
                         "a slice of thickness {thickness} doesn't fit into a box of side {side}"
                     );
-                    return Err((
-                        problem,
-                        format!("the thickness can be up to {}", 2.0 * room),
-                    ));
+                    return Err((problem, format!("the thickness can be up to {}", 2.0 * room)));
                 }
             }
         }
-        Ok(Self {
-            placement,
-            half,
-            clusters,
-        })
+        Ok(Self { placement, half, clusters })
     }
 
     /// The centre of a sphere with these draws: wholly inside of the box.
@@ -73,13 +61,10 @@ impl Placer {
         let limit = self.half - radius;
         match self.placement {
             Placement::Uniform => point(draws, [limit; 3]),
-            Placement::Plane {
-                thickness: Positive(thickness),
-            } => point(draws, [limit, limit, 0.5 * thickness]),
-            Placement::Clusters {
-                radius: Positive(spread),
-                ..
-            } => {
+            Placement::Plane { thickness: Positive(thickness) } => {
+                point(draws, [limit, limit, 0.5 * thickness])
+            }
+            Placement::Clusters { radius: Positive(spread), .. } => {
                 // A u32 counted them, and there is one at least.
                 let cluster = self.clusters[draws.index(self.clusters.len() as u32) as usize];
                 let offset = draws.ball(spread);

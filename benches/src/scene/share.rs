@@ -28,11 +28,7 @@ impl Share {
     pub fn of_rank(rank: usize, ranks: usize, all: usize, moving: Vec<Range<usize>>) -> Self {
         // Fewer than 2³¹ bodies and 2³² ranks.
         let start = |rank: usize| (all as u64 * rank as u64 / ranks as u64) as usize;
-        Self {
-            held: start(rank)..start(rank + 1),
-            all,
-            moving,
-        }
+        Self { held: start(rank)..start(rank + 1), all, moving }
     }
 
     /// The part of a run of bodies that is held, counted from the run's first body.

@@ -42,18 +42,13 @@ impl SceneCuller {
             return Ok(Self::Columns(Box::new(culler)));
         }
         let start = Instant::now();
-        let settings = CullSettings {
-            interest: None,
-            ..scene.cull.clone()
-        };
+        let settings = CullSettings { interest: None, ..scene.cull.clone() };
         let builder = builder.settings(&settings);
         let mut world = World::with(scene.shapes.clone(), &builder)?;
         let translations = scene.fine.of(&scene.bodies);
         let body = |body| world_body(&scene.bodies, translations.as_deref(), body);
         let bodies = (0..scene.bodies.len()).map(body);
-        let ids = bodies
-            .map(|body| world.insert(body))
-            .collect::<Result<Vec<_>, _>>()?;
+        let ids = bodies.map(|body| world.insert(body)).collect::<Result<Vec<_>, _>>()?;
         let mut centres = Vec::new();
         match &scene.cull.interest {
             None => (),
@@ -141,10 +136,7 @@ impl FineCuller {
             self.look(cone, bodies, translations)?;
         }
         let pairs = self.world.cull()?;
-        self.pairs = pairs
-            .iter()
-            .map(|pair| pair.map(|id| id.slot() as u32))
-            .collect();
+        self.pairs = pairs.iter().map(|pair| pair.map(|id| id.slot() as u32)).collect();
         let culling = self.world.seconds().total - before;
         self.placing += (start.elapsed().as_secs_f64() - culling).max(0.0);
         Ok(())
@@ -158,11 +150,7 @@ impl FineCuller {
         translations: Option<&[[f64; 3]]>,
     ) -> Result<(), SimulationError> {
         let pose = |body: usize| {
-            let Body {
-                rotation,
-                translation,
-                ..
-            } = world_body(bodies, translations, body);
+            let Body { rotation, translation, .. } = world_body(bodies, translations, body);
             (rotation, translation)
         };
         let cone = PlacedCone::new(cone, cone.body.map(|body| pose(body as usize)));
@@ -172,10 +160,7 @@ impl FineCuller {
             cone.sees([0, 1, 2].map(|axis| centre[axis] + t[axis]))
         };
         let ids = self.ids.iter().enumerate();
-        let seen: Vec<_> = ids
-            .filter(|&(body, _)| is_seen(body))
-            .map(|(_, &id)| id)
-            .collect();
+        let seen: Vec<_> = ids.filter(|&(body, _)| is_seen(body)).map(|(_, &id)| id).collect();
         Ok(self.world.set_interest(&seen)?)
     }
 }

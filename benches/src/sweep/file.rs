@@ -67,20 +67,14 @@ impl Units {
     /// # Errors
     /// A file that can't be read, has other lines or a wrong digest.
     pub fn read(path: &Path) -> Result<Self, UnitsError> {
-        let io = |source| UnitsError::Io {
-            path: path.to_owned(),
-            source,
-        };
+        let io = |source| UnitsError::Io { path: path.to_owned(), source };
         let mut lines = BufReader::new(File::open(path).map_err(io)?);
         let (mut line, mut hash) = (Vec::new(), Sha256::new());
         let mut units: Option<Self> = None;
         let mut number = 0;
         loop {
             number += 1;
-            let wrong = || UnitsError::Line {
-                path: path.to_owned(),
-                line: number,
-            };
+            let wrong = || UnitsError::Line { path: path.to_owned(), line: number };
             files::read_line(&mut lines, MAX_BYTES, &mut line).map_err(io)?;
             // A line that was cut off is none.
             if !line.ends_with(b"\n") {

@@ -122,11 +122,7 @@ impl Header {
         words("form", &self.form, &other.form)
             .or_else(|| words("command", &self.command, &other.command))
             .or_else(|| words("code", &self.code, &other.code))
-            .or_else(|| {
-                keys(settings(self), settings(other))
-                    .iter()
-                    .find_map(setting)
-            })
+            .or_else(|| keys(settings(self), settings(other)).iter().find_map(setting))
             .or_else(|| keys(inputs(self), inputs(other)).iter().find_map(input))
             .or_else(|| words("number of units", &count(self), &count(other)))
     }
@@ -151,10 +147,7 @@ mod tests {
         };
         let one = header(&[("a.toml", "12")], 2);
         assert_eq!(one.difference(&one), None);
-        let part = Header {
-            shard: Some(Shard { index: 1, of: 2 }),
-            ..one.clone()
-        };
+        let part = Header { shard: Some(Shard { index: 1, of: 2 }), ..one.clone() };
         assert_eq!(one.difference(&part), None);
         let change = |change: fn(&mut Header)| {
             let mut other = one.clone();

@@ -74,12 +74,8 @@ mod tests {
 
     impl Sweep for Squares {
         fn header(&self) -> miette::Result<Header> {
-            let header = Header::new(
-                "squares",
-                &BTreeMap::<String, u8>::new(),
-                BTreeMap::new(),
-                self.units,
-            );
+            let header =
+                Header::new("squares", &BTreeMap::<String, u8>::new(), BTreeMap::new(), self.units);
             Ok(header.unwrap())
         }
         fn name(&self, unit: usize) -> String {
@@ -102,11 +98,7 @@ mod tests {
     }
 
     fn run(units: &[usize], timed: bool) -> (miette::Result<()>, Vec<(usize, Option<String>)>) {
-        let work = Squares {
-            units: 10,
-            timed,
-            running: AtomicUsize::new(0),
-        };
+        let work = Squares { units: 10, timed, running: AtomicUsize::new(0) };
         let mut told = Vec::new();
         let mut on = |unit, result| {
             told.push((unit, result));
@@ -135,10 +127,7 @@ mod tests {
             for timed in [false, true] {
                 let (ended, _) = run(&[0, unit], timed);
                 let error = ended.unwrap_err();
-                assert_eq!(
-                    error.to_string(),
-                    format!("unit {unit}, square of {unit}, failed")
-                );
+                assert_eq!(error.to_string(), format!("unit {unit}, square of {unit}, failed"));
                 assert!(error.chain().any(|cause| cause.to_string().contains(why)));
             }
         }

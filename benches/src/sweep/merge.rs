@@ -105,30 +105,18 @@ pub fn merge(files: Vec<(PathBuf, Units)>) -> Result<MergedUnits, MergeError> {
         });
         if let Some(difference) = difference {
             let other = path;
-            return Err(MergeError::Different {
-                first,
-                other,
-                difference,
-            });
+            return Err(MergeError::Different { first, other, difference });
         }
         let own = shard.units(header.units);
         let wrong = own.iter().find(|unit| !units.done.contains_key(unit));
-        let wrong = wrong.or_else(|| {
-            units
-                .done
-                .keys()
-                .find(|unit| own.binary_search(unit).is_err())
-        });
+        let wrong =
+            wrong.or_else(|| units.done.keys().find(|unit| own.binary_search(unit).is_err()));
         if let Some(&unit) = wrong {
             return Err(MergeError::Units { path, shard, unit });
         }
         if let Some(first) = parts.insert(shard, path.clone()) {
             let other = path;
-            return Err(MergeError::Twice {
-                first,
-                other,
-                shard,
-            });
+            return Err(MergeError::Twice { first, other, shard });
         }
         done.extend(units.done);
         seconds += took;
@@ -139,9 +127,5 @@ pub fn merge(files: Vec<(PathBuf, Units)>) -> Result<MergedUnits, MergeError> {
     if !missing.is_empty() {
         return Err(MergeError::Missing { missing, of });
     }
-    Ok(MergedUnits {
-        header,
-        done,
-        seconds,
-    })
+    Ok(MergedUnits { header, done, seconds })
 }

@@ -17,12 +17,7 @@ impl<'a> OrderedResults<'a> {
         take: &'a mut dyn FnMut(usize, &str) -> miette::Result<()>,
     ) -> Self {
         let mut units = units.into_iter();
-        Self {
-            next: units.next(),
-            units,
-            early: BTreeMap::new(),
-            take,
-        }
+        Self { next: units.next(), units, early: BTreeMap::new(), take }
     }
 
     /// A unit's result, or none for one that was left out.

@@ -27,19 +27,13 @@ pub fn on_ranks(
     let header = work.header()?;
     let headers = tell_first(network, serde_json::to_vec(&header).into_diagnostic()?);
     same_work(&header, &headers, network.rank())?;
-    let shard = Shard {
-        index: network.rank() + 1,
-        of: network.size(),
-    };
+    let shard = Shard { index: network.rank() + 1, of: network.size() };
     let units = shard.units(header.units).into_iter();
     let (timed, counted): (Vec<usize>, Vec<usize>) = units.partition(|&unit| work.timed(unit));
     let mut done = BTreeMap::new();
     let mut run = |unit: usize, attempt: &dyn Fn(usize) -> miette::Result<String>| {
         if work.starts(unit) {
-            done.insert(
-                unit,
-                attempt(unit).map_err(|error| of_rank(network, &error))?,
-            );
+            done.insert(unit, attempt(unit).map_err(|error| of_rank(network, &error))?);
         }
         ended(unit);
         Ok::<_, miette::Report>(())
@@ -51,11 +45,7 @@ pub fn on_ranks(
     for unit in counted {
         run(unit, &|unit| one.install(|| attempt(work, unit)))?;
     }
-    let mut timed = || {
-        timed
-            .iter()
-            .try_for_each(|&unit| run(unit, &|unit| attempt(work, unit)))
-    };
+    let mut timed = || timed.iter().try_for_each(|&unit| run(unit, &|unit| attempt(work, unit)));
     if share_cores {
         timed()?;
     } else {
@@ -72,10 +62,7 @@ pub fn on_ranks(
     network.wait();
     let mine = serde_json::to_vec(&done).into_diagnostic()?;
     let mut all = BTreeMap::new();
-    for part in tell_first(network, mine)
-        .iter()
-        .filter(|part| !part.is_empty())
-    {
+    for part in tell_first(network, mine).iter().filter(|part| !part.is_empty()) {
         let part: BTreeMap<usize, String> = serde_json::from_slice(part).into_diagnostic()?;
         all.extend(part);
     }
@@ -152,11 +139,8 @@ mod tests {
 
     /// What each rank gets, and how many timed units ran next to others.
     fn run(ranks: usize, share_cores: bool) -> (Vec<BTreeMap<usize, String>>, usize) {
-        let work = Squares {
-            fails: usize::MAX,
-            running: AtomicUsize::new(0),
-            met: AtomicUsize::new(0),
-        };
+        let work =
+            Squares { fails: usize::MAX, running: AtomicUsize::new(0), met: AtomicUsize::new(0) };
         let each = crate::network::on_ranks(ranks, |net| {
             on_ranks(net, &work, share_cores, &mut |_| {}).unwrap()
         });
@@ -166,9 +150,8 @@ mod tests {
     #[test]
     fn rank_0_has_every_result() {
         let done = (0..10).filter(|unit| *unit != 6);
-        let expected: BTreeMap<usize, String> = done
-            .map(|unit| (unit, format!("{{\"square\": {}}}", unit * unit)))
-            .collect();
+        let expected: BTreeMap<usize, String> =
+            done.map(|unit| (unit, format!("{{\"square\": {}}}", unit * unit))).collect();
         for ranks in [1, 2, 3, 12] {
             let (each, _) = run(ranks, false);
             assert_eq!(each[0], expected, "{ranks} ranks");
@@ -192,36 +175,19 @@ mod tests {
 
     #[test]
     fn a_failure_names_its_rank() {
-        let work = Squares {
-            fails: 5,
-            running: AtomicUsize::new(0),
-            met: AtomicUsize::new(0),
-        };
+        let work = Squares { fails: 5, running: AtomicUsize::new(0), met: AtomicUsize::new(0) };
         let errors = crate::network::on_ranks(1, |net| {
-            on_ranks(net, &work, false, &mut |_| {})
-                .unwrap_err()
-                .to_string()
+            on_ranks(net, &work, false, &mut |_| {}).unwrap_err().to_string()
         });
         assert_eq!(errors, ["rank 0: unit 5, square of 5, failed: planted"]);
     }
 
     #[test]
     fn other_work_is_refused() {
-        let header = |units| {
-            Header::new(
-                "squares",
-                &BTreeMap::<String, u8>::new(),
-                BTreeMap::new(),
-                units,
-            )
-        };
+        let header =
+            |units| Header::new("squares", &BTreeMap::<String, u8>::new(), BTreeMap::new(), units);
         let texts = [9, 8].map(|units| serde_json::to_vec(&header(units).unwrap()).unwrap());
-        let error = same_work(&header(9).unwrap(), &texts, 0)
-            .unwrap_err()
-            .to_string();
-        assert_eq!(
-            error,
-            "rank 1 has different work: the number of units is 9 here and 8 there"
-        );
+        let error = same_work(&header(9).unwrap(), &texts, 0).unwrap_err().to_string();
+        assert_eq!(error, "rank 1 has different work: the number of units is 9 here and 8 there");
     }
 }

@@ -42,11 +42,7 @@ impl FromStr for Shard {
             .and_then(|(index, of)| Some((index.parse().ok()?, of.parse().ok()?)));
         let (index, of) = parts.ok_or(ShardError::Form)?;
         let shard = Self { index, of };
-        if (1..=of).contains(&index) {
-            Ok(shard)
-        } else {
-            Err(ShardError::Range(shard))
-        }
+        if (1..=of).contains(&index) { Ok(shard) } else { Err(ShardError::Range(shard)) }
     }
 }
 

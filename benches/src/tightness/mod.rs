@@ -32,11 +32,7 @@ impl Size {
             volume: volume + 0.0, // no −0
             over_hull: (hull_volume > 0.0).then(|| volume / hull_volume),
         };
-        let corners: Vec<_> = hull
-            .vertices
-            .iter()
-            .map(|&v| shape.vertices[v as usize])
-            .collect();
+        let corners: Vec<_> = hull.vertices.iter().map(|&v| shape.vertices[v as usize]).collect();
         let mut sizes = vec![size("sphere".to_owned(), shape.ball.volume())];
         for &directions in DirectionSet::ALL {
             let name = match directions {

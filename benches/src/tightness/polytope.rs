@@ -28,22 +28,12 @@ pub trait PolytopeVolume {
 
 impl PolytopeVolume for OrDop {
     fn volume(&self) -> f64 {
-        let slabs = self
-            .directions
-            .coefficients()
-            .iter()
-            .zip(self.lo.iter().zip(&self.hi));
+        let slabs = self.directions.coefficients().iter().zip(self.lo.iter().zip(&self.hi));
         let half_spaces: Vec<HalfSpace> = slabs
             .flat_map(|(&c, (&lo, &hi))| {
                 let normal = DVec3::from_array(c.map(f64::from));
                 let (lo, hi) = (f64::from(lo), f64::from(hi));
-                [
-                    HalfSpace { normal, end: hi },
-                    HalfSpace {
-                        normal: -normal,
-                        end: -lo,
-                    },
-                ]
+                [HalfSpace { normal, end: hi }, HalfSpace { normal: -normal, end: -lo }]
             })
             .collect();
         let ends = |column: &[f32]| DVec3::from_array([0, 1, 2].map(|i| f64::from(column[i])));
@@ -55,9 +45,8 @@ impl PolytopeVolume for OrDop {
                 let distance = (end - normal.dot(centre)) / normal.length();
                 let foot = centre + normal.normalize() * distance;
                 let others = half_spaces.iter().enumerate().filter(|&(j, _)| j != i);
-                let face = others.fold(square(foot, normal, size), |face, (_, other)| {
-                    clip(&face, other)
-                });
+                let face =
+                    others.fold(square(foot, normal, size), |face, (_, other)| clip(&face, other));
                 area(&face) * distance / 3.0
             })
             .sum();
@@ -68,10 +57,7 @@ impl PolytopeVolume for OrDop {
 /// A square about `foot` in the plane with this normal, of half-side `size`.
 fn square(foot: DVec3, normal: DVec3, size: f64) -> Vec<DVec3> {
     let (a, b) = normal.normalize().any_orthonormal_pair();
-    [a + b, b - a, -a - b, a - b]
-        .iter()
-        .map(|&corner| foot + corner * size)
-        .collect()
+    [a + b, b - a, -a - b, a - b].iter().map(|&corner| foot + corner * size).collect()
 }
 
 /// The part of a convex polygon inside a half-space (Sutherland & Hodgman 1974).

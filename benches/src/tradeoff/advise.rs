@@ -184,10 +184,7 @@ fn chosen_finder(lines: &[Line]) -> Option<(Finder, Vec<String>)> {
 
 /// Spheres, boxes, S-DOP with each k and both kinds of axes by the tests of sides, and hulls.
 fn variants(own: &CullSettings, axes: Option<Axes>) -> Vec<Variant> {
-    let boxes = CullSettings {
-        strategy: Strategy::Aabb,
-        ..own.clone()
-    };
+    let boxes = CullSettings { strategy: Strategy::Aabb, ..own.clone() };
     let mut list = vec![Variant::spheres(own), Variant::of("aabb".into(), boxes)];
     list.extend(s_dops(own).into_iter().filter(|variant| {
         let settings = &variant.settings;
@@ -230,15 +227,9 @@ mod tests {
     #[test]
     fn auto_is_kept_if_tied() {
         let grid = line("grid", [1.0, 1.1, 0.9]);
-        let near = [
-            line("all-pairs", [9.0, 9.1, 9.2]),
-            grid.clone(),
-            line("auto", [1.1, 1.0, 1.0]),
-        ];
-        assert_eq!(
-            chosen_finder(&near),
-            Some((Finder::Auto, vec!["grid".to_owned()]))
-        );
+        let near =
+            [line("all-pairs", [9.0, 9.1, 9.2]), grid.clone(), line("auto", [1.1, 1.0, 1.0])];
+        assert_eq!(chosen_finder(&near), Some((Finder::Auto, vec!["grid".to_owned()])));
         let far = [grid, line("auto", [5.0, 5.1, 4.9])];
         assert_eq!(chosen_finder(&far), Some((Finder::Grid, vec![])));
         assert_eq!(chosen_finder(&[]), None);
@@ -253,14 +244,8 @@ mod tests {
             let list = list.iter().filter(s_dop);
             list.filter(|v| v.settings.axes == axes).count()
         };
-        assert_eq!(
-            [Axes::Principal, Axes::Model].map(|a| along(a, None)),
-            [8, 8]
-        );
+        assert_eq!([Axes::Principal, Axes::Model].map(|a| along(a, None)), [8, 8]);
         let model = Some(Axes::Model);
-        assert_eq!(
-            [Axes::Principal, Axes::Model].map(|a| along(a, model)),
-            [0, 8]
-        );
+        assert_eq!([Axes::Principal, Axes::Model].map(|a| along(a, model)), [0, 8]);
     }
 }

@@ -77,12 +77,7 @@ pub fn by_tests(
     cache: Option<&std::path::Path>,
     tests: f64,
 ) -> Result<Vec<BudgetRow>, TradeoffError> {
-    let judged: Vec<Sample> = window
-        .frames
-        .iter()
-        .step_by(window.stride)
-        .cloned()
-        .collect();
+    let judged: Vec<Sample> = window.frames.iter().step_by(window.stride).cloned().collect();
     let truth = judge.truth(&judged, cache)?;
     let mut rows = Vec::new();
     for &order in Order::ALL {
@@ -117,10 +112,8 @@ fn row(
     window: Window<'_>,
     truth: &[Vec<[u32; 2]>],
 ) -> Result<BudgetRow, TradeoffError> {
-    let mut culler = Culler::builder()
-        .settings(settings)
-        .tier(tier)
-        .build(&scene.shapes, &scene.bodies)?;
+    let mut culler =
+        Culler::builder().settings(settings).tier(tier).build(&scene.shapes, &scene.bodies)?;
     let mut starved = Starvation::default();
     let (mut reported, mut found, mut true_pairs) = (0, 0, 0);
     let mut truth = truth.iter();
@@ -174,11 +167,8 @@ impl Starvation {
         let refined = pairs.len() - untested;
         let before = std::mem::take(&mut self.since);
         for (place, pair) in pairs.enumerate() {
-            let since = if place < refined {
-                frame
-            } else {
-                before.get(&pair).copied().unwrap_or(frame)
-            };
+            let since =
+                if place < refined { frame } else { before.get(&pair).copied().unwrap_or(frame) };
             if place >= refined {
                 // A pair that is listed for the first time has the age 1.
                 let age = frame - since + 1;
@@ -209,12 +199,7 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
         let warm = culled.times.of(Regime::Warm).iter();
         warm.map(|s| 1e6 * (s.finding + s.refining)).collect()
     };
-    let whole = median(
-        culled(&[Budget::Tests(u64::MAX)])?
-            .iter()
-            .flat_map(spent)
-            .collect(),
-    );
+    let whole = median(culled(&[Budget::Tests(u64::MAX)])?.iter().flat_map(spent).collect());
     let microseconds = SHARES.map(|share| (share * whole).round() as u64);
     let row = |(microseconds, culled): (u64, VariantRun)| {
         let times = spent(&culled);
@@ -231,9 +216,5 @@ pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>,
         })
     };
     let culled = culled(&microseconds.map(Budget::Microseconds))?;
-    Ok(microseconds
-        .into_iter()
-        .zip(culled)
-        .filter_map(row)
-        .collect())
+    Ok(microseconds.into_iter().zip(culled).filter_map(row).collect())
 }

@@ -120,8 +120,6 @@ pub(super) fn share(part: u64, whole: u64) -> f64 {
 /// Number of the truth's pairs among the reported; both are sorted.
 #[must_use]
 pub fn shared(reported: &[[u32; 2]], truth: &[[u32; 2]]) -> u64 {
-    let found = truth
-        .iter()
-        .filter(|pair| reported.binary_search(pair).is_ok());
+    let found = truth.iter().filter(|pair| reported.binary_search(pair).is_ok());
     found.count() as u64
 }

@@ -68,10 +68,8 @@ pub fn table(densities: &[Density], shapes: &[ShapeSurvival]) -> Vec<Decision> {
     let mut decisions = Vec::new();
     for density in densities {
         for &class in ShapeClass::ALL {
-            let of_class: Vec<&ShapeSurvival> = shapes
-                .iter()
-                .filter(|shape| ShapeClass::of(shape) == class)
-                .collect();
+            let of_class: Vec<&ShapeSurvival> =
+                shapes.iter().filter(|shape| ShapeClass::of(shape) == class).collect();
             if of_class.is_empty() {
                 continue;
             }
@@ -121,10 +119,7 @@ pub struct Choice {
 /// seconds.
 #[must_use]
 pub fn choose_measured(lines: &[Line], check: f64) -> Option<Choice> {
-    let own: Vec<(Line, f64)> = lines
-        .iter()
-        .map(|line| (line.clone(), line.pairs))
-        .collect();
+    let own: Vec<(Line, f64)> = lines.iter().map(|line| (line.clone(), line.pairs)).collect();
     choose(&own, check)
 }
 
@@ -140,11 +135,7 @@ fn choose(lines: &[(Line, f64)], check: f64) -> Option<Choice> {
     Some(Choice {
         best: best.0.name.clone(),
         total: total(best),
-        tied: lines
-            .iter()
-            .filter(tied)
-            .map(|(line, _)| line.name.clone())
-            .collect(),
+        tied: lines.iter().filter(tied).map(|(line, _)| line.name.clone()).collect(),
     })
 }
 

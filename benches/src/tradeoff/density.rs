@@ -93,12 +93,7 @@ pub fn lines(
 ) -> Result<Vec<Line>, TradeoffError> {
     let passes = measure(scene, variants, tier, count)?;
     let median = |times: &FrameTimes| times.quartiles(Regime::Warm).median;
-    lines_of(
-        (scene, variants, tier),
-        &samples(scene, count)?,
-        &passes,
-        median,
-    )
+    lines_of((scene, variants, tier), &samples(scene, count)?, &passes, median)
 }
 
 /// The same on consecutive frames from the scene's first on, with the mean of warm ones, since a
@@ -111,25 +106,15 @@ pub fn lines_of_a_run(
     variants: &[Variant],
     tier: Tier,
 ) -> Result<Vec<Line>, TradeoffError> {
-    let frames = scene
-        .frames
-        .min((RUN_BODIES / scene.bodies.len().max(1)).clamp(24, 80) as u32);
+    let frames = scene.frames.min((RUN_BODIES / scene.bodies.len().max(1)).clamp(24, 80) as u32);
     let mut passes = Vec::new();
     for _ in 0..PASSES {
         let mut run = SceneFrames::new(scene, frames)?;
         passes.push(pass(scene, variants, tier, &mut run, None, &mut ())?);
     }
-    let first = Scene {
-        frames,
-        ..scene.clone()
-    };
+    let first = Scene { frames, ..scene.clone() };
     let mean = |times: &FrameTimes| times.mean_of(Regime::Warm);
-    lines_of(
-        (scene, variants, tier),
-        &samples(&first, RUN_SAMPLES)?,
-        &passes,
-        mean,
-    )
+    lines_of((scene, variants, tier), &samples(&first, RUN_SAMPLES)?, &passes, mean)
 }
 
 /// One line per variant: times from passes, pairs from sample frames.
@@ -164,10 +149,7 @@ fn density(factor: f32, bodies: usize, lines: Vec<Line>) -> Density {
         break_even: lines
             .iter()
             .filter(|line| line.pairs < spheres.pairs && line.ordop.is_some())
-            .map(|line| BreakEven {
-                name: line.name.clone(),
-                cp: break_even(spheres, line),
-            })
+            .map(|line| BreakEven { name: line.name.clone(), cp: break_even(spheres, line) })
             .collect(),
         lines,
     }
@@ -189,10 +171,7 @@ fn crowded(file: &SceneFile, factor: f32) -> Option<SceneFile> {
 /// Spheres, boxes, S-DOP with each k and the scene's axes, and hulls.
 #[must_use]
 pub fn variants(own: &CullSettings) -> Vec<Variant> {
-    let boxes = CullSettings {
-        strategy: Strategy::Aabb,
-        ..own.clone()
-    };
+    let boxes = CullSettings { strategy: Strategy::Aabb, ..own.clone() };
     let mut list = vec![Variant::spheres(own), Variant::of("aabb".into(), boxes)];
     list.extend(s_dops(own).into_iter().filter(|variant| {
         let CullSettings { axes, overlap, .. } = variant.settings;

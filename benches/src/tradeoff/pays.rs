@@ -95,10 +95,7 @@ pub fn envelope(lines: &[Line]) -> Vec<CheapestRange> {
     let mut stretches = Vec::new();
     let (mut current, mut from) = (cheapest(0.0), 0.0);
     while let Some(line) = current {
-        stretches.push(CheapestRange {
-            name: line.name.clone(),
-            from,
-        });
+        stretches.push(CheapestRange { name: line.name.clone(), from });
         // The next cheapest is the flatter line that it meets first; of several, the flattest.
         let next = lines
             .iter()
@@ -175,11 +172,7 @@ pub fn standings(points: &[Point]) -> Vec<Standing> {
                 let [least_slower, least_finer] = [slower, finer].map(|d| d.interval()[0]);
                 let surely = (least_slower > 0.0 && least_finer >= 0.0)
                     || (least_slower >= 0.0 && least_finer > 0.0);
-                standing = standing.max(if surely {
-                    Standing::Beaten
-                } else {
-                    Standing::Tied
-                });
+                standing = standing.max(if surely { Standing::Beaten } else { Standing::Tied });
             }
         }
         standing
@@ -213,10 +206,7 @@ mod tests {
             line("useless", 20.0, 5.0),
         ];
         let stretches = envelope(&lines);
-        let names: Vec<_> = stretches
-            .iter()
-            .map(|s| (s.name.as_str(), s.from))
-            .collect();
+        let names: Vec<_> = stretches.iter().map(|s| (s.name.as_str(), s.from)).collect();
         assert_eq!(names, [("coarse", 0.0), ("middle", 0.5), ("fine", 3.0)]);
         for step in 0..100 {
             let price = f64::from(step) * 0.05;
@@ -243,12 +233,7 @@ mod tests {
             point([1.10, 0.90, 1.15], 0.1),
             point([3.00, 3.01, 2.99], 0.5),
         ];
-        let expected = [
-            Standing::Front,
-            Standing::Beaten,
-            Standing::Tied,
-            Standing::Front,
-        ];
+        let expected = [Standing::Front, Standing::Beaten, Standing::Tied, Standing::Front];
         assert_eq!(standings(&points), expected);
         let alike = point([1.0, 1.1, 0.9], 0.1);
         assert_eq!(standings(&[alike.clone(), alike]), [Standing::Front; 2]);

@@ -70,11 +70,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
     let shapes = Shapes::new(scene.shapes.clone())?;
     let mut rows = Vec::new();
     for strategy in STRATEGIES {
-        let settings = CullSettings {
-            strategy,
-            updates: Updates::Eager,
-            ..scene.cull.clone()
-        };
+        let settings = CullSettings { strategy, updates: Updates::Eager, ..scene.cull.clone() };
         let mut labels = vec![(Arithmetic::F64, None)];
         let mut contestants: Vec<Box<dyn Contestant + '_>> =
             vec![Box::new(F64Contestant::new(&shapes, &settings))];
@@ -91,9 +87,7 @@ pub fn compare(scene: &Scene, count: u32) -> Result<Vec<SafetyRow>, TradeoffErro
         let mut turns = Turns::default();
         for (_, poses) in windows(scene, count, turn_frames(scene.bodies.len()))? {
             // The reference accepts all poses of the contract.
-            poses
-                .iter()
-                .try_for_each(|bodies| shapes.bodies(bodies).map(drop))?;
+            poses.iter().try_for_each(|bodies| shapes.bodies(bodies).map(drop))?;
             turns.round(&mut contestants, &poses, |timed| {
                 let found = &mut found[timed.number];
                 if timed.frame == 0 {
@@ -165,9 +159,7 @@ fn safety_row(
     let beyond = |some: &Frames, others: &Frames| {
         let frames = some.iter().zip(others);
         let new = frames.map(|(some, others)| {
-            some.iter()
-                .filter(|pair| others.binary_search(pair).is_err())
-                .count() as u64
+            some.iter().filter(|pair| others.binary_search(pair).is_err()).count() as u64
         });
         new.sum()
     };

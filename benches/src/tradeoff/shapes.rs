@@ -111,9 +111,7 @@ impl Crowd {
         let posed = PosedOrDops::new(shapes.iter().zip(ordops), &self.bodies, tier);
         let (first, second): (Vec<u32>, Vec<u32>) = self.pairs().map(|[i, j]| (i, j)).unzip();
         let mut out = PairList::default();
-        posed
-            .columns(overlap)
-            .test_pairs(tier, &first, &second, &mut out);
+        posed.columns(overlap).test_pairs(tier, &first, &second, &mut out);
         out
     }
 
@@ -122,9 +120,7 @@ impl Crowd {
     pub fn hull_hits(&self, shapes: &[Shape]) -> usize {
         let graphs: Vec<_> = shapes.iter().map(HullGraph::new).collect();
         let posed = |body| PosedHull::of(&graphs, &self.bodies, body as usize);
-        self.pairs()
-            .filter(|&[i, j]| may_touch(&posed(i), &posed(j)))
-            .count()
+        self.pairs().filter(|&[i, j]| may_touch(&posed(i), &posed(j))).count()
     }
 }
 
@@ -147,10 +143,7 @@ pub fn builtin() -> Result<Vec<Shape>, TradeoffError> {
         .map(|(name, form)| {
             let mut mesh = form.and_then(|form| form.build())?;
             name.clone_into(&mut mesh.name);
-            let spec = ShapeSpec {
-                origin: Origin::Ball,
-                ..ShapeSpec::default()
-            };
+            let spec = ShapeSpec { origin: Origin::Ball, ..ShapeSpec::default() };
             Ok(Shape::build(&mesh, &spec)?)
         })
         .collect()
@@ -163,9 +156,8 @@ pub fn builtin() -> Result<Vec<Shape>, TradeoffError> {
 pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, TradeoffError> {
     let shape = std::slice::from_ref(shape);
     let each = pairs.div_ceil(BATCHES as u32).max(1);
-    let crowds: Vec<Crowd> = (0..BATCHES as u64)
-        .map(|batch| Crowd::new(shape, 1.0, each, batch))
-        .collect();
+    let crowds: Vec<Crowd> =
+        (0..BATCHES as u64).map(|batch| Crowd::new(shape, 1.0, each, batch)).collect();
     let mut ordops = Vec::new();
     for &k in DirectionSet::ALL {
         for &axes in Axes::ALL {
@@ -183,9 +175,8 @@ pub fn survival(shape: &Shape, pairs: u32, tier: Tier) -> Result<ShapeSurvival, 
         }
     }
     let judge = ExactJudge::new(shape)?;
-    let few: Vec<Crowd> = (0..BATCHES as u64)
-        .map(|batch| Crowd::new(shape, 1.0, each.div_ceil(10), batch))
-        .collect();
+    let few: Vec<Crowd> =
+        (0..BATCHES as u64).map(|batch| Crowd::new(shape, 1.0, each.div_ceil(10), batch)).collect();
     let meeting = few
         .iter()
         .map(|crowd| judge.count(&crowd.bodies, crowd.pairs()))

@@ -72,19 +72,12 @@ impl Findings {
     /// machine's conditions at the start.
     #[must_use]
     pub fn finish(self, settings: &Settings, before: Conditions) -> Option<Tradeoff> {
-        let ComparedVariants {
-            hits,
-            variants,
-            volumes,
-        } = self.compared?;
+        let ComparedVariants { hits, variants, volumes } = self.compared?;
         let of_all = |tallies: &[Tally]| tallies.len() == variants.len();
         let first = self.seeds.first()?;
         let samples = first.tallies.first()?.frames as usize;
         let fits = self.seeds.iter().all(|seed| of_all(&seed.tallies))
-            && self
-                .passes
-                .iter()
-                .all(|pass| pass.culled.len() == variants.len())
+            && self.passes.iter().all(|pass| pass.culled.len() == variants.len())
             && volumes.len() == variants.len();
         if !fits {
             return None;
@@ -203,9 +196,6 @@ fn line(row: &VariantResult) -> Line {
         ordop: None,
         times: row.times.clone(),
         pairs: row.reported.mean,
-        construct: row
-            .warm
-            .as_ref()
-            .map_or(0.0, |cost| cost.construct.measured.mean),
+        construct: row.warm.as_ref().map_or(0.0, |cost| cost.construct.measured.mean),
     }
 }

@@ -29,10 +29,7 @@ impl Windows {
     /// # Errors
     /// The scene can't have one of its effects, or a body leaves the contract.
     pub fn new(scene: &Scene, count: u32) -> Result<Self, SimulationError> {
-        Ok(Self {
-            windows: windows(scene, count, turn_frames(scene.bodies.len()))?,
-            next: 0,
-        })
+        Ok(Self { windows: windows(scene, count, turn_frames(scene.bodies.len()))?, next: 0 })
     }
 }
 

@@ -102,20 +102,13 @@ impl ExactJudge {
             let vertices = shape.vertices.clone();
             key.update((vertices.len() as u64).to_le_bytes());
             key.update((shape.triangles.len() as u64).to_le_bytes());
-            vertices
-                .iter()
-                .flatten()
-                .for_each(|x| key.update(x.to_le_bytes()));
+            vertices.iter().flatten().for_each(|x| key.update(x.to_le_bytes()));
             let corners = shape.triangles.iter().flatten();
             corners.for_each(|i| key.update(i.to_le_bytes()));
             meshes.push(Mesh::new(&vertices, &shape.triangles)?);
         }
         let reaches = shapes.iter().map(|shape| f64::from(shape.reach)).collect();
-        Ok(Self {
-            meshes,
-            reaches,
-            key,
-        })
+        Ok(Self { meshes, reaches, key })
     }
 
     /// The meetings of every sample, from the file in `cache` if an earlier call wrote one.
@@ -237,10 +230,8 @@ impl ExactJudge {
         most: usize,
     ) -> Result<NarrowPhase, TradeoffError> {
         let settings = Variant::spheres(&scene.cull).settings;
-        let mut culler = Culler::builder()
-            .settings(&settings)
-            .tier(tier)
-            .build(&scene.shapes, bodies)?;
+        let mut culler =
+            Culler::builder().settings(&settings).tier(tier).build(&scene.shapes, bodies)?;
         Ok(self.price(bodies, culler.cull(bodies)?.iter(), most)?)
     }
 
@@ -254,22 +245,14 @@ impl ExactJudge {
     fn near(&self, bodies: &Bodies, poses: &[Pose], i: usize, j: usize) -> bool {
         let [a, b] = [i, j].map(|body| poses[body].translation());
         let squared: f64 = a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum();
-        let reach: f64 = [i, j]
-            .iter()
-            .map(|&body| self.reaches[bodies.shape[body] as usize])
-            .sum();
+        let reach: f64 = [i, j].iter().map(|&body| self.reaches[bodies.shape[body] as usize]).sum();
         squared <= (1.000_001 * reach).powi(2)
     }
 
     fn file_name(&self, samples: &[Sample]) -> PathBuf {
         let mut key = self.key.clone();
         for sample in samples {
-            let Bodies {
-                shape,
-                dynamic,
-                rotation,
-                translation,
-            } = &sample.bodies;
+            let Bodies { shape, dynamic, rotation, translation } = &sample.bodies;
             key.update(sample.frame.to_le_bytes());
             for body in 0..shape.len() {
                 key.update(shape[body].to_le_bytes());
@@ -295,12 +278,7 @@ pub struct NarrowPhase {
 
 fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
     let pose = |(q, t): (&[f32; 4], &[f32; 3])| Pose::new(*q, *t);
-    bodies
-        .rotation
-        .iter()
-        .zip(&bodies.translation)
-        .map(pose)
-        .collect()
+    bodies.rotation.iter().zip(&bodies.translation).map(pose).collect()
 }
 
 /// Reads a cache file: the header, a line of numbers per sample, and the hash of all pairs. A file
@@ -355,11 +333,8 @@ mod tests {
     /// The sweep lists what all pairs would.
     #[test]
     fn sweep_lists_all_pairs() {
-        let judge = ExactJudge {
-            meshes: Vec::new(),
-            reaches: vec![0.05, 0.4, 6.0],
-            key: Sha256::new(),
-        };
+        let judge =
+            ExactJudge { meshes: Vec::new(), reaches: vec![0.05, 0.4, 6.0], key: Sha256::new() };
         let mut random = Stream::new(7, 0);
         let mut bodies = Bodies::default();
         for body in 0..300 {

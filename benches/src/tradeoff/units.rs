@@ -39,10 +39,7 @@ const CHECKED_PAIRS: usize = 2000;
 /// Sample frames of a changed scene.
 const CHANGED_SAMPLES: u32 = 6;
 /// The calibration of a pass.
-const EFFORT: Effort = Effort {
-    turns: 1,
-    builds: 5,
-};
+const EFFORT: Effort = Effort { turns: 1, builds: 5 };
 
 /// The amount of work.
 #[derive(Clone, Debug)]
@@ -177,25 +174,15 @@ impl Comparison {
     pub fn new(file: &SceneFile, plan: &TradeoffPlan) -> Result<Self, TradeoffError> {
         let mut file = file.clone();
         file.spec.frames = file.spec.frames.max(FEWEST_TIMED_FRAMES);
-        let scene = Scene {
-            construct_seconds: 0.0,
-            ..file.build()?
-        };
+        let scene = Scene { construct_seconds: 0.0, ..file.build()? };
         let spheres = Variant::spheres(&scene.cull);
         let samples = samples(&scene, plan.samples)?;
         let hits = Tally::unjudged(&scene, &spheres, plan.tier, &samples)?.reported_a_frame();
-        let shapes: Vec<Shape> = distinct(&scene)
-            .cloned()
-            .chain(shapes::builtin()?)
-            .collect();
+        let shapes: Vec<Shape> = distinct(&scene).cloned().chain(shapes::builtin()?).collect();
         Ok(Self {
             plan: plan.clone(),
             variants: variant::all(&scene, hits.round() as u64),
-            units: units(
-                &seeds(&file, plan),
-                shapes.len(),
-                scene.effects.rest.is_some(),
-            ),
+            units: units(&seeds(&file, plan), shapes.len(), scene.effects.rest.is_some()),
             file,
             scene,
             hits,
@@ -207,14 +194,7 @@ impl Comparison {
     /// The settings, of this machine.
     #[must_use]
     pub fn settings(&self) -> Settings {
-        let TradeoffPlan {
-            samples,
-            pairs,
-            window,
-            stride,
-            tier,
-            ..
-        } = self.plan;
+        let TradeoffPlan { samples, pairs, window, stride, tier, .. } = self.plan;
         Settings {
             scene: self.scene.name.clone(),
             bodies: self.scene.bodies.len(),
@@ -296,27 +276,11 @@ impl Comparison {
     }
 
     fn budgets(&self) -> Result<Vec<BudgetRow>, TradeoffError> {
-        let TradeoffPlan {
-            window,
-            stride,
-            tier,
-            ref cache,
-            ..
-        } = self.plan;
+        let TradeoffPlan { window, stride, tier, ref cache, .. } = self.plan;
         let judge = ExactJudge::new(&self.scene.shapes)?;
         let frames = first_frames(&self.scene, window)?;
-        let window = Window {
-            frames: &frames,
-            stride,
-        };
-        budget::by_tests(
-            &self.scene,
-            tier,
-            window,
-            &judge,
-            cache.as_deref(),
-            self.hits,
-        )
+        let window = Window { frames: &frames, stride };
+        budget::by_tests(&self.scene, tier, window, &judge, cache.as_deref(), self.hits)
     }
 
     fn pass(&self, seed: u64) -> Result<Pass, TradeoffError> {
@@ -340,11 +304,7 @@ impl Comparison {
 fn units(seeds: &[u64], shapes: usize, has_rest: bool) -> Vec<TradeoffUnit> {
     // One pass per seed, and not too few.
     let passes = seeds.iter().cycle().take(seeds.len().max(PASSES));
-    let once = [
-        TradeoffUnit::NarrowPhase,
-        TradeoffUnit::Clock,
-        TradeoffUnit::Interest,
-    ];
+    let once = [TradeoffUnit::NarrowPhase, TradeoffUnit::Clock, TradeoffUnit::Interest];
     let mut units = vec![TradeoffUnit::Compared];
     units.extend(seeds.iter().copied().map(TradeoffUnit::Seed));
     units.push(TradeoffUnit::Budgets);
@@ -372,10 +332,7 @@ fn with_seed(file: &SceneFile, seed: u64) -> Result<Scene, TradeoffError> {
 
 /// Consecutive frames from the first on.
 fn first_frames(scene: &Scene, count: u32) -> Result<Vec<Sample>, TradeoffError> {
-    let scene = Scene {
-        frames: count.min(scene.frames),
-        ..scene.clone()
-    };
+    let scene = Scene { frames: count.min(scene.frames), ..scene.clone() };
     Ok(samples(&scene, count)?)
 }
 

@@ -20,10 +20,8 @@ const TURNS: u32 = 64;
 #[must_use]
 pub fn tightness(variant: &Variant, scene: &Scene) -> Option<f64> {
     let shapes = variant.shapes(scene);
-    let ratios = shapes
-        .iter()
-        .map(|shape| shape_tightness(variant, shape))
-        .collect::<Option<Vec<_>>>()?;
+    let ratios =
+        shapes.iter().map(|shape| shape_tightness(variant, shape)).collect::<Option<Vec<_>>>()?;
     let sum: f64 = scene.bodies.shape.iter().map(|&s| ratios[s as usize]).sum();
     Some(sum / scene.bodies.len() as f64)
 }
@@ -51,27 +49,18 @@ fn shape_tightness(variant: &Variant, shape: &Shape) -> Option<f64> {
 #[must_use]
 pub fn all(scene: &Scene, hits: u64) -> Vec<Variant> {
     let own = &scene.cull;
-    let with = |strategy| CullSettings {
-        strategy,
-        ..own.clone()
-    };
+    let with = |strategy| CullSettings { strategy, ..own.clone() };
     let mut list = vec![
         Variant::spheres(own),
         Variant::of("aabb".into(), with(Strategy::Aabb)),
         Variant::of("obb".into(), with(Strategy::Obb)),
     ];
     for &k in DirectionSet::ALL {
-        let set = CullSettings {
-            k,
-            ..with(Strategy::KDop)
-        };
+        let set = CullSettings { k, ..with(Strategy::KDop) };
         list.push(Variant::of(format!("{k}-dop"), set));
     }
     for &k in DirectionSet::ALL {
-        let set = CullSettings {
-            k,
-            ..with(Strategy::OrDop)
-        };
+        let set = CullSettings { k, ..with(Strategy::OrDop) };
         list.push(Variant::of(format!("or-{k}, {}", own.overlap), set));
     }
     list.extend(s_dops(own));
@@ -105,26 +94,13 @@ pub fn s_dops(own: &CullSettings) -> Vec<Variant> {
 /// The other strategies, with the scene's or-DOPs.
 fn strategies(scene: &Scene, hits: u64) -> Vec<Variant> {
     let own = &scene.cull;
-    let with = |strategy, updates| CullSettings {
-        strategy,
-        updates,
-        ..own.clone()
-    };
+    let with = |strategy, updates| CullSettings { strategy, updates, ..own.clone() };
     let interest = own.interest.clone().unwrap_or(Interest::Bodies(vec![0]));
     let budget = hits.div_ceil(2);
     vec![
-        Variant::of(
-            "s-dop lazy".into(),
-            with(Strategy::SDopSequential, Updates::Lazy),
-        ),
-        Variant::of(
-            "s-dop batch".into(),
-            with(Strategy::SDopBatch, Updates::Eager),
-        ),
-        Variant::of(
-            "s-dop batch lazy".into(),
-            with(Strategy::SDopBatch, Updates::Lazy),
-        ),
+        Variant::of("s-dop lazy".into(), with(Strategy::SDopSequential, Updates::Lazy)),
+        Variant::of("s-dop batch".into(), with(Strategy::SDopBatch, Updates::Eager)),
+        Variant::of("s-dop batch lazy".into(), with(Strategy::SDopBatch, Updates::Lazy)),
         Variant::of(
             "s-dop of interest".into(),
             CullSettings {

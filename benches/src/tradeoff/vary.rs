@@ -97,10 +97,7 @@ impl Aspect {
             Self::Bodies => [0.1, 1.0, 10.0, 40.0].map(SceneChange::Bodies).to_vec(),
             Self::Triangles => [100, 1000, usize::MAX].map(SceneChange::Triangles).to_vec(),
             Self::Motion => [0.1, 1.0, 10.0, 40.0].map(SceneChange::Motion).to_vec(),
-            Self::Shapes => Mix::ALL
-                .iter()
-                .map(|mix| SceneChange::Shapes(*mix))
-                .collect(),
+            Self::Shapes => Mix::ALL.iter().map(|mix| SceneChange::Shapes(*mix)).collect(),
         }
     }
 }
@@ -144,10 +141,7 @@ pub struct Recommendation {
 
 /// Every change.
 pub(super) fn changes() -> Vec<SceneChange> {
-    Aspect::ALL
-        .iter()
-        .flat_map(|aspect| aspect.changes())
-        .collect()
+    Aspect::ALL.iter().flat_map(|aspect| aspect.changes()).collect()
 }
 
 /// Runs the scene with a change. `None` if it can't have it.
@@ -181,17 +175,10 @@ fn variation(
         }
     };
     let bodies = &scene.bodies;
-    let triangles = bodies
-        .shape
-        .iter()
-        .map(|&shape| scene.shapes[shape as usize].triangles.len());
+    let triangles = bodies.shape.iter().map(|&shape| scene.shapes[shape as usize].triangles.len());
     let best = CHECKS.iter().filter_map(|&check| {
         let choice = choose_measured(&lines, check)?;
-        Some(Recommendation {
-            check,
-            name: choice.best,
-            tied: choice.tied,
-        })
+        Some(Recommendation { check, name: choice.best, tied: choice.tied })
     });
     Ok(Variation {
         aspect: change.aspect(),
@@ -202,9 +189,7 @@ fn variation(
         bodies: bodies.len(),
         triangles: triangles.sum::<usize>() as f64 / bodies.len() as f64,
         motion: motion(scene)?,
-        partners: lines
-            .first()
-            .map_or(0.0, |spheres| 2.0 * spheres.pairs / bodies.len() as f64),
+        partners: lines.first().map_or(0.0, |spheres| 2.0 * spheres.pairs / bodies.len() as f64),
         narrow_phase: ExactJudge::new(&scene.shapes)?.price_of_spheres(
             scene,
             bodies,
@@ -218,9 +203,7 @@ fn variation(
 
 /// Mean motion of moving bodies in the first frame, in radii.
 fn motion(scene: &Scene) -> Result<f64, TradeoffError> {
-    let mut trajectory = Trajectory::new(scene)
-        .map_err(SimulationError::from)?
-        .with_frames(2);
+    let mut trajectory = Trajectory::new(scene).map_err(SimulationError::from)?.with_frames(2);
     let mut states = Vec::new();
     while let Some(bodies) = trajectory.advance()? {
         states.push(bodies.clone());
@@ -271,11 +254,7 @@ fn changed(file: &SceneFile, change: SceneChange) -> Result<Option<Scene>, Trade
 /// have them.
 fn multiply(file: &mut SceneFile, factor: f32) -> bool {
     file.spec.cull.pairs = Finder::Auto;
-    let counts = file
-        .spec
-        .bodies
-        .iter_mut()
-        .map(|group| group.get_mut().count.as_mut());
+    let counts = file.spec.bodies.iter_mut().map(|group| group.get_mut().count.as_mut());
     let Some(counts) = counts.collect::<Option<Vec<_>>>() else {
         return false;
     };
@@ -295,10 +274,7 @@ fn spread_radii(file: &mut SceneFile) {
     for group in &mut file.spec.bodies {
         if let Some(radius) = &mut group.get_mut().radius {
             let Interval { min, max } = *radius.get_ref();
-            *radius.get_mut() = Interval {
-                min: 0.5 * min,
-                max: 2.0 * max,
-            };
+            *radius.get_mut() = Interval { min: 0.5 * min, max: 2.0 * max };
         }
     }
 }

@@ -71,11 +71,7 @@ pub fn block(
     let answers = answers.map_err(RoundError::from)?;
     answers.iter().for_each(|frame| ledger.note(frame));
     let modes = rotation.turn(block as u64);
-    let run = Run {
-        shapes: &shapes,
-        frames: &bodies,
-        answers: &answers,
-    };
+    let run = Run { shapes: &shapes, frames: &bodies, answers: &answers };
     let culled: Result<Vec<_>, _> = rows
         .par_iter()
         .enumerate()

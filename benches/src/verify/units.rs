@@ -95,25 +95,19 @@ impl Verification {
     pub fn new(settings: Settings) -> miette::Result<Self> {
         let tier = |name: &String| {
             let known = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
-            known
-                .into_iter()
-                .find(|tier| tier.name() == name)
-                .ok_or_else(|| {
-                    miette!(
-                        help = "merge on a CPU that has it, as those had that made the shards",
-                        "this CPU has no {name}"
-                    )
-                })
+            known.into_iter().find(|tier| tier.name() == name).ok_or_else(|| {
+                miette!(
+                    help = "merge on a CPU that has it, as those had that made the shards",
+                    "this CPU has no {name}"
+                )
+            })
         };
         let tiers = settings.tiers.iter().map(tier);
         let rotation = Rotation::new(&tiers.collect::<miette::Result<Vec<Tier>>>()?);
         let group = |name: &String| {
             let place = FILES.iter().position(|file| file.0 == name);
             let place = place.ok_or_else(|| miette!("there is no group `{name}` of hard cases"))?;
-            Ok((
-                place,
-                HardCaseGroup::parse(FILES[place].1).into_diagnostic()?,
-            ))
+            Ok((place, HardCaseGroup::parse(FILES[place].1).into_diagnostic()?))
         };
         let groups = settings.groups.iter().map(group);
         let cells: Vec<Cell> = Cell::all(&rotation).collect();
@@ -135,11 +129,7 @@ impl Verification {
     /// round starts.
     #[must_use]
     pub fn with_scenes(self, scenes: Vec<Scene>, deadline: Option<Instant>) -> Self {
-        Self {
-            scenes,
-            deadline,
-            ..self
-        }
+        Self { scenes, deadline, ..self }
     }
 
     /// The settings.
@@ -225,12 +215,9 @@ impl Verification {
         let texts: Vec<LedgerText> = serde_json::from_str(result).into_diagnostic()?;
         let origins = match self.unit(unit) {
             VerifyUnit::Hard(..) => vec![UnitOrigin::Hard, UnitOrigin::Boxes],
-            VerifyUnit::Rounds(..) => vec![
-                UnitOrigin::Near,
-                UnitOrigin::Random,
-                UnitOrigin::Boxes,
-                UnitOrigin::Histories,
-            ],
+            VerifyUnit::Rounds(..) => {
+                vec![UnitOrigin::Near, UnitOrigin::Random, UnitOrigin::Boxes, UnitOrigin::Histories]
+            }
             VerifyUnit::Frames(n, _) => vec![UnitOrigin::Scene(n)],
         };
         let wrong = || miette!("the result of unit {unit} was not written by `sdop verify`");
@@ -253,9 +240,7 @@ impl Verification {
             rows: (ledger.rows.iter())
                 .map(|(row, count)| (row.strategy, row.overlap, *count))
                 .collect(),
-            cells: cells
-                .map(|(cell, lists)| (self.places[cell], lists))
-                .collect(),
+            cells: cells.map(|(cell, lists)| (self.places[cell], lists)).collect(),
             boxes: (self.box_cells.iter().enumerate())
                 .filter_map(|(place, cell)| Some((place, *ledger.boxes.cells.get(cell)?)))
                 .collect(),
@@ -279,14 +264,7 @@ impl Verification {
         let mut ledger = Ledger::default();
         let predicates = ledger.predicates.iter_mut().zip(text.predicates);
         for (mine, [overlaps, filter, interval, exact]) in predicates {
-            *mine = (
-                overlaps,
-                Tally {
-                    filter,
-                    interval,
-                    exact,
-                },
-            );
+            *mine = (overlaps, Tally { filter, interval, exact });
         }
         for (strategy, overlap, count) in text.rows {
             ledger.rows.insert(LedgerKey { strategy, overlap }, count);
@@ -295,10 +273,7 @@ impl Verification {
             ledger.matrix.fill(*self.cells.get(place)?, lists);
         }
         for (place, judged) in text.boxes {
-            ledger
-                .boxes
-                .cells
-                .insert(*self.box_cells.get(place)?, judged);
+            ledger.boxes.cells.insert(*self.box_cells.get(place)?, judged);
         }
         ledger.boxes.required = text.box_pairs;
         let histories = &mut ledger.histories;
@@ -306,12 +281,8 @@ impl Verification {
             let cell = *self.history_cells.get(place)?;
             histories.cells.insert(cell, lists);
         }
-        [
-            histories.lists,
-            histories.required,
-            histories.missed,
-            histories.differ,
-        ] = text.history_pairs;
+        [histories.lists, histories.required, histories.missed, histories.differ] =
+            text.history_pairs;
         Some(ledger)
     }
 }
@@ -341,10 +312,7 @@ impl Sweep for Verification {
     fn header(&self) -> miette::Result<Header> {
         let inputs = self.settings.scenes.iter().zip(&self.scenes);
         let inputs = inputs.zip(1..).map(|((name, scene), number)| {
-            let untimed = Scene {
-                construct_seconds: 0.0,
-                ..scene.clone()
-            };
+            let untimed = Scene { construct_seconds: 0.0, ..scene.clone() };
             (format!("scene {number} ({name})"), digest(&untimed))
         });
         Header::new(NAME, &self.settings, inputs.collect(), self.units()).into_diagnostic()

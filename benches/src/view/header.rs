@@ -82,11 +82,7 @@ impl Header {
     /// The facts that are known without the frames.
     pub fn of(show: &ShownRun) -> Self {
         let header = &show.header;
-        let interest = match header
-            .cull
-            .as_ref()
-            .map(|cull| (cull.strategy, &cull.interest))
-        {
+        let interest = match header.cull.as_ref().map(|cull| (cull.strategy, &cull.interest)) {
             Some((Strategy::SDopObjectOfInterest, Some(Interest::Bodies(list)))) => list.clone(),
             _ => Vec::new(),
         };

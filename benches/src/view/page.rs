@@ -76,15 +76,10 @@ impl Page {
         culled: &[ShownStrategy],
         tier: Option<Tier>,
     ) -> Result<Self, PageError> {
-        let mut page = Self {
-            header: Header::of(show),
-            blocks: Vec::new(),
-        };
+        let mut page = Self { header: Header::of(show), blocks: Vec::new() };
         if show.frames.is_empty() {
             if page.header.messages.is_empty() {
-                page.header
-                    .messages
-                    .push("The record has no frames.".to_owned());
+                page.header.messages.push("The record has no frames.".to_owned());
             }
             return Ok(page);
         }
@@ -110,10 +105,7 @@ impl Page {
     /// A page with the reason why a record can't be shown.
     #[must_use]
     pub fn broken(path: &Path, error: &RecordError) -> Self {
-        Self {
-            header: Header::broken(path, error),
-            blocks: Vec::new(),
-        }
+        Self { header: Header::broken(path, error), blocks: Vec::new() }
     }
 
     /// Writes the page.
@@ -144,16 +136,9 @@ impl Page {
         // Nothing in the header may end its element: "<" is written as the escape that JSON has for
         // it.
         let header = serde_json::to_string(&self.header)?.replace('<', "\\u003c");
-        writeln!(
-            out,
-            "<script type=\"application/json\" id=\"sdop-header\">{header}</script>"
-        )?;
+        writeln!(out, "<script type=\"application/json\" id=\"sdop-header\">{header}</script>")?;
         for block in &self.blocks {
-            write!(
-                out,
-                "<script type=\"text/plain\" id=\"block-{}\">",
-                block.name
-            )?;
+            write!(out, "<script type=\"text/plain\" id=\"block-{}\">", block.name)?;
             let mut encoder = EncoderWriter::new(&mut *out, &STANDARD);
             encoder.write_all(&block.bytes)?;
             encoder.finish()?;
@@ -171,30 +156,18 @@ impl Page {
         let bits = |pose: &[f32; 7]| pose.map(f32::to_bits);
         let moves = |&body: &u32| {
             let body = body as usize;
-            frames
-                .iter()
-                .any(|frame| bits(&frame.poses[body]) != bits(&first[body]))
+            frames.iter().any(|frame| bits(&frame.poses[body]) != bits(&first[body]))
         };
         let moving: Vec<u32> = (0..first.len() as u32).filter(moves).collect();
         let posed = |frame: &FrameLine| {
-            moving
-                .iter()
-                .flat_map(|&body| frame.poses[body as usize])
-                .collect::<Vec<_>>()
+            moving.iter().flat_map(|&body| frame.poses[body as usize]).collect::<Vec<_>>()
         };
         self.header.moving = moving.len();
-        self.put(
-            "numbers",
-            frames.iter().map(|frame| frame.frame).collect::<Vec<u32>>(),
-        )?;
+        self.put("numbers", frames.iter().map(|frame| frame.frame).collect::<Vec<u32>>())?;
         self.put("shape", show.bodies.shape.clone())?;
         self.put(
             "static",
-            show.bodies
-                .dynamic
-                .iter()
-                .map(|&dynamic| u8::from(!dynamic))
-                .collect::<Vec<u8>>(),
+            show.bodies.dynamic.iter().map(|&dynamic| u8::from(!dynamic)).collect::<Vec<u8>>(),
         )?;
         self.put("moving", moving.clone())?;
         self.put("first", first.as_flattened().to_vec())?;
@@ -202,27 +175,13 @@ impl Page {
     }
 
     fn put_pairs(&mut self, show: &ShownRun, culled: &[ShownStrategy]) -> Result<(), PageError> {
-        let Pairs {
-            starts,
-            pairs,
-            flags,
-        } = Pairs::join(show, culled)?;
+        let Pairs { starts, pairs, flags } = Pairs::join(show, culled)?;
         self.header.pairs = pairs.len();
-        self.put(
-            "starts",
-            starts
-                .iter()
-                .map(|&start| start as f64)
-                .collect::<Vec<f64>>(),
-        )?;
+        self.put("starts", starts.iter().map(|&start| start as f64).collect::<Vec<f64>>())?;
         match u16::try_from(show.bodies.len()) {
             Ok(_) => self.put(
                 "pairs",
-                pairs
-                    .as_flattened()
-                    .iter()
-                    .map(|&body| body as u16)
-                    .collect::<Vec<u16>>(),
+                pairs.as_flattened().iter().map(|&body| body as u16).collect::<Vec<u16>>(),
             )?,
             Err(_) => self.put("pairs", pairs.as_flattened().to_vec())?,
         }
@@ -233,9 +192,7 @@ impl Page {
         let drawn: Vec<DrawnShape> = show.shapes.par_iter().map(DrawnShape::of).collect();
         let (mut vertices, mut triangles, mut hulls) = (Vec::new(), Vec::new(), Vec::new());
         for (shape, drawn) in show.shapes.iter().zip(drawn) {
-            let ShapeLine {
-                name, ball, ordop, ..
-            } = ShapeLine::of(shape);
+            let ShapeLine { name, ball, ordop, .. } = ShapeLine::of(shape);
             let hull = [hulls.len(), drawn.hull.len()];
             hulls.extend(drawn.hull);
             let lods = drawn.levels.iter().map(|mesh| {
@@ -277,10 +234,7 @@ impl Page {
         let mut run = RunHeader {
             name: culled.name.clone(),
             detail: culled.detail.clone(),
-            control: culled
-                .settings
-                .as_ref()
-                .is_some_and(|cull| cull.strategy == Strategy::None),
+            control: culled.settings.as_ref().is_some_and(|cull| cull.strategy == Strategy::None),
             volumes: None,
             construct: None,
         };
@@ -305,11 +259,7 @@ impl Page {
         let size = numbers.len() * size_of::<T>();
         if size > LONGEST {
             return Err(PageError::TooLarge {
-                name: if name == "poses" {
-                    "the poses"
-                } else {
-                    "the pairs"
-                },
+                name: if name == "poses" { "the poses" } else { "the pairs" },
                 frames: self.header.frames,
                 megabytes: size >> 20,
             });
@@ -323,10 +273,7 @@ impl Page {
             r#type: T::TYPE,
             length: numbers.len(),
         });
-        self.blocks.push(Block {
-            name: name.to_owned(),
-            bytes,
-        });
+        self.blocks.push(Block { name: name.to_owned(), bytes });
         Ok(())
     }
 }
@@ -349,10 +296,4 @@ macro_rules! numbers {
     };
 }
 
-numbers!(
-    u8 = "u8",
-    u16 = "u16",
-    u32 = "u32",
-    f32 = "f32",
-    f64 = "f64"
-);
+numbers!(u8 = "u8", u16 = "u16", u32 = "u32", f32 = "f32", f64 = "f64");

@@ -42,9 +42,7 @@ impl Pairs {
             joined.starts.push(joined.pairs.len());
             for same in all.chunk_by(|a, b| a.0 == b.0) {
                 joined.pairs.push(same[0].0);
-                joined
-                    .flags
-                    .push(same.iter().fold(0, |flags, (_, flag)| flags | flag));
+                joined.flags.push(same.iter().fold(0, |flags, (_, flag)| flags | flag));
             }
         }
         joined.starts.push(joined.pairs.len());

@@ -35,10 +35,8 @@ impl ShownRun {
         header.program = Some("the program".to_owned());
         if !asked {
             // No program was run, so nothing is missed.
-            header.cull = Some(CullSettings {
-                strategy: Strategy::None,
-                ..CullSettings::default()
-            });
+            header.cull =
+                Some(CullSettings { strategy: Strategy::None, ..CullSettings::default() });
         }
         let mut messages = Vec::new();
         if !case.flag.is_empty() {
@@ -62,10 +60,7 @@ impl ShownRun {
             claim: case.claim,
             boxes: case.claim.is_of_boxes().then(|| boxes().collect()),
             periods: given.iter().map(|frame| frame.periods).collect(),
-            focus: focus.map(|focus| Focus {
-                frame: focus.frame - shown.start,
-                ..focus
-            }),
+            focus: focus.map(|focus| Focus { frame: focus.frame - shown.start, ..focus }),
             messages,
         })
     }
@@ -86,11 +81,8 @@ fn judged(
         let missed = meets.iter().find(|pair| asked && !pairs.contains(pair));
         if let (None, Some(&bodies)) = (&focus, missed) {
             let point = truth.common_point(frame, bodies);
-            focus = Some(Focus {
-                frame: number,
-                bodies,
-                point: point.map(|point| point.decimals()),
-            });
+            focus =
+                Some(Focus { frame: number, bodies, point: point.map(|point| point.decimals()) });
         }
         frames.push(FrameLine {
             frame: number as u32,
@@ -118,10 +110,7 @@ fn drawn(case: &Case, frame: &Frame) -> Result<(Vec<Shape>, Bodies), String> {
     let (mut shapes, mut bodies) = (case.shapes.clone(), frame.bodies.clone());
     let mut at_origin = Bodies::default();
     at_origin.push(0, true, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
-    let spec = ShapeSpec {
-        origin: Origin::File,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { origin: Origin::File, ..ShapeSpec::default() };
     for (i, parts) in frame.parts.iter().flatten().enumerate() {
         if parts.is_empty() {
             continue;

@@ -172,9 +172,7 @@ impl ShownRun {
         let lines = frames.iter().enumerate().map(line).collect();
         let mut show = Self::of_meshes(source, header, (shapes, bodies), lines);
         show.header.cull = Some(settings.clone());
-        let ShownStrategy {
-            pairs, counters, ..
-        } = show.cull(settings, tier)?;
+        let ShownStrategy { pairs, counters, .. } = show.cull(settings, tier)?;
         let counters = counters.into_iter().flatten();
         for ((frame, pairs), counters) in show.frames.iter_mut().zip(pairs).zip(counters) {
             (frame.pairs, frame.counters) = (pairs, Some(counters));
@@ -195,11 +193,7 @@ impl ShownRun {
             name,
             detail: settings.as_ref().map_or(String::new(), detail),
             settings,
-            pairs: self
-                .frames
-                .iter()
-                .map(|frame| frame.pairs.clone())
-                .collect(),
+            pairs: self.frames.iter().map(|frame| frame.pairs.clone()).collect(),
             counters: counters(&self.frames),
         }
     }
@@ -220,10 +214,8 @@ impl ShownRun {
             frame.pose(&mut bodies);
             let before = *culler.counters();
             pairs.push(culler.cull(&bodies)?.sorted());
-            counters.push(record::volume_lines(
-                settings.strategy,
-                &culler.counters().since(&before),
-            ));
+            counters
+                .push(record::volume_lines(settings.strategy, &culler.counters().since(&before)));
         }
         Ok(ShownStrategy {
             name: settings.strategy.name().to_owned(),
@@ -284,37 +276,22 @@ impl ShownRun {
 
 /// An error and its remedy.
 pub(super) fn in_words(error: &RecordError) -> String {
-    let help = error
-        .help()
-        .map_or(String::new(), |help| format!(" Remedy: {help}."));
+    let help = error.help().map_or(String::new(), |help| format!(" Remedy: {help}."));
     format!("{error}.{help}")
 }
 
 /// The counters of all frames. `None` if a frame lacks them or counts other volumes.
 fn counters(frames: &[FrameLine]) -> Option<Vec<Vec<VolumeLine>>> {
-    let all: Vec<Vec<VolumeLine>> = frames
-        .iter()
-        .map(|frame| frame.counters.clone())
-        .collect::<Option<_>>()?;
-    let names = |lines: &[VolumeLine]| {
-        lines
-            .iter()
-            .map(|line| line.volume.clone())
-            .collect::<Vec<_>>()
-    };
+    let all: Vec<Vec<VolumeLine>> =
+        frames.iter().map(|frame| frame.counters.clone()).collect::<Option<_>>()?;
+    let names =
+        |lines: &[VolumeLine]| lines.iter().map(|line| line.volume.clone()).collect::<Vec<_>>();
     let first = names(all.first()?);
     all.iter().all(|lines| names(lines) == first).then_some(all)
 }
 
 fn detail(settings: &CullSettings) -> String {
-    let CullSettings {
-        pairs,
-        k,
-        axes,
-        overlap,
-        strategy,
-        ..
-    } = settings;
+    let CullSettings { pairs, k, axes, overlap, strategy, .. } = settings;
     if Volume::of(*strategy).is_empty() {
         return "nothing is culled".to_owned();
     }

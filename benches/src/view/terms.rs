@@ -14,10 +14,7 @@ use sdop::simd::Tier;
 use sdop_judge::record::VolumeLine;
 
 /// Enough for a picture: one round, in a second for hundreds of bodies.
-const EFFORT: Effort = Effort {
-    turns: 1,
-    builds: 1,
-};
+const EFFORT: Effort = Effort { turns: 1, builds: 1 };
 
 /// Seconds per frame by term, and once.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,10 +51,7 @@ pub fn prices(
         dt: 0.0,
         side: show.header.side,
         shapes: show.shapes.clone(),
-        velocities: Velocities {
-            linear: at_rest.clone(),
-            angular: at_rest,
-        },
+        velocities: Velocities { linear: at_rest.clone(), angular: at_rest },
         bodies,
         fine: FineTranslations::default(),
         share: None,
@@ -75,10 +69,7 @@ impl TermCourse {
     pub fn predict(show: &ShownRun, culled: &ShownStrategy, prices: &Prices) -> Option<Self> {
         let counters = culled.counters.as_ref()?;
         let bodies = show.bodies.len();
-        let mut course = Self {
-            construct: 0.0,
-            frames: Vec::new(),
-        };
+        let mut course = Self { construct: 0.0, frames: Vec::new() };
         for lines in counters {
             let terms = prices.predict(&counts(lines)?, 1, bodies);
             course.construct = terms.iter().map(|term| term.construct).sum();

@@ -45,10 +45,7 @@ struct Entry {
 impl Default for CullingDispatcher {
     fn default() -> Self {
         let test = PairTest::new(DirectionSet::K18);
-        Self(Arc::new(RwLock::new(KnownShapes {
-            test,
-            shapes: FxHashMap::default(),
-        })))
+        Self(Arc::new(RwLock::new(KnownShapes { test, shapes: FxHashMap::default() })))
     }
 }
 
@@ -68,12 +65,8 @@ impl CullingDispatcher {
         let Ok(number) = known.test.add(&volume) else {
             return false;
         };
-        let entry = Entry {
-            _held: shape.clone(),
-            number,
-            reach: volume.reach.into(),
-            grown: Vec::new(),
-        };
+        let entry =
+            Entry { _held: shape.clone(), number, reach: volume.reach.into(), grown: Vec::new() };
         known.shapes.insert(address(shape.as_ref()), entry);
         true
     }
@@ -92,9 +85,7 @@ impl CullingDispatcher {
         let rotation = pos12.rotation.to_array().map(|x| x as f32);
         let translation = pos12.translation.to_array().map(|x| x as f32);
         match first.model(margin) {
-            Some(model) => known
-                .test
-                .may_touch(model, second.number, rotation, translation),
+            Some(model) => known.test.may_touch(model, second.number, rotation, translation),
             None => {
                 drop(known);
                 self.grow(g1, margin); // for the next time
@@ -151,11 +142,7 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for CullingDisp
     ) -> Result<(), Unsupported> {
         // Points of earlier steps are for parry to keep or to drop.
         let touched = manifolds.iter().any(|manifold| !manifold.points.is_empty());
-        if touched || self.may_touch(pos12, g1, g2, prediction) {
-            Err(Unsupported)
-        } else {
-            Ok(())
-        }
+        if touched || self.may_touch(pos12, g1, g2, prediction) { Err(Unsupported) } else { Ok(()) }
     }
 
     fn contact_manifold_convex_convex(

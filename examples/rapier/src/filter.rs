@@ -62,10 +62,7 @@ impl Filter {
 
     /// What it has cost so far.
     pub fn cost(&self) -> Cost {
-        self.mirror
-            .read()
-            .map(|mirror| mirror.cost)
-            .unwrap_or_default()
+        self.mirror.read().map(|mirror| mirror.cost).unwrap_or_default()
     }
 }
 
@@ -147,10 +144,7 @@ impl Mirror {
             let current = || Some(seat.is(handle, pair.colliders.get(handle)?, body, step));
             (seat.id.is_none() || current()?).then_some(seat)
         };
-        let (a, b) = (
-            seat(pair.collider1, bodies[0])?,
-            seat(pair.collider2, bodies[1])?,
-        );
+        let (a, b) = (seat(pair.collider1, bodies[0])?, seat(pair.collider2, bodies[1])?);
         match (a.id, b.id) {
             // Two that were at rest weren't culled against each other.
             (Some(first), Some(second)) if a.awake || b.awake => {
@@ -218,10 +212,7 @@ impl Mirror {
         let seat = &mut self.seats[slot(handle)];
         let awake = body.is_some_and(|body| !body.is_fixed() && !body.is_sleeping());
         let shape = collider.shared_shape();
-        let number = self
-            .shapes
-            .get(&address(shape))
-            .and_then(|(_, number)| *number);
+        let number = self.shapes.get(&address(shape)).and_then(|(_, number)| *number);
         let reach = number.map_or(0.0, |number| self.volumes[number as usize].reach.into());
         let needed = step.margin(collider, body, reach);
         if let Some(seat) = seat
@@ -242,18 +233,13 @@ impl Mirror {
         let groups = collider.collision_groups();
         let now = number.map(|shape| Body {
             shape,
-            motion: if awake {
-                Motion::Dynamic
-            } else {
-                Motion::Fixed
-            },
+            motion: if awake { Motion::Dynamic } else { Motion::Fixed },
             rotation: collider.rotation().to_array().map(|x| x as f32),
             translation: collider.translation().to_array().map(|x| x as f64),
             groups: match groups.test_mode {
-                InteractionTestMode::And => Groups {
-                    member: groups.memberships.bits(),
-                    mask: groups.filter.bits(),
-                },
+                InteractionTestMode::And => {
+                    Groups { member: groups.memberships.bits(), mask: groups.filter.bits() }
+                }
                 InteractionTestMode::Or => Groups::ALL,
             },
             margin,

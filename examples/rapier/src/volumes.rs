@@ -53,10 +53,7 @@ impl Step {
     /// A step with these parameters.
     #[must_use]
     pub fn new(parameters: &IntegrationParameters) -> Self {
-        Self {
-            prediction: parameters.prediction_distance() as f64,
-            dt: parameters.dt as f64,
-        }
+        Self { prediction: parameters.prediction_distance() as f64, dt: parameters.dt as f64 }
     }
 
     /// The margin that a collider of size `reach` needs, so that two colliders whose volumes stay

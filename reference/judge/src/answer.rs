@@ -164,32 +164,19 @@ pub fn sorted(number: usize, frame: &Frame, answer: &Answer) -> Result<Vec<[u32;
     for &pair in &answer.pairs {
         let [i, j] = pair;
         if i as usize >= bodies || j as usize >= bodies {
-            return Err(AnswerError::NoBody {
-                frame: number,
-                pair,
-                bodies,
-            });
+            return Err(AnswerError::NoBody { frame: number, pair, bodies });
         }
         if i == j {
-            return Err(AnswerError::SelfPair {
-                frame: number,
-                body: i,
-            });
+            return Err(AnswerError::SelfPair { frame: number, body: i });
         }
         if i > j {
-            return Err(AnswerError::Reversed {
-                frame: number,
-                pair,
-            });
+            return Err(AnswerError::Reversed { frame: number, pair });
         }
     }
     let mut sorted = answer.pairs.clone();
     sorted.sort_unstable();
     match sorted.windows(2).find(|two| two[0] == two[1]) {
-        Some(two) => Err(AnswerError::Twice {
-            frame: number,
-            pair: two[0],
-        }),
+        Some(two) => Err(AnswerError::Twice { frame: number, pair: two[0] }),
         None => Ok(sorted),
     }
 }

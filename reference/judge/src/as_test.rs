@@ -76,19 +76,12 @@ pub fn unit_test(smallest: &SmallestCase, language: Language) -> String {
         text
     };
     let name = format!("reports_{i}_{j}_of_{}", identifier(&smallest.from));
-    let declared: String = arguments
-        .iter()
-        .map(|argument| argument.declared(language))
-        .collect();
+    let declared: String = arguments.iter().map(|argument| argument.declared(language)).collect();
     match language {
         Language::Rust => format!(
             "{}#[test]\nfn {name}() {{\n{declared}    let pairs = your_culler({});\n    assert!(pairs.contains(&[{i}, {j}]), \"{{pairs:?}}\");\n}}\n",
             comment("///"),
-            names
-                .iter()
-                .map(|name| format!("&{name}"))
-                .collect::<Vec<_>>()
-                .join(", ")
+            names.iter().map(|name| format!("&{name}")).collect::<Vec<_>>().join(", ")
         ),
         Language::Cpp => format!(
             "#undef NDEBUG\n#include <algorithm>\n#include <array>\n#include <cassert>\n#include <vector>\n\n{}void {name}() {{\n{declared}    \
@@ -115,21 +108,13 @@ fn arguments(smallest: &SmallestCase) -> Vec<Argument> {
     let mut arguments = Vec::new();
     let by_body = |of: &dyn Fn(&Frame, usize) -> ArgumentData| {
         let frame = |frame: &Frame| (0..frame.bodies.len()).map(|i| of(frame, i)).collect();
-        ArgumentData::List(
-            frames
-                .iter()
-                .map(|f| ArgumentData::List(frame(f)))
-                .collect(),
-        )
+        ArgumentData::List(frames.iter().map(|f| ArgumentData::List(frame(f))).collect())
     };
     if smallest.case.claim.is_of_boxes() {
         arguments.push(Argument {
             name: "boxes",
             meaning: "of each frame and body: lower corner x, y, z, then the upper one",
-            types: [
-                "Vec<Vec<[f32; 6]>>",
-                "std::vector<std::vector<std::array<float, 6>>>",
-            ],
+            types: ["Vec<Vec<[f32; 6]>>", "std::vector<std::vector<std::array<float, 6>>>"],
             data: by_body(&|frame, i| ArgumentData::Row(frame.boxes[i].to_vec())),
         });
     } else {
@@ -213,10 +198,7 @@ fn asked_on_top(frames: &[Frame]) -> Vec<Argument> {
             ArgumentData::List(rows.map(two).collect())
         })
     };
-    let rows_of_integers = [
-        "Vec<Vec<Vec<i64>>>",
-        "std::vector<std::vector<std::vector<long>>>",
-    ];
+    let rows_of_integers = ["Vec<Vec<Vec<i64>>>", "std::vector<std::vector<std::vector<long>>>"];
     if frames.iter().any(|frame| frame.filter.is_some()) {
         arguments.push(Argument {
             name: "groups",
@@ -326,10 +308,7 @@ fn of_shapes(claim: Claim, shapes: &[Shape]) -> Vec<Argument> {
                 Argument {
                     name: "vertices",
                     meaning: "of each shape, in the body frame",
-                    types: [
-                        "Vec<Vec<[f32; 3]>>",
-                        "std::vector<std::vector<std::array<float, 3>>>",
-                    ],
+                    types: ["Vec<Vec<[f32; 3]>>", "std::vector<std::vector<std::array<float, 3>>>"],
                     data: list(&|shape| {
                         let vertex = |v: &[f32; 3]| ArgumentData::Row(v.to_vec());
                         ArgumentData::List(shape.vertices.iter().map(vertex).collect())
@@ -353,14 +332,12 @@ impl Argument {
     fn declared(&self, language: Language) -> String {
         let (name, meaning, data) = (self.name, self.meaning, self.data.text(language));
         match language {
-            Language::Rust => format!(
-                "    // {meaning}\n    let {name}: {} = {data};\n",
-                self.types[0]
-            ),
-            Language::Cpp => format!(
-                "    // {meaning}\n    const {} {name}{data};\n",
-                self.types[1]
-            ),
+            Language::Rust => {
+                format!("    // {meaning}\n    let {name}: {} = {data};\n", self.types[0])
+            }
+            Language::Cpp => {
+                format!("    // {meaning}\n    const {} {name}{data};\n", self.types[1])
+            }
             Language::Python => format!("    # {meaning}\n    {name} = {data}\n"),
         }
     }
@@ -412,19 +389,11 @@ mod tests {
     /// Whatever the language reads, it is the f32 of the case.
     #[test]
     fn numbers_stay_the_same() {
-        let row = ArgumentData::List(vec![ArgumentData::Row(vec![
-            0.1,
-            -0.0,
-            1e-45,
-            16_777_216.0,
-        ])]);
+        let row = ArgumentData::List(vec![ArgumentData::Row(vec![0.1, -0.0, 1e-45, 16_777_216.0])]);
         for (language, text) in [
             (Language::Rust, "vec![[0.1, -0.0, 1e-45, 16777216.0]]"),
             (Language::Cpp, "{{{0.1f, -0.0f, 1e-45f, 16777216.0f}}}"),
-            (
-                Language::Python,
-                "[[0.10000000149011612, -0.0, 1.401298464324817e-45, 16777216.0]]",
-            ),
+            (Language::Python, "[[0.10000000149011612, -0.0, 1.401298464324817e-45, 16777216.0]]"),
         ] {
             assert_eq!(row.text(language), text);
         }

@@ -44,16 +44,10 @@ pub enum RecordingError {
 pub fn read(bytes: &[u8]) -> Result<Case, RecordingError> {
     let form = |problem: String| RecordingError::Form(problem);
     if bytes.len() < HEAD {
-        return Err(form(format!(
-            "{} bytes: a recording begins with {HEAD}",
-            bytes.len()
-        )));
+        return Err(form(format!("{} bytes: a recording begins with {HEAD}", bytes.len())));
     }
     let name = |from: usize| -> String {
-        let text = bytes[from..from + NAME]
-            .split(|byte| *byte == 0)
-            .next()
-            .unwrap_or(&[]);
+        let text = bytes[from..from + NAME].split(|byte| *byte == 0).next().unwrap_or(&[]);
         String::from_utf8_lossy(text).into_owned()
     };
     let count = |at: usize| -> Result<usize, RecordingError> {
@@ -106,9 +100,7 @@ pub fn read(bytes: &[u8]) -> Result<Case, RecordingError> {
 /// A set of bodies that changes, or no frame.
 pub fn write(case: &Case) -> Result<Vec<u8>, RecordingError> {
     let Some(first) = case.frames.first() else {
-        return Err(RecordingError::Form(
-            "a recording has a frame at least".to_owned(),
-        ));
+        return Err(RecordingError::Form("a recording has a frame at least".to_owned()));
     };
     if case
         .frames
@@ -166,17 +158,9 @@ mod tests {
     /// Recordings read back as they were written, and damaged ones are refused.
     #[test]
     fn recordings_survive_a_round_trip() {
-        let boxes = |x: f32| {
-            vec![
-                [x, 0.0, 0.0, x + 1.0, 1.0, 1.0],
-                [2.0, 0.0, 0.0, 3.0, 1.0, 1.0],
-            ]
-        };
+        let boxes = |x: f32| vec![[x, 0.0, 0.0, x + 1.0, 1.0, 1.0], [2.0, 0.0, 0.0, 3.0, 1.0, 1.0]];
         let frame = |x: f32| of_boxes(boxes(x), vec![true; 2]).map(|(_, frame)| frame);
-        let frames: Vec<Frame> = [0.0, 1.0]
-            .into_iter()
-            .filter_map(|x| frame(x).ok())
-            .collect();
+        let frames: Vec<Frame> = [0.0, 1.0].into_iter().filter_map(|x| frame(x).ok()).collect();
         assert_eq!(frames.len(), 2);
         let case = Case {
             name: "two".to_owned(),
@@ -187,9 +171,7 @@ mod tests {
             shapes: Vec::new(),
             frames,
         };
-        let Ok(bytes) = write(&case) else {
-            unreachable!("two frames of two boxes")
-        };
+        let Ok(bytes) = write(&case) else { unreachable!("two frames of two boxes") };
         assert_eq!(bytes.len(), 304 + 2 * 2 * 32);
         assert_eq!(bytes[256..264], [2, 0, 0, 0, 1, 0, 0, 0]);
         let back = read(&bytes);
@@ -201,13 +183,6 @@ mod tests {
         assert!(read(&negative).is_err());
         let mut nan = bytes;
         nan[304..308].copy_from_slice(&f32::NAN.to_le_bytes());
-        assert!(matches!(
-            read(&nan),
-            Err(RecordingError::Ends {
-                frame: 0,
-                body: 0,
-                ..
-            })
-        ));
+        assert!(matches!(read(&nan), Err(RecordingError::Ends { frame: 0, body: 0, .. })));
     }
 }

@@ -41,11 +41,7 @@ impl Frame {
     #[must_use]
     pub fn fitted(bodies: Bodies, shapes: &[Shape]) -> Self {
         let boxes = (0..bodies.len()).map(|i| fit(&bodies, shapes, i)).collect();
-        Self {
-            bodies,
-            boxes,
-            ..Self::default()
-        }
+        Self { bodies, boxes, ..Self::default() }
     }
 
     /// The same for bodies of which each has a list of parts, empty for a body that is its shape
@@ -64,11 +60,7 @@ impl Frame {
         for (shape, parts) in bodies.shape.iter_mut().zip(&parts) {
             *shape = parts.first().map_or(*shape, |part| part.shape);
         }
-        let mut frame = Self {
-            bodies,
-            parts: Some(parts),
-            ..Self::default()
-        };
+        let mut frame = Self { bodies, parts: Some(parts), ..Self::default() };
         frame.refit(shapes)?;
         Ok(frame)
     }
@@ -110,10 +102,7 @@ impl Frame {
     #[must_use]
     pub fn periodic_box(&self, i: usize) -> PeriodicBox {
         let [x0, y0, z0, x1, y1, z1] = self.boxes[i].map(f64::from);
-        PeriodicBox {
-            motion: self.motion(i),
-            ..PeriodicBox::new([x0, y0, z0], [x1, y1, z1])
-        }
+        PeriodicBox { motion: self.motion(i), ..PeriodicBox::new([x0, y0, z0], [x1, y1, z1]) }
     }
 
     /// Checks that the periods are lengths, and that each box is shorter than half of them and not
@@ -148,10 +137,7 @@ impl Frame {
         let filter = self.filter.as_ref().map(|filter| {
             let mut excluded: Vec<_> = filter.excluded.iter().filter_map(renumbered).collect();
             excluded.sort_unstable();
-            Filter {
-                groups: which.iter().map(|&i| filter.groups[i]).collect(),
-                excluded,
-            }
+            Filter { groups: which.iter().map(|&i| filter.groups[i]).collect(), excluded }
         });
         let (margins, parts) = (self.margins.as_ref(), self.parts.as_ref());
         let was = self.was.as_ref().filter(|_| self.keeps_numbers());
@@ -177,12 +163,7 @@ pub(crate) fn group_of(name: &str) -> &str {
 pub fn picked(bodies: &Bodies, which: &[usize]) -> Bodies {
     let mut all = Bodies::default();
     for &i in which {
-        all.push(
-            bodies.shape[i],
-            bodies.dynamic[i],
-            bodies.rotation[i],
-            bodies.translation[i],
-        );
+        all.push(bodies.shape[i], bodies.dynamic[i], bodies.rotation[i], bodies.translation[i]);
     }
     all
 }
@@ -192,10 +173,7 @@ fn fit(bodies: &Bodies, shapes: &[Shape], i: usize) -> WorldBox {
     let (r, t) = (rotation(bodies.rotation[i]), bodies.translation[i]);
     let vertices = shapes[bodies.shape[i] as usize].vertices.iter();
     around(vertices.map(|vertex| {
-        let size = vertex
-            .iter()
-            .chain(&t)
-            .fold(0.0, |m: f32, x| m.max(x.abs()));
+        let size = vertex.iter().chain(&t).fold(0.0, |m: f32, x| m.max(x.abs()));
         // Above the bound by its half, for the addition's own rounding.
         let error = 1.5 * COORDINATE_ERROR * f64::from(size);
         (transform(&r, *vertex, t), error)
@@ -208,10 +186,7 @@ fn fit_parts(parts: &[(u32, WidePose)], shapes: &[Shape]) -> WorldBox {
         let t = pose.translation();
         shapes[*shape as usize].vertices.iter().map(move |vertex| {
             let vertex = vertex.map(f64::from);
-            let size = vertex
-                .iter()
-                .chain(&t)
-                .fold(0.0, |m: f64, x| m.max(x.abs()));
+            let size = vertex.iter().chain(&t).fold(0.0, |m: f64, x| m.max(x.abs()));
             // Entries of the matrix are off by 9 roundings at most, since the quaternion is of f64,
             // and a coordinate by 41.
             (pose.point(&vertex), 4.0 * COORDINATE_ERROR * size)
@@ -294,11 +269,7 @@ impl Case {
     #[must_use]
     pub fn picked(&self, which: &[usize]) -> Self {
         Self {
-            frames: self
-                .frames
-                .iter()
-                .map(|frame| frame.picked(which))
-                .collect(),
+            frames: self.frames.iter().map(|frame| frame.picked(which)).collect(),
             ..self.clone()
         }
     }

@@ -35,21 +35,11 @@ choices! {
 
 impl Claim {
     /// The claims about a single volume, without additional input.
-    pub const PLAIN: &'static [Self] = &[
-        Self::Sphere,
-        Self::Aabb,
-        Self::OrDop,
-        Self::Hull,
-        Self::Mesh,
-    ];
+    pub const PLAIN: &'static [Self] =
+        &[Self::Sphere, Self::Aabb, Self::OrDop, Self::Hull, Self::Mesh];
     /// The claims about posed shapes: all but those about given boxes.
-    pub const POSED: &'static [Self] = &[
-        Self::Sphere,
-        Self::OrDop,
-        Self::Hull,
-        Self::Mesh,
-        Self::Parts,
-    ];
+    pub const POSED: &'static [Self] =
+        &[Self::Sphere, Self::OrDop, Self::Hull, Self::Mesh, Self::Parts];
 
     /// Whether it is about given boxes.
     #[must_use]

@@ -14,10 +14,7 @@ impl SmallestCase {
     pub fn boxes(&self) -> Option<[WorldBox; 2]> {
         let Miss { frame, pair } = self.miss;
         let boxes = &self.case.frames[frame].boxes;
-        self.case
-            .claim
-            .is_of_boxes()
-            .then(|| pair.map(|body| boxes[body as usize]))
+        self.case.claim.is_of_boxes().then(|| pair.map(|body| boxes[body as usize]))
     }
 
     /// The reasons why the missed pair meets, one per line.
@@ -62,10 +59,7 @@ impl SmallestCase {
 
 impl fmt::Display for SmallestCase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Miss {
-            frame,
-            pair: [i, j],
-        } = self.miss;
+        let Miss { frame, pair: [i, j] } = self.miss;
         writeln!(
             f,
             "smallest: {}, {}, from {}; bodies {i} and {j} share a point in frame {frame}",
@@ -73,9 +67,7 @@ impl fmt::Display for SmallestCase {
             counted(self.case.frames.len(), "frame", "frames"),
             self.from
         )?;
-        self.reasons()
-            .iter()
-            .try_for_each(|line| writeln!(f, "  {line}"))
+        self.reasons().iter().try_for_each(|line| writeln!(f, "  {line}"))
     }
 }
 
@@ -105,11 +97,7 @@ impl AxisOverlap {
             f64::from(end) - f64::from(start)
         };
         let ends = usize::from(between(1) < between(0));
-        Self {
-            axis,
-            depth: between(ends),
-            ends,
-        }
+        Self { axis, depth: between(ends), ends }
     }
 
     fn line(&self, boxes: &[WorldBox; 2], pair: [u32; 2]) -> String {
@@ -139,9 +127,7 @@ fn image_line(boxes: &[WorldBox; 2], second: u32, periods: [Option<f64>; 3]) -> 
         _ => "0".to_owned(),
     });
     let moved = moved.join(", ");
-    Some(format!(
-        "box {second} meets it when moved by ({moved}), whole periods"
-    ))
+    Some(format!("box {second} meets it when moved by ({moved}), whole periods"))
 }
 
 /// Every axis on which two boxes only touch, or the one on which they overlap least.
@@ -181,10 +167,7 @@ mod tests {
         let first = [0.0, 0.0, 0.0, 4.0, 2.0, 4.0];
         let pair = [3, 7];
         let touching = [first, [1.0, 2.0, 1.0, 3.0, 5.0, 3.0]];
-        assert_eq!(
-            axes(&touching, pair),
-            ["y: box 3 ends at 2, box 7 starts at 2: touching"]
-        );
+        assert_eq!(axes(&touching, pair), ["y: box 3 ends at 2, box 7 starts at 2: touching"]);
         let overlapping = [first, [-3.0, -1.0, -2.0, 0.5, 1.0, 2.0]];
         assert_eq!(
             axes(&overlapping, pair),

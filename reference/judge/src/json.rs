@@ -66,10 +66,7 @@ mod tests {
 
     #[test]
     fn floats_read_old_and_new_text() {
-        for text in [
-            to_string(&NUMBERS).unwrap(),
-            serde_json::to_string(&NUMBERS).unwrap(),
-        ] {
+        for text in [to_string(&NUMBERS).unwrap(), serde_json::to_string(&NUMBERS).unwrap()] {
             let read: Vec<f32> = serde_json::from_str(&text).unwrap();
             assert_eq!(read, NUMBERS, "{text}");
         }

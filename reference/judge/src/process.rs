@@ -133,14 +133,7 @@ impl RunningProgram {
         if let Some(mut stderr) = child.stderr.take() {
             thread::spawn(move || say.send(tail(&mut stderr)));
         }
-        Ok(Self {
-            child,
-            input: Some(feed),
-            output,
-            said,
-            buffer: Vec::new(),
-            bytes: 0,
-        })
+        Ok(Self { child, input: Some(feed), output, said, buffer: Vec::new(), bytes: 0 })
     }
 
     /// Has a case written to its input.
@@ -205,21 +198,11 @@ impl RunningProgram {
                 let why = format!("{how}{said}");
                 return Err(AnswerError::Start { why }.into());
             }
-            return Err(AnswerError::Crashed {
-                how,
-                answered,
-                said,
-            }
-            .into());
+            return Err(AnswerError::Crashed { how, answered, said }.into());
         }
         if answered < frames {
             let said = self.said();
-            return Err(AnswerError::Early {
-                answered,
-                frames,
-                said,
-            }
-            .into());
+            return Err(AnswerError::Early { answered, frames, said }.into());
         }
         Ok(answers)
     }
@@ -228,10 +211,7 @@ impl RunningProgram {
     fn line(&mut self, deadline: Instant, most: usize) -> Result<Option<Vec<u8>>, LineError> {
         let mut searched = 0;
         loop {
-            if let Some(end) = self.buffer[searched..]
-                .iter()
-                .position(|byte| *byte == b'\n')
-            {
+            if let Some(end) = self.buffer[searched..].iter().position(|byte| *byte == b'\n') {
                 let rest = self.buffer.split_off(searched + end + 1);
                 return Ok(Some(std::mem::replace(&mut self.buffer, rest)));
             }
@@ -308,10 +288,7 @@ fn shell(command: &str) -> Command {
 /// More bytes than any correct answer to a case: 24 bytes hold a pair.
 fn most_bytes(case: &Case) -> usize {
     let pairs = |n: usize| n * n.saturating_sub(1) / 2;
-    let frames = case
-        .frames
-        .iter()
-        .map(|frame| 256 + 24 * pairs(frame.bodies.len()));
+    let frames = case.frames.iter().map(|frame| 256 + 24 * pairs(frame.bodies.len()));
     CHATTER + frames.sum::<usize>()
 }
 
@@ -332,7 +309,5 @@ fn ending(status: ExitStatus) -> String {
     if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
         return format!("signal {signal}");
     }
-    status
-        .code()
-        .map_or_else(|| status.to_string(), |code| format!("exit code {code}"))
+    status.code().map_or_else(|| status.to_string(), |code| format!("exit code {code}"))
 }

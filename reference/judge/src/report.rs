@@ -54,12 +54,7 @@ fn axes_of_scene(case: &Case) -> Option<Axes> {
         let mesh = mesh_of(shape);
         let text = write_bytes(&mesh, MeshFormat::Obj);
         let read = read_bytes("shape.obj", MeshFormat::Obj, &text, &ReadOptions::default());
-        let spec = ShapeSpec {
-            origin: Origin::File,
-            radius: None,
-            directions,
-            axes,
-        };
+        let spec = ShapeSpec { origin: Origin::File, radius: None, directions, axes };
         let same = |built: Shape| match case.claim {
             Claim::Sphere => built.ball == shape.ball,
             Claim::OrDop => built.ordop == shape.ordop,
@@ -103,9 +98,7 @@ pub fn scene(case: &Case, origin: &str, cull: &str) -> Vec<NamedFile> {
         (format!("{STEM}-{number}.obj"), bytes)
     };
     let meshes = case.shapes.iter().enumerate().map(mesh);
-    std::iter::once((format!("{STEM}.toml"), text.into_bytes()))
-        .chain(meshes)
-        .collect()
+    std::iter::once((format!("{STEM}.toml"), text.into_bytes())).chain(meshes).collect()
 }
 
 /// A pose's seven numbers as a scene file has them: written as f64, so that the translation is this
@@ -131,11 +124,7 @@ pub fn junit(verdict: &Verdict) -> String {
             group.errors,
             group.skipped
         );
-        for case in verdict
-            .cases
-            .iter()
-            .filter(|case| case.group() == group.name)
-        {
+        for case in verdict.cases.iter().filter(|case| case.group() == group.name) {
             let _ = write!(
                 text,
                 "    <testcase classname=\"{}\" name=\"{}\"",

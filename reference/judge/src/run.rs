@@ -117,10 +117,7 @@ where
     F: Fn(&Scene<'_>) -> C + Sync,
     C: Contestant,
 {
-    Judge {
-        subject: ContestantFactory(make),
-        options: Options::default(),
-    }
+    Judge { subject: ContestantFactory(make), options: Options::default() }
 }
 
 /// Judges a culler that keeps nothing between frames: a function of the shapes and of a frame. The
@@ -129,10 +126,7 @@ pub fn judge_function<F>(cull: F) -> Judge<CullFunction<F>>
 where
     F: Fn(&[Shape], &Frame) -> Vec<[u32; 2]> + Sync,
 {
-    Judge {
-        subject: CullFunction(cull),
-        options: Options::default(),
-    }
+    Judge { subject: CullFunction(cull), options: Options::default() }
 }
 
 /// Judges a test of single pairs: whether two bodies of a frame overlap, as far as it can tell.
@@ -140,10 +134,7 @@ pub fn judge_pair_test<T>(overlap: T) -> Judge<PairwiseTest<T>>
 where
     T: Fn(&[Shape], &Frame, [usize; 2]) -> bool + Sync,
 {
-    Judge {
-        subject: PairwiseTest(overlap),
-        options: Options::default(),
-    }
+    Judge { subject: PairwiseTest(overlap), options: Options::default() }
 }
 
 impl<S: Subject> Judge<S> {
@@ -229,9 +220,7 @@ pub fn examine(
         return Err(JudgeError::NoCase { claim, pattern });
     }
     check_known(claim, &options.known)?;
-    let deadline = options
-        .time
-        .and_then(|time| Instant::now().checked_add(time));
+    let deadline = options.time.and_then(|time| Instant::now().checked_add(time));
     let stop = AtomicBool::new(false);
     let done = std::sync::atomic::AtomicUsize::new(0);
     let run = |id: &CaseId| -> Result<Option<(Case, CaseVerdict)>, JudgeError> {
@@ -242,14 +231,8 @@ pub fn examine(
         // Every group's first case runs twice: equal input must have equal answers.
         let judged = judge_case(subject, &case, id.number == 0)?;
         let verdict = line(&case, &judged, &options.known);
-        let failed = matches!(
-            verdict.outcome,
-            Outcome::Fail { .. } | Outcome::Error { .. }
-        );
-        stop.fetch_or(
-            options.fail_fast && failed && !verdict.known,
-            Ordering::Relaxed,
-        );
+        let failed = matches!(verdict.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
+        stop.fetch_or(options.fail_fast && failed && !verdict.known, Ordering::Relaxed);
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
         Ok(Some((case, verdict)))
     };
@@ -258,8 +241,7 @@ pub fn examine(
         first.par_iter().map(run).collect::<Result<_, _>>()?;
     // A program that can't start for these cases can't start for others.
     let starts = |one: &Option<(Case, CaseVerdict)>| {
-        one.as_ref()
-            .is_none_or(|(_, verdict)| !verdict.is_without_start())
+        one.as_ref().is_none_or(|(_, verdict)| !verdict.is_without_start())
     };
     stop.fetch_or(!ran.iter().any(starts), Ordering::Relaxed);
     ran.extend(rest.par_iter().map(run).collect::<Result<Vec<_>, _>>()?);
@@ -304,9 +286,7 @@ fn conclude(
     let not_run = ran.iter().filter(|one| one.is_none()).count();
     let ran: Vec<(Case, CaseVerdict)> = ran.into_iter().flatten().collect();
     // The case with the fewest pairs is the fastest to reduce.
-    let missed = ran
-        .iter()
-        .filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
+    let missed = ran.iter().filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
     let first = missed.min_by_key(|(case, _)| case.pairs());
     let smallest = first.and_then(|(case, _)| shrink(subject, case, options.shrink_time));
     let cases: Vec<CaseVerdict> = ran.into_iter().map(|(_, verdict)| verdict).collect();

@@ -98,12 +98,7 @@ pub struct CaseScore {
 
 impl CaseScore {
     fn without_answers(outcome: Outcome) -> Self {
-        Self {
-            outcome,
-            count: PairCounts::default(),
-            miss: None,
-            lists: Vec::new(),
-        }
+        Self { outcome, count: PairCounts::default(), miss: None, lists: Vec::new() }
     }
 }
 
@@ -180,11 +175,7 @@ fn in_other_orders(
 /// The first frame after a saved state was restored whose list isn't the one that the same frame
 /// had after the state was saved.
 fn not_restored(case: &Case, lists: &[Vec<[u32; 2]>]) -> Option<usize> {
-    let input = |frame: &Frame| Frame {
-        save: false,
-        restore: false,
-        ..frame.clone()
-    };
+    let input = |frame: &Frame| Frame { save: false, restore: false, ..frame.clone() };
     let (mut saved, mut twin) = (0, None);
     for (number, frame) in case.frames.iter().enumerate() {
         if frame.restore {
@@ -244,29 +235,18 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
             Err(trouble) => return Ok(CaseScore::without_answers(Outcome::Error { trouble })),
         }
     }
-    let (truth, balls) = (
-        Truth::new(case.claim, &case.shapes)?,
-        Truth::new(Claim::Sphere, &case.shapes)?,
-    );
+    let (truth, balls) =
+        (Truth::new(case.claim, &case.shapes)?, Truth::new(Claim::Sphere, &case.shapes)?);
     let (mut count, mut miss, mut parted) = (PairCounts::default(), None, Vec::new());
     count.judged = case.pairs();
     for (number, (frame, list)) in case.frames.iter().zip(&lists).enumerate() {
         let required = truth.pairs(frame)?;
         count.required += required.len() as u64;
-        for pair in required
-            .iter()
-            .filter(|pair| list.binary_search(pair).is_err())
-        {
+        for pair in required.iter().filter(|pair| list.binary_search(pair).is_err()) {
             count.missed += 1;
-            miss = miss.or(Some(Miss {
-                frame: number,
-                pair: *pair,
-            }));
+            miss = miss.or(Some(Miss { frame: number, pair: *pair }));
         }
-        for pair in list
-            .iter()
-            .filter(|pair| required.binary_search(pair).is_err())
-        {
+        for pair in list.iter().filter(|pair| required.binary_search(pair).is_err()) {
             if truth.parts(frame, *pair) {
                 parted.push((number, *pair));
             }
@@ -275,12 +255,7 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
     }
     let wrong = match (miss, parted.first(), not_restored(case, &lists)) {
         (Some(Miss { frame, pair }), ..) => {
-            let (
-                [i, j],
-                PairCounts {
-                    missed, required, ..
-                },
-            ) = (pair, count);
+            let ([i, j], PairCounts { missed, required, .. }) = (pair, count);
             Some(format!(
                 "misses {missed} of {required} pairs, first bodies {i} and {j} in frame {frame}"
             ))
@@ -289,18 +264,13 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
             "reports {} pairs that the filter parts, first bodies {i} and {j} in frame {frame}",
             parted.len()
         )),
-        (.., Some(frame)) => Some(format!(
-            "reports other pairs in frame {frame} than before its state was restored"
-        )),
+        (.., Some(frame)) => {
+            Some(format!("reports other pairs in frame {frame} than before its state was restored"))
+        }
         (None, None, None) => None,
     };
     let outcome = wrong.map_or(Outcome::Pass, |why| Outcome::Fail { why });
-    Ok(CaseScore {
-        outcome,
-        count,
-        miss,
-        lists,
-    })
+    Ok(CaseScore { outcome, count, miss, lists })
 }
 
 /// Counts an extra pair by its cause.

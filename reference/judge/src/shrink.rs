@@ -51,13 +51,8 @@ pub type FailureCheck<'a> = &'a dyn Fn(&Case) -> Option<(Miss, Lists)>;
 /// Makes a case smaller while something is wrong with it, for so long at most.
 pub fn shrink_while(case: &Case, time: Duration, wrong: FailureCheck<'_>) -> Option<SmallestCase> {
     let (miss, pairs) = wrong(case)?;
-    let mut search = Search {
-        wrong,
-        deadline: Instant::now() + time,
-        miss,
-        case: case.clone(),
-        pairs,
-    };
+    let mut search =
+        Search { wrong, deadline: Instant::now() + time, miss, case: case.clone(), pairs };
     search.fewer_frames();
     search.fewer_bodies();
     search.fewer_parts();
@@ -66,25 +61,14 @@ pub fn shrink_while(case: &Case, time: Duration, wrong: FailureCheck<'_>) -> Opt
     search.fewer_periods();
     search.fewer_digits();
     let from = case.name.clone();
-    let Search {
-        mut case,
-        pairs,
-        miss,
-        ..
-    } = search;
+    let Search { mut case, pairs, miss, .. } = search;
     // Other bodies than in the case of that name; a replayed counter-example has its own name
     // already.
     if !from.starts_with(STEM) {
         case.name = format!("{STEM}/{from}");
     }
     let witness = Witness::of(&case, miss);
-    Some(SmallestCase {
-        from,
-        case,
-        pairs,
-        miss,
-        witness,
-    })
+    Some(SmallestCase { from, case, pairs, miss, witness })
 }
 
 struct Search<'a> {
@@ -113,11 +97,7 @@ impl Search<'_> {
         let with = |case: &Case, kept: &[usize]| Case {
             frames: kept
                 .iter()
-                .map(|&n| Frame {
-                    was: None,
-                    restore: false,
-                    ..case.frames[n].clone()
-                })
+                .map(|&n| Frame { was: None, restore: false, ..case.frames[n].clone() })
                 .collect(),
             ..case.clone()
         };
@@ -157,9 +137,8 @@ impl Search<'_> {
         while chunk > 0 {
             let mut start = 0;
             while start < bodies(self) {
-                let kept: Vec<usize> = (0..bodies(self))
-                    .filter(|i| !(start..start + chunk).contains(i))
-                    .collect();
+                let kept: Vec<usize> =
+                    (0..bodies(self)).filter(|i| !(start..start + chunk).contains(i)).collect();
                 let smaller = self.case.picked(&kept);
                 if kept.len() < 2 || !self.try_case(smaller) {
                     start += chunk;
@@ -175,11 +154,7 @@ impl Search<'_> {
         for body in 0..bodies {
             let most = |case: &Case| {
                 let parts = case.frames.iter().flat_map(|frame| &frame.parts);
-                parts
-                    .filter_map(|all| all.get(body))
-                    .map(Vec::len)
-                    .max()
-                    .unwrap_or(0)
+                parts.filter_map(|all| all.get(body)).map(Vec::len).max().unwrap_or(0)
             };
             let mut part = 0;
             while part < most(&self.case) {
@@ -194,13 +169,9 @@ impl Search<'_> {
     fn fewer_shapes(&mut self) {
         let mut case = self.case.clone();
         let used: BTreeSet<u32> = shapes_of(&mut case.frames).map(|shape| *shape).collect();
-        let kept: Vec<u32> = (0..case.shapes.len() as u32)
-            .filter(|shape| used.contains(shape))
-            .collect();
-        case.shapes = kept
-            .iter()
-            .map(|&shape| self.case.shapes[shape as usize].clone())
-            .collect();
+        let kept: Vec<u32> =
+            (0..case.shapes.len() as u32).filter(|shape| used.contains(shape)).collect();
+        case.shapes = kept.iter().map(|&shape| self.case.shapes[shape as usize].clone()).collect();
         for shape in shapes_of(&mut case.frames) {
             *shape = kept.iter().position(|kept| kept == shape).unwrap_or(0) as u32;
         }

@@ -86,10 +86,7 @@ where
                 culler.boxes(&frame.boxes);
                 culler.frame(&frame.bodies);
                 culler.settle();
-                answers.push(Answer {
-                    pairs: culler.pairs(),
-                    ns: None,
-                });
+                answers.push(Answer { pairs: culler.pairs(), ns: None });
                 why = (frame.save && !culler.save()).then_some("its state can't be saved");
             }
             if let Some(why) = why {
@@ -108,10 +105,7 @@ fn prepared(culler: &mut impl Contestant, frame: &Frame) -> Result<(), &'static 
         can(culler.restore(), "it can't go back to a saved state")?;
     }
     if let Some(was) = &frame.was {
-        can(
-            culler.change(&frame.bodies, was),
-            "its set of bodies can't change",
-        )?;
+        can(culler.change(&frame.bodies, was), "its set of bodies can't change")?;
     }
     if let Some(filter) = &frame.filter {
         can(culler.filter(filter), "it has no filters")?;
@@ -137,10 +131,11 @@ where
 {
     fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         guarded(|answers| {
-            answers.extend(case.frames.iter().map(|frame| Answer {
-                pairs: (self.0)(&case.shapes, frame),
-                ns: None,
-            }));
+            answers.extend(
+                case.frames
+                    .iter()
+                    .map(|frame| Answer { pairs: (self.0)(&case.shapes, frame), ns: None }),
+            );
             Ok(())
         })
     }

@@ -25,10 +25,7 @@ impl Truth {
     /// Numbers that the reference refuses.
     pub fn new(claim: Claim, shapes: &[Shape]) -> Result<Self, InvalidInput> {
         let shapes = shapes.iter().map(|shape| judged(claim, shape));
-        Ok(Self {
-            claim,
-            shapes: shapes.collect::<Result<_, _>>()?,
-        })
+        Ok(Self { claim, shapes: shapes.collect::<Result<_, _>>()? })
     }
 
     /// What it decides.
@@ -69,9 +66,7 @@ impl Truth {
     ) -> Result<Option<[PosedPart<'_>; 2]>, InvalidInput> {
         let posed = |i: u32| -> Result<Vec<PosedPart<'_>>, InvalidInput> {
             let parts = frame.posed_parts(i as usize)?.into_iter();
-            Ok(parts
-                .map(|(shape, pose)| (&self.shapes[shape as usize], pose))
-                .collect())
+            Ok(parts.map(|(shape, pose)| (&self.shapes[shape as usize], pose)).collect())
         };
         let (first, second) = (posed(pair[0])?, posed(pair[1])?);
         for a in &first {
@@ -108,10 +103,7 @@ impl Truth {
     /// Whether the frame's filter parts a pair i < j, so that it must not be reported.
     #[must_use]
     pub fn parts(&self, frame: &Frame, pair: [u32; 2]) -> bool {
-        let filter = frame
-            .filter
-            .as_ref()
-            .filter(|_| self.claim == Claim::Filter);
+        let filter = frame.filter.as_ref().filter(|_| self.claim == Claim::Filter);
         filter.is_some_and(|filter| filter.parts(pair))
     }
 
@@ -214,10 +206,7 @@ fn near((a, ta): (&reference::Shape, [f64; 3]), (b, tb): (&reference::Shape, [f6
 /// The numbers that a claim is about; or-DOPs are expensive to prepare and left trivial for the
 /// others.
 fn judged(claim: Claim, shape: &Shape) -> Result<reference::Shape, InvalidInput> {
-    let ball = reference::Ball {
-        centre: shape.ball.centre,
-        radius: shape.ball.radius,
-    };
+    let ball = reference::Ball { centre: shape.ball.centre, radius: shape.ball.radius };
     let slabs = match claim {
         Claim::OrDop => slabs(&shape.ordop, 0.0),
         _ => reference::Slabs {
@@ -243,9 +232,7 @@ fn hull_triangles(shape: &Shape) -> Vec<[u32; 3]> {
         return hull.facets;
     }
     let n = shape.vertices.len() as u32;
-    (0..n)
-        .flat_map(|i| (i..n).map(move |j| [0, i, j]))
-        .collect()
+    (0..n).flat_map(|i| (i..n).map(move |j| [0, i, j])).collect()
 }
 
 #[cfg(test)]
@@ -261,10 +248,7 @@ mod tests {
             ([1.0, -tiny, -1.0, 0.0], false),
             ([f32::MAX, 1.0, -f32::MAX, -1.0_f32.next_down()], true),
             ([f32::MAX, tiny, -1.0, -f32::MAX], false),
-            (
-                [0.1, 0.2, -0.3, 0.0],
-                f64::from(0.1_f32) + f64::from(0.2_f32) > f64::from(0.3_f32),
-            ),
+            ([0.1, 0.2, -0.3, 0.0], f64::from(0.1_f32) + f64::from(0.2_f32) > f64::from(0.3_f32)),
             ([0.0; 4], false),
         ] {
             assert_eq!(is_positive(terms), positive, "{terms:?}");

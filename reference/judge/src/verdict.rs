@@ -200,8 +200,7 @@ impl Verdict {
     #[must_use]
     pub fn is_beyond_limit(&self) -> bool {
         let pairs = self.pairs();
-        self.extra_limit
-            .is_some_and(|limit| pairs.extra as f64 > limit * pairs.required as f64)
+        self.extra_limit.is_some_and(|limit| pairs.extra as f64 > limit * pairs.required as f64)
     }
 
     /// Pairs over all cases.
@@ -250,10 +249,7 @@ impl Verdict {
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (pairs, count) = (self.pairs(), |outcome: fn(&Outcome) -> bool| {
-            self.cases
-                .iter()
-                .filter(|case| outcome(&case.outcome))
-                .count()
+            self.cases.iter().filter(|case| outcome(&case.outcome)).count()
         });
         writeln!(
             f,
@@ -294,27 +290,18 @@ impl fmt::Display for Verdict {
         for name in self.stale.iter().take(3) {
             writeln!(f, "known failure {name} passes: take it off the list")?;
         }
-        for case in self
-            .cases
-            .iter()
-            .filter(|case| self.counts_against(case))
-            .take(3)
-        {
+        for case in self.cases.iter().filter(|case| self.counts_against(case)).take(3) {
             writeln!(f, "{case}")?;
             if matches!(case.outcome, Outcome::Fail { .. }) {
                 writeln!(f, "  case aims at: {}", case.flag)?;
             }
         }
-        let mut skipped = self
-            .cases
-            .iter()
-            .filter(|case| matches!(case.outcome, Outcome::Skipped { .. }));
+        let mut skipped =
+            self.cases.iter().filter(|case| matches!(case.outcome, Outcome::Skipped { .. }));
         if let Some(case) = skipped.next() {
             writeln!(f, "skipped, for one: {case}")?;
         }
-        self.smallest
-            .as_ref()
-            .map_or(Ok(()), |smallest| smallest.fmt(f))
+        self.smallest.as_ref().map_or(Ok(()), |smallest| smallest.fmt(f))
     }
 }
 

@@ -34,10 +34,7 @@ impl Witness {
         let frame = &case.frames[frame];
         let point = truth.common_point(frame, pair)?;
         let ends = pair.map(|body| frame.boxes[body as usize]);
-        let size = ends
-            .as_flattened()
-            .iter()
-            .fold(0.0, |m: f32, x| m.max(x.abs()));
+        let size = ends.as_flattened().iter().fold(0.0, |m: f32, x| m.max(x.abs()));
         let ulp = f64::from(size.next_up()) - f64::from(size);
         let directions = directions(frame, pair);
         let depth = directions.iter().fold(None, |least, direction| {

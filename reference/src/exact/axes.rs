@@ -56,10 +56,7 @@ pub trait Separation {
 }
 
 fn any_normal<S: Separation>(polytope: &Polytope, sets: &S) -> Option<bool> {
-    any(polytope
-        .normals
-        .iter()
-        .map(|normal| sets.separates(&integers(*normal))))
+    any(polytope.normals.iter().map(|normal| sets.separates(&integers(*normal))))
 }
 
 /// Both polytopes' corners as 12 s ξ in A's slab coordinates, in intervals or integers.

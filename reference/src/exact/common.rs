@@ -102,11 +102,7 @@ pub fn of_balls(a: &Body, b: &Body) -> Option<Point> {
         return None;
     }
     // Both radii are zero only when the centres coincide.
-    let part = if reach.is_zero() {
-        RBig::ZERO
-    } else {
-        ra / reach
-    };
+    let part = if reach.is_zero() { RBig::ZERO } else { ra / reach };
     Some(Point(add(&from, &scale(&part, &between))))
 }
 
@@ -114,12 +110,7 @@ pub fn of_balls(a: &Body, b: &Body) -> Option<Point> {
 pub fn of_slabs(a: &Body, b: &Body) -> Option<Point> {
     let polytope = &a.shape.polytope;
     let proof = ordop::meet((&a.pose, polytope), (&b.pose, &b.shape.polytope)).value;
-    let Certificate::Common {
-        numerators,
-        denominator,
-        unit,
-    } = proof
-    else {
+    let Certificate::Common { numerators, denominator, unit } = proof else {
         return None;
     };
     let denominator = RBig::from(denominator);
@@ -151,11 +142,7 @@ pub fn of_meshes(a: &Body, b: &Body) -> Option<Point> {
 fn vertex_inside(view: &View, pose: &Pose) -> Option<Point> {
     let closed = view.a.components.iter().any(|component| component.closed);
     let inside = |vertex: &&Vector<f64>| inside_closed(view, vertex, &mut Record::default());
-    let vertex = view
-        .b
-        .representatives
-        .iter()
-        .find(|v| closed && inside(v))?;
+    let vertex = view.b.representatives.iter().find(|v| closed && inside(v))?;
     Some(Point(world(pose, &lifted(*vertex))))
 }
 
@@ -181,9 +168,7 @@ fn shared(a: &[Rational; 3], b: &[Rational; 3]) -> Option<Rational> {
         candidates.extend(edges(b).iter().filter_map(|other| crossing(&edge, other)));
     }
     candidates.extend(edges(b).iter().filter_map(|edge| piercing(edge, a)));
-    candidates
-        .into_iter()
-        .find(|x| contains(a, x) && contains(b, x))
+    candidates.into_iter().find(|x| contains(a, x) && contains(b, x))
 }
 
 /// Where the line of an edge crosses the plane of a triangle; `None` when they are parallel.
@@ -219,9 +204,7 @@ pub(super) fn contains(t: &[Rational; 3], x: &Rational) -> bool {
             .any(|edge| turn(edge).iter().all(RBig::is_zero) && between(edge, x));
     }
     dot(&normal, &sub(x, &t[0])).is_zero()
-        && edges
-            .into_iter()
-            .all(|edge| dot(&normal, &turn(edge)) >= RBig::ZERO)
+        && edges.into_iter().all(|edge| dot(&normal, &turn(edge)) >= RBig::ZERO)
 }
 
 /// Whether a point of a segment's line is between its ends.

@@ -20,15 +20,11 @@ pub fn meet(a: &Triangle<Point>, b: &Triangle<Point>) -> bool {
 }
 
 fn edges(t: &Triangle<Point>) -> impl Iterator<Item = [&Point; 2]> {
-    [(0, 1), (1, 2), (2, 0)]
-        .into_iter()
-        .map(|(i, j)| [&t[i], &t[j]])
+    [(0, 1), (1, 2), (2, 0)].into_iter().map(|(i, j)| [&t[i], &t[j]])
 }
 
 fn side(abc: [&Point; 3], d: &Point) -> Ordering {
-    Known::<IBig>::stage()
-        .side(abc, d)
-        .unwrap_or_else(|| unreachable!("integers know every sign"))
+    Known::<IBig>::stage().side(abc, d).unwrap_or_else(|| unreachable!("integers know every sign"))
 }
 
 fn is_zero(v: &Point) -> bool {

@@ -19,10 +19,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    const WHOLE: Self = Self {
-        lo: f64::NEG_INFINITY,
-        hi: f64::INFINITY,
-    };
+    const WHOLE: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
     /// The interval of one finite number.
     pub fn point(x: f64) -> Self {
@@ -33,11 +30,7 @@ impl Interval {
     pub fn enclosing(x: &IBig) -> Self {
         let significant = x.bit_len() - x.trailing_zeros().unwrap_or(0);
         let nearest = x.to_f64().value();
-        if significant <= 53 {
-            Self::point(nearest)
-        } else {
-            Self::outward(nearest, nearest)
-        }
+        if significant <= 53 { Self::point(nearest) } else { Self::outward(nearest, nearest) }
     }
 
     /// The lower end.
@@ -51,11 +44,7 @@ impl Interval {
     }
 
     fn ordered(lo: f64, hi: f64) -> Self {
-        if lo <= hi {
-            Self { lo, hi }
-        } else {
-            Self::WHOLE
-        }
+        if lo <= hi { Self { lo, hi } } else { Self::WHOLE }
     }
 
     fn outward(lo: f64, hi: f64) -> Self {
@@ -87,29 +76,19 @@ impl Number for Interval {
     }
 
     fn times(&self, other: &Self) -> Self {
-        let [a, b, c, d] = [
-            self.lo * other.lo,
-            self.lo * other.hi,
-            self.hi * other.lo,
-            self.hi * other.hi,
-        ];
+        let [a, b, c, d] =
+            [self.lo * other.lo, self.lo * other.hi, self.hi * other.lo, self.hi * other.hi];
         // 0·∞ is a NaN, which min and max drop: the products that remain hold its 0, or none does
         // and all is unknown.
         Self::outward(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
     }
 
     fn larger(&self, other: &Self) -> Self {
-        Self {
-            lo: self.lo.max(other.lo),
-            hi: self.hi.max(other.hi),
-        }
+        Self { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi) }
     }
 
     fn smaller(&self, other: &Self) -> Self {
-        Self {
-            lo: self.lo.min(other.lo),
-            hi: self.hi.min(other.hi),
-        }
+        Self { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi) }
     }
 
     fn sign(&self) -> Option<Ordering> {
@@ -135,19 +114,8 @@ mod tests {
         let infinite = huge.times(&huge);
         assert_eq!(infinite.sign(), Some(Ordering::Greater));
         assert_eq!(infinite.minus(&infinite).sign(), None);
-        assert_eq!(
-            infinite
-                .minus(&infinite)
-                .times(&Interval::point(0.0))
-                .sign(),
-            None
-        );
-        assert_eq!(
-            Interval::point(1e-300)
-                .times(&Interval::point(1e-300))
-                .sign(),
-            None
-        );
+        assert_eq!(infinite.minus(&infinite).times(&Interval::point(0.0)).sign(), None);
+        assert_eq!(Interval::point(1e-300).times(&Interval::point(1e-300)).sign(), None);
         assert_eq!(Interval::point(0.0).sign(), Some(Ordering::Equal));
     }
 

@@ -33,12 +33,7 @@ impl<'a> Exact<'a> {
     /// A judge of these bodies whose or-DOPs are compared by `overlap`.
     pub fn new(bodies: &'a [Body<'a>], overlap: Overlap) -> Self {
         let extents = std::array::from_fn(|_| bodies.iter().map(|_| OnceCell::new()).collect());
-        Self {
-            bodies,
-            overlap,
-            extents,
-            tally: Cell::default(),
-        }
+        Self { bodies, overlap, extents, tally: Cell::default() }
     }
 
     /// What was decided so far.
@@ -75,10 +70,7 @@ impl OverlapTests for Exact<'_> {
     }
 
     fn world_kdops(&self, i: u32, j: u32, directions: DirectionSet) -> bool {
-        self.note(world::overlap_extents(
-            self.extents(i, directions),
-            self.extents(j, directions),
-        ))
+        self.note(world::overlap_extents(self.extents(i, directions), self.extents(j, directions)))
     }
 
     fn obbs(&self, i: u32, j: u32) -> bool {

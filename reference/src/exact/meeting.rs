@@ -36,22 +36,13 @@ pub fn meet(a: Posed, b: Posed) -> Meeting {
     let meets = surfaces_meet(&view, &mut record)
         || contained(&view, &mut record)
         || contained(&View::new(b, a), &mut record);
-    Meeting {
-        meets,
-        path: record.deepest,
-        tally: record.tally,
-    }
+    Meeting { meets, path: record.deepest, tally: record.tally }
 }
 
 /// Is a component of B inside a closed component of A?
 fn contained(view: &View, record: &mut Record) -> bool {
     let possible = view.a.components.iter().any(|component| component.closed);
-    possible
-        && view
-            .b
-            .representatives
-            .iter()
-            .any(|vertex| inside_closed(view, vertex, record))
+    possible && view.b.representatives.iter().any(|vertex| inside_closed(view, vertex, record))
 }
 
 /// Does a triangle of A meet one of B?
@@ -96,11 +87,8 @@ fn larger(a: &Node, b: &Node) -> bool {
 
 fn leaves_meet(view: &View, a: &[u32], b: &[u32], record: &mut Record) -> bool {
     b.iter().any(|&tb| {
-        let mapped = view.b.triangles[tb as usize]
-            .each_ref()
-            .map(|p| view.map.map(p));
-        a.iter()
-            .any(|&ta| record.note(view.triangles_meet(ta, tb, &mapped)))
+        let mapped = view.b.triangles[tb as usize].each_ref().map(|p| view.map.map(p));
+        a.iter().any(|&ta| record.note(view.triangles_meet(ta, tb, &mapped)))
     })
 }
 
@@ -118,11 +106,7 @@ struct Boxes<'a> {
 impl<'a> Boxes<'a> {
     fn new(view: &'a View) -> Self {
         let slack = 4.0 * view.error + 128.0 * f64::EPSILON * view.a.reach;
-        Self {
-            view,
-            back: transpose(&view.map.matrix),
-            slack,
-        }
+        Self { view, back: transpose(&view.map.matrix), slack }
     }
 
     fn apart(&self, a: &Node, b: &Node) -> bool {

@@ -60,10 +60,7 @@ impl Mesh {
             let root = roots[*vertex as usize] as usize;
             if number[root] == u32::MAX {
                 number[root] = components.len() as u32;
-                components.push(Component {
-                    vertex: *vertex,
-                    closed: false,
-                });
+                components.push(Component { vertex: *vertex, closed: false });
             }
             component_of.push(number[root]);
         }
@@ -74,15 +71,7 @@ impl Mesh {
         let reach = corners.iter().flatten().map(largest).fold(0.0, f64::max);
         let unit = unit_of(corners.iter().flatten().flatten().copied());
         let tree = Tree::new(&corners);
-        Self {
-            triangles: corners,
-            component_of,
-            components,
-            representatives,
-            tree,
-            reach,
-            unit,
-        }
+        Self { triangles: corners, component_of, components, representatives, tree, reach, unit }
     }
 
     /// Whether a triangle's corners lie on one line, exactly: nearly all have an area that f64
@@ -136,24 +125,15 @@ fn mark_closed(components: &mut [Component], triangles: &[[u32; 3]], component_o
 
 #[cfg(test)]
 mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        reason = "a test that cannot build its input has failed"
-    )]
+    #![allow(clippy::unwrap_used, reason = "a test that cannot build its input has failed")]
     use super::*;
 
     const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [0, 2, 3]];
 
     fn closed(triangles: &[[u32; 3]]) -> Vec<bool> {
-        let vertices: Vec<[f32; 3]> = (0..12)
-            .map(|i| [i as f32, (i * i % 7) as f32, (i % 3) as f32])
-            .collect();
-        Mesh::new(&vertices, triangles)
-            .unwrap()
-            .components
-            .iter()
-            .map(|c| c.closed)
-            .collect()
+        let vertices: Vec<[f32; 3]> =
+            (0..12).map(|i| [i as f32, (i * i % 7) as f32, (i % 3) as f32]).collect();
+        Mesh::new(&vertices, triangles).unwrap().components.iter().map(|c| c.closed).collect()
     }
 
     /// Closed is two faces an edge in every component.
@@ -174,13 +154,7 @@ mod tests {
     #[test]
     fn boxes_hold_their_triangles() {
         let vertices: Vec<[f32; 3]> = (0..100)
-            .map(|i| {
-                [
-                    (i as f32).sin(),
-                    (i as f32 * 1.7).cos() / 3.0,
-                    i as f32 * 0.01,
-                ]
-            })
+            .map(|i| [(i as f32).sin(), (i as f32 * 1.7).cos() / 3.0, i as f32 * 0.01])
             .collect();
         let triangles: Vec<[u32; 3]> = (0..98).map(|i| [i, i + 1, i + 2]).collect();
         let mesh = Mesh::new(&vertices, &triangles).unwrap();

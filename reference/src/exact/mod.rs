@@ -57,10 +57,7 @@ pub struct Decision<T> {
 impl<T> Decision<T> {
     /// The same stage, another answer.
     pub fn map<U>(self, f: impl FnOnce(T) -> U) -> Decision<U> {
-        Decision {
-            value: f(self.value),
-            path: self.path,
-        }
+        Decision { value: f(self.value), path: self.path }
     }
 }
 
@@ -109,10 +106,7 @@ pub struct Record {
 
 impl Default for Record {
     fn default() -> Self {
-        Self {
-            tally: Tally::default(),
-            deepest: Path::Filter,
-        }
+        Self { tally: Tally::default(), deepest: Path::Filter }
     }
 }
 
@@ -132,22 +126,13 @@ pub(crate) fn cascade<T>(
     exact: impl FnOnce() -> Option<T>,
 ) -> Decision<T> {
     if let Some(value) = filter() {
-        return Decision {
-            value,
-            path: Path::Filter,
-        };
+        return Decision { value, path: Path::Filter };
     }
     if let Some(value) = interval() {
-        return Decision {
-            value,
-            path: Path::Interval,
-        };
+        return Decision { value, path: Path::Interval };
     }
     let value = exact().unwrap_or_else(|| unreachable!("integers know every sign"));
-    Decision {
-        value,
-        path: Path::Exact,
-    }
+    Decision { value, path: Path::Exact }
 }
 
 /// p ∨ q where either may be unknown.

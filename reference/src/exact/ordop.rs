@@ -58,11 +58,7 @@ impl Certificate {
     pub fn verify(&self, a: Posed, b: Posed) -> bool {
         match self {
             Self::Separated(axis) => Corners::<IBig>::new(a, b).separates(axis) == Some(true),
-            Self::Common {
-                numerators,
-                denominator,
-                unit,
-            } => {
+            Self::Common { numerators, denominator, unit } => {
                 // The point's own unit joins the lengths'.
                 let lengths = common_unit(a, b).min(unit - a.1.basis_unit);
                 let lift = |x: &IBig| IBig::lift_integer(x, *unit, lengths + a.1.basis_unit);
@@ -76,24 +72,15 @@ impl Certificate {
 pub fn meet(a: Posed, b: Posed) -> Decision<Certificate> {
     if a.1.corners.is_empty() || b.1.corners.is_empty() {
         let value = Certificate::Separated([IBig::ZERO, IBig::ZERO, IBig::ZERO]);
-        return Decision {
-            value,
-            path: Path::Exact,
-        };
+        return Decision { value, path: Path::Exact };
     }
     let guess = guess(a, b);
     if let Some(guess) = &guess
         && let Some(path) = confirm(a, b, guess)
     {
-        return Decision {
-            value: certificate_of_guess(a, guess),
-            path,
-        };
+        return Decision { value: certificate_of_guess(a, guess), path };
     }
-    Decision {
-        value: solve(a, b, guess.map_or(START, |guess| guess.basis)),
-        path: Path::Exact,
-    }
+    Decision { value: solve(a, b, guess.map_or(START, |guess| guess.basis)), path: Path::Exact }
 }
 
 /// Rows −x, x, y, z of A: multipliers (½, ½, 0, 0) start the dual method.
@@ -114,23 +101,12 @@ fn rows<N: Number>(
     let mut rows = Vec::with_capacity(2 * (a.1.normals.len() + b.1.normals.len()));
     let mut slab = |normal: &Vector<N>, weight: &N, lo: N, hi: N| {
         let [x, y, z] = normal.each_ref().map(|n| zero.minus(n));
-        rows.push(Row {
-            normal: [x, y, z, weight.clone()],
-            end: zero.minus(&lo),
-        });
+        rows.push(Row { normal: [x, y, z, weight.clone()], end: zero.minus(&lo) });
         let [x, y, z] = normal.clone();
-        rows.push(Row {
-            normal: [x, y, z, weight.clone()],
-            end: hi,
-        });
+        rows.push(Row { normal: [x, y, z, weight.clone()], end: hi });
     };
     for ((c, lo), hi) in a.1.normals.iter().zip(&a.1.lo).zip(&a.1.hi) {
-        slab(
-            &integers(*c),
-            &N::integer(1),
-            N::lift(*lo, unit_a),
-            N::lift(*hi, unit_a),
-        );
+        slab(&integers(*c), &N::integer(1), N::lift(*lo, unit_a), N::lift(*hi, unit_a));
     }
     let columns = transpose(&map.matrix);
     for ((c, lo), hi) in b.1.normals.iter().zip(&b.1.lo).zip(&b.1.hi) {
@@ -145,17 +121,10 @@ fn rows<N: Number>(
 /// The program in f64, within the precision of f64.
 fn guess(a: Posed, b: Posed) -> Option<Optimum<f64>> {
     let Approximate { matrix, offset, .. } = Approximate::over(b, a);
-    let map = Relative {
-        matrix,
-        offset,
-        scale: 1.0,
-    };
+    let map = Relative { matrix, offset, scale: 1.0 };
     let rows = rows(a, &map, b, [0, 0]);
     let size = rows.iter().map(|row| row.end.abs()).fold(0.0, f64::max);
-    let effort = Effort {
-        tolerance: DIGITS * size,
-        pivots: GUESSES,
-    };
+    let effort = Effort { tolerance: DIGITS * size, pivots: GUESSES };
     maximise(&rows, START, &effort)
 }
 
@@ -186,10 +155,7 @@ fn inside<N: Number>(
     denominator: &N,
 ) -> Option<bool> {
     let map = Relative::<N>::between(b.0, a.0, unit).over(b.1, a.1);
-    let seen = add(
-        &apply(&map.matrix, numerators),
-        &scale(denominator, &map.offset),
-    );
+    let seen = add(&apply(&map.matrix, numerators), &scale(denominator, &map.offset));
     let in_a = within(a, unit, numerators, denominator)?;
     Some(in_a && within(b, unit, &seen, &denominator.times(&map.scale))?)
 }
@@ -233,10 +199,7 @@ pub(crate) fn solve(a: Posed, b: Posed, start: [usize; 4]) -> Certificate {
     let unit = common_unit(a, b);
     let map = Relative::<IBig>::between(b.0, a.0, unit).over(b.1, a.1);
     let rows = rows(a, &map, b, [unit + a.1.basis_unit, unit + b.1.basis_unit]);
-    let effort = Effort {
-        tolerance: IBig::ZERO,
-        pivots: usize::MAX,
-    };
+    let effort = Effort { tolerance: IBig::ZERO, pivots: usize::MAX };
     let optimum = maximise(&rows, start, &effort).or_else(|| maximise(&rows, START, &effort));
     let optimum =
         optimum.unwrap_or_else(|| unreachable!("integers know every sign and START is a start"));
@@ -245,11 +208,7 @@ pub(crate) fn solve(a: Posed, b: Posed, start: [usize; 4]) -> Certificate {
     }
     let [x, y, z, _] = optimum.solution;
     let unit = unit + a.1.basis_unit;
-    Certificate::Common {
-        numerators: [x, y, z],
-        denominator: optimum.determinant,
-        unit,
-    }
+    Certificate::Common { numerators: [x, y, z], denominator: optimum.determinant, unit }
 }
 
 /// The multipliers' sum of A's own normals: what A and B are separated along.
@@ -270,20 +229,12 @@ fn point_of(guess: &Optimum<f64>) -> Vector<f64> {
 
 fn certificate_of_guess(a: Posed, guess: &Optimum<f64>) -> Certificate {
     let separated = guess.solution[3] < 0.0;
-    let vector = if separated {
-        axis_of(a, guess)
-    } else {
-        point_of(guess)
-    };
+    let vector = if separated { axis_of(a, guess) } else { point_of(guess) };
     let unit = unit_of(vector);
     let numerators = vector.map(|x| IBig::lift(x, unit));
     if separated {
         Certificate::Separated(numerators)
     } else {
-        Certificate::Common {
-            numerators,
-            denominator: IBig::ONE,
-            unit,
-        }
+        Certificate::Common { numerators, denominator: IBig::ONE, unit }
     }
 }

@@ -62,14 +62,9 @@ impl Bounded {
         points: impl IntoIterator<Item = &'a Vector<f64>>,
         error: f64,
     ) -> Self {
-        let reach = points
-            .into_iter()
-            .map(|p| largest(&sub(p, origin)))
-            .fold(0.0, f64::max);
+        let reach = points.into_iter().map(|p| largest(&sub(p, origin))).fold(0.0, f64::max);
         let m = reach + 2.0 * error;
-        Self {
-            bound: (160.0 * error + 256.0 * f64::EPSILON * m) * m * m,
-        }
+        Self { bound: (160.0 * error + 256.0 * f64::EPSILON * m) * m * m }
     }
 }
 

@@ -109,11 +109,7 @@ impl Segment {
     fn new(p: &Vector<f64>, q: &Vector<f64>, error: f64) -> Self {
         let middle = [0, 1, 2].map(|i| 0.5 * (p[i] + q[i]));
         let half = [0, 1, 2].map(|i| 0.5 * (q[i] - p[i]));
-        Self {
-            middle,
-            half,
-            slack: 2.0 * error + 16.0 * f64::EPSILON * largest(q),
-        }
+        Self { middle, half, slack: 2.0 * error + 16.0 * f64::EPSILON * largest(q) }
     }
 
     fn misses(&self, node: &Node) -> bool {

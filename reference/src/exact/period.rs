@@ -104,10 +104,7 @@ mod tests {
         assert_eq!(found(along_x(9.0, 9.999), Some(10.0)), []);
         assert_eq!(found(along_x(-99.0, -98.0), Some(10.0)), [10]);
         assert_eq!(found(along_x(1.0, 10.0), Some(10.0)), [-1, 0]);
-        assert_eq!(
-            found(along_x(0.0, 2.0), Some(0.5)),
-            [-4, -3, -2, -1, 0, 1, 2]
-        );
+        assert_eq!(found(along_x(0.0, 2.0), Some(0.5)), [-4, -3, -2, -1, 0, 1, 2]);
         // 0.1 is not a tenth, so ten of it are more than 1.
         assert_eq!(found(along_x(2.0, 3.0), Some(0.1)).last(), Some(&-10));
         assert_eq!(found(along_x(2.0, 3.0), Some(0.1)).first(), Some(&-29));
@@ -133,10 +130,7 @@ mod tests {
         let point = common_point(along_x(0.375, 0.4375), along_x(0.5, 0.5), periods);
         let [x, ..] = point.map_or_else(Default::default, |point| point.0);
         assert_eq!(x, RBig::lift(0.5, 0) - RBig::lift(0.1, 0));
-        assert_eq!(
-            common_point(along_x(0.0, 0.0625), along_x(0.375, 0.375), periods),
-            None
-        );
+        assert_eq!(common_point(along_x(0.0, 0.0625), along_x(0.375, 0.375), periods), None);
     }
 
     #[test]

@@ -53,11 +53,7 @@ impl Polytope {
         let normals = slabs.directions.coefficients();
         let (lo, hi) = (slabs.lo.len(), slabs.hi.len());
         if lo != normals.len() || hi != normals.len() {
-            return Err(InvalidInput::SlabCount {
-                slabs: normals.len(),
-                lo,
-                hi,
-            });
+            return Err(InvalidInput::SlabCount { slabs: normals.len(), lo, hi });
         }
         if !slabs.lo.iter().chain(&slabs.hi).all(|x| x.is_finite()) {
             return Err(InvalidInput::NotFinite("a slab"));
@@ -71,21 +67,8 @@ impl Polytope {
         let planes = Planes::new(&normals, &lo, &hi, unit);
         let (corners, edges) = planes.corners_and_edges();
         let round = |x: &IBig| x.to_f64().value() / f64::from(DENOMINATOR) * power_of_two(unit);
-        let rounded = corners
-            .iter()
-            .map(|corner| [0, 1, 2].map(|i| round(&corner[i])))
-            .collect();
-        Ok(Self {
-            basis,
-            basis_unit,
-            normals,
-            lo,
-            hi,
-            edges,
-            corners,
-            unit,
-            rounded,
-        })
+        let rounded = corners.iter().map(|corner| [0, 1, 2].map(|i| round(&corner[i]))).collect();
+        Ok(Self { basis, basis_unit, normals, lo, hi, edges, corners, unit, rounded })
     }
 
     /// ‖b‖², one for all three columns.
@@ -102,10 +85,7 @@ impl Polytope {
     /// The corners 12ξ where lengths are counted in 2^unit.
     pub fn lift_corners<N: Number>(&self, unit: i32) -> Vec<Vector<N>> {
         let lift = |x: &IBig| N::lift_integer(x, self.unit, unit + self.basis_unit);
-        self.corners
-            .iter()
-            .map(|corner| corner.each_ref().map(lift))
-            .collect()
+        self.corners.iter().map(|corner| corner.each_ref().map(lift)).collect()
     }
 
     /// Body-frame position of the coordinates ξ: x = Σ_j ξ_j b_j/‖b‖².
@@ -117,10 +97,7 @@ impl Polytope {
     /// Body-frame directions of integer vectors in ξ.
     pub fn directions(&self, integer: &[[i32; 3]]) -> Vec<Vector<f64>> {
         let columns = transpose(&self.basis);
-        integer
-            .iter()
-            .map(|c| apply(&columns, &integers(*c)))
-            .collect()
+        integer.iter().map(|c| apply(&columns, &integers(*c))).collect()
     }
 }
 
@@ -134,11 +111,7 @@ fn check_basis(basis: &Matrix<f64>) -> Result<(), InvalidInput> {
     let norms = [0, 1, 2].map(|i| dot(&exact[i], &exact[i]));
     let crossed = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| dot(&exact[i], &exact[j]));
     let one_norm = norms[0] == norms[1] && norms[1] == norms[2] && !norms[0].is_zero();
-    if one_norm && crossed.iter().all(IBig::is_zero) {
-        Ok(())
-    } else {
-        Err(InvalidInput::Basis)
-    }
+    if one_norm && crossed.iter().all(IBig::is_zero) { Ok(()) } else { Err(InvalidInput::Basis) }
 }
 
 /// The slabs as integers: plane 2i is lo_i, plane 2i + 1 is hi_i.
@@ -156,11 +129,7 @@ struct Corner {
 impl<'a> Planes<'a> {
     fn new(normals: &'a [[i32; 3]], lo: &[f64], hi: &[f64], unit: i32) -> Self {
         let lift = |x: f64| IBig::lift(x, unit) * IBig::from(DENOMINATOR);
-        let ends = lo
-            .iter()
-            .zip(hi)
-            .map(|(lo, hi)| [lift(*lo), lift(*hi)])
-            .collect();
+        let ends = lo.iter().zip(hi).map(|(lo, hi)| [lift(*lo), lift(*hi)]).collect();
         Self { normals, ends }
     }
 
@@ -175,20 +144,13 @@ impl<'a> Planes<'a> {
             }
         }
         let edges = self.edge_directions(&corners);
-        (
-            corners.into_iter().map(|corner| corner.position).collect(),
-            edges,
-        )
+        (corners.into_iter().map(|corner| corner.position).collect(), edges)
     }
 
     /// The up to eight feasible corners of three slabs: ξ = Σ h_i (c_j × c_k)/det.
     fn corners_of(&self, slabs: [usize; 3], corners: &mut Vec<Corner>) {
         let [a, b, c] = slabs.map(|i| self.normals[i]);
-        let normals = [
-            cross_product(b, c),
-            cross_product(c, a),
-            cross_product(a, b),
-        ];
+        let normals = [cross_product(b, c), cross_product(c, a), cross_product(a, b)];
         let determinant: i32 = a.iter().zip(&normals[0]).map(|(x, y)| x * y).sum();
         if determinant == 0 {
             return;
@@ -267,10 +229,7 @@ fn gcd(a: i32, b: i32) -> i32 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(
-        clippy::unwrap_used,
-        reason = "a test that cannot build its input has failed"
-    )]
+    #![allow(clippy::unwrap_used, reason = "a test that cannot build its input has failed")]
     use super::*;
     use crate::volume::DirectionSet;
 
@@ -285,13 +244,7 @@ mod tests {
         };
         let hi: Vec<f32> = directions.coefficients().iter().map(length).collect();
         let lo = hi.iter().map(|x| -x).collect();
-        Polytope::new(&Slabs {
-            directions,
-            basis: AXES,
-            lo,
-            hi,
-        })
-        .unwrap()
+        Polytope::new(&Slabs { directions, basis: AXES, lo, hi }).unwrap()
     }
 
     /// Corners and edge lines are those of the solids.
@@ -316,11 +269,7 @@ mod tests {
         slabs.hi[3] = 50.0;
         slabs.lo[3] = -50.0;
         let polytope = Polytope::new(&slabs).unwrap();
-        let top = polytope
-            .rounded
-            .iter()
-            .map(|xi| xi[0] + xi[1])
-            .fold(f64::MIN, f64::max);
+        let top = polytope.rounded.iter().map(|xi| xi[0] + xi[1]).fold(f64::MIN, f64::max);
         assert!(top < 50.0, "x + y ≤ {top}");
     }
 
@@ -342,12 +291,8 @@ mod tests {
 
     #[test]
     fn inexact_bases_are_refused() {
-        let mut slabs = Slabs {
-            directions: DirectionSet::K6,
-            basis: AXES,
-            lo: vec![0.0; 3],
-            hi: vec![1.0; 3],
-        };
+        let mut slabs =
+            Slabs { directions: DirectionSet::K6, basis: AXES, lo: vec![0.0; 3], hi: vec![1.0; 3] };
         slabs.basis[1][0] = 1e-30;
         assert_eq!(Polytope::new(&slabs).unwrap_err(), InvalidInput::Basis);
     }

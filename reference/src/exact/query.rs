@@ -27,21 +27,13 @@ impl ExactLine {
     #[must_use]
     pub fn segment(from: Vector<f64>, to: Vector<f64>) -> Self {
         let [from, to] = [from, to].map(lifted);
-        Self {
-            direction: sub(&to, &from),
-            from,
-            last: Some(RBig::ONE),
-        }
+        Self { direction: sub(&to, &from), from, last: Some(RBig::ONE) }
     }
 
     /// The ray from a point in a direction.
     #[must_use]
     pub fn ray(origin: Vector<f64>, direction: Vector<f64>) -> Self {
-        Self {
-            from: lifted(origin),
-            direction: lifted(direction),
-            last: None,
-        }
+        Self { from: lifted(origin), direction: lifted(direction), last: None }
     }
 
     fn point(&self, s: &RBig) -> Rational {
@@ -127,10 +119,7 @@ fn line_meets_triangle(line: &ExactLine, triangle: &[Rational; 3]) -> Option<RBi
     // In the triangle's plane, or of a triangle without one, it comes in by an edge or a corner.
     let along = square_of(&line.direction);
     for (p, q) in [(a, b), (b, c), (c, a)] {
-        at.extend(crossing_parameter(
-            [&line.from, &line.direction],
-            [p, &sub(q, p)],
-        ));
+        at.extend(crossing_parameter([&line.from, &line.direction], [p, &sub(q, p)]));
         if !along.is_zero() {
             at.push(dot(&sub(p, &line.from), &line.direction) / &along);
         }
@@ -161,9 +150,7 @@ fn square_of_distance(point: &Rational, triangle: &[Rational; 3]) -> RBig {
         let s = s.larger(&RBig::ZERO).smaller(&RBig::ONE);
         square_of(&sub(point, &add(p, &scale(&s, &edge))))
     };
-    of_edge(a, b)
-        .smaller(&of_edge(b, c))
-        .smaller(&of_edge(c, a))
+    of_edge(a, b).smaller(&of_edge(b, c)).smaller(&of_edge(c, a))
 }
 
 fn square_of(v: &Rational) -> RBig {
@@ -199,14 +186,7 @@ mod tests {
         let vertices = (0..8).map(corner).collect();
         let mut faces = vec![[0, 2, 1], [1, 2, 3]];
         if is_whole {
-            faces.extend([
-                [4, 5, 6],
-                [5, 7, 6],
-                [0, 1, 4],
-                [1, 5, 4],
-                [2, 6, 3],
-                [3, 6, 7],
-            ]);
+            faces.extend([[4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7]]);
             faces.extend([[0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]]);
         }
         Shape::of_mesh(vertices, faces).unwrap()
@@ -243,65 +223,25 @@ mod tests {
         let pose = Pose::IDENTITY;
         let segment = ExactLine::segment;
         for (line, on_whole, on_face) in [
-            (
-                segment([-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
-                Some((1, 3)),
-                None,
-            ),
-            (
-                segment([-2.0, 0.0, 0.0], [-1.0, 0.0, 0.0]),
-                Some((1, 1)),
-                None,
-            ),
+            (segment([-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]), Some((1, 3)), None),
+            (segment([-2.0, 0.0, 0.0], [-1.0, 0.0, 0.0]), Some((1, 1)), None),
             (segment([-2.0, 0.0, 0.0], [-1.25, 0.0, 0.0]), None, None),
             // From within; from a point.
             (segment([0.5; 3], [9.0; 3]), Some((0, 1)), None),
             (segment([0.5; 3], [0.5; 3]), Some((0, 1)), None),
             // Over an edge, of which it has one point.
-            (
-                ExactLine::ray([0.0, -2.0, -2.0], [0.0, 1.0, -1.0]),
-                None,
-                None,
-            ),
-            (
-                ExactLine::ray([-2.0, -2.0, 0.0], [1.0, 0.0, -1.0]),
-                None,
-                None,
-            ),
-            (
-                ExactLine::ray([-2.0, 0.0, 0.0], [1.0, 0.0, -1.0]),
-                Some((1, 1)),
-                Some((1, 1)),
-            ),
+            (ExactLine::ray([0.0, -2.0, -2.0], [0.0, 1.0, -1.0]), None, None),
+            (ExactLine::ray([-2.0, -2.0, 0.0], [1.0, 0.0, -1.0]), None, None),
+            (ExactLine::ray([-2.0, 0.0, 0.0], [1.0, 0.0, -1.0]), Some((1, 1)), Some((1, 1))),
             // In the plane of the lower face, and away from it.
-            (
-                ExactLine::ray([-4.0, 0.5, -1.0], [3.0, 0.0, 0.0]),
-                Some((1, 1)),
-                Some((1, 1)),
-            ),
-            (
-                ExactLine::ray([-4.0, 0.5, -1.0], [-3.0, 0.0, 0.0]),
-                None,
-                None,
-            ),
+            (ExactLine::ray([-4.0, 0.5, -1.0], [3.0, 0.0, 0.0]), Some((1, 1)), Some((1, 1))),
+            (ExactLine::ray([-4.0, 0.5, -1.0], [-3.0, 0.0, 0.0]), None, None),
             // Along an edge.
-            (
-                ExactLine::ray([-8.0, 1.0, -1.0], [1.0, 0.0, 0.0]),
-                Some((7, 1)),
-                Some((7, 1)),
-            ),
+            (ExactLine::ray([-8.0, 1.0, -1.0], [1.0, 0.0, 0.0]), Some((7, 1)), Some((7, 1))),
         ] {
             let exact = |at: Option<(i64, i64)>| at.map(|(n, d)| fraction(n, d));
-            assert_eq!(
-                line_meets_mesh(&line, &whole, &pose),
-                exact(on_whole),
-                "{line:?}"
-            );
-            assert_eq!(
-                line_meets_mesh(&line, &face, &pose),
-                exact(on_face),
-                "{line:?}"
-            );
+            assert_eq!(line_meets_mesh(&line, &whole, &pose), exact(on_whole), "{line:?}");
+            assert_eq!(line_meets_mesh(&line, &face, &pose), exact(on_face), "{line:?}");
             assert_eq!(line_meets_box(&line, CORNERS), exact(on_whole), "{line:?}");
         }
     }

@@ -133,10 +133,6 @@ impl Approximate {
     /// might not suffice.
     pub fn error(&self, reach: f64) -> f64 {
         let size = self.stretch * reach + self.distance;
-        if size <= LARGEST {
-            MAP_ERROR * size
-        } else {
-            f64::NAN
-        }
+        if size <= LARGEST { MAP_ERROR * size } else { f64::NAN }
     }
 }

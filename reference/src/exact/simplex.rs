@@ -58,13 +58,8 @@ pub fn maximise<N: Number>(
         if pivot == 0 && multipliers.iter().any(|m| m.sign() == Some(Ordering::Less)) {
             return None;
         }
-        match entering(
-            rows,
-            &solution,
-            &inverse.determinant,
-            &effort.tolerance,
-            pivot < STEEPEST,
-        )? {
+        match entering(rows, &solution, &inverse.determinant, &effort.tolerance, pivot < STEEPEST)?
+        {
             Some(row) if pivot < effort.pivots => basis[inverse.leaving(&rows[row], basis)?] = row,
             _ => {
                 return Some(Optimum {
@@ -125,10 +120,7 @@ impl<N: Number> Inverse<N> {
         ];
         let determinant = product(a, &columns[0]);
         match determinant.sign()? {
-            Ordering::Greater => Some(Self {
-                columns,
-                determinant,
-            }),
+            Ordering::Greater => Some(Self { columns, determinant }),
             Ordering::Less => {
                 let negate = |x: N| N::integer(0).minus(&x);
                 Some(Self {
@@ -143,12 +135,8 @@ impl<N: Number> Inverse<N> {
     /// z and t where the basis rows hold with equality.
     fn solution(&self, rows: &[Row<N>], basis: [usize; 4]) -> [N; 4] {
         let ends = basis.map(|i| rows[i].end.clone());
-        [0, 1, 2, 3].map(|k| {
-            product(
-                &ends,
-                &self.columns.each_ref().map(|column| column[k].clone()),
-            )
-        })
+        [0, 1, 2, 3]
+            .map(|k| product(&ends, &self.columns.each_ref().map(|column| column[k].clone())))
     }
 
     /// λ with Σ λ_i row_i = (0, 0, 0, 1).
@@ -187,23 +175,14 @@ impl<N: Number> Inverse<N> {
 }
 
 fn product<N: Number>(a: &[N; 4], b: &[N; 4]) -> N {
-    a[0].times(&b[0])
-        .plus(&a[1].times(&b[1]))
-        .plus(&a[2].times(&b[2]))
-        .plus(&a[3].times(&b[3]))
+    a[0].times(&b[0]).plus(&a[1].times(&b[1])).plus(&a[2].times(&b[2])).plus(&a[3].times(&b[3]))
 }
 
 /// The vector whose product with x is det(x, a, b, c).
 fn perpendicular<N: Number>(a: &[N; 4], b: &[N; 4], c: &[N; 4]) -> [N; 4] {
     let minor = |i: usize, j: usize| b[i].times(&c[j]).minus(&b[j].times(&c[i]));
-    let [m01, m02, m03, m12, m13, m23] = [
-        minor(0, 1),
-        minor(0, 2),
-        minor(0, 3),
-        minor(1, 2),
-        minor(1, 3),
-        minor(2, 3),
-    ];
+    let [m01, m02, m03, m12, m13, m23] =
+        [minor(0, 1), minor(0, 2), minor(0, 3), minor(1, 2), minor(1, 3), minor(2, 3)];
     let zero = N::integer(0);
     let sum = |x: N, y: N, z: N| x.minus(&y).plus(&z);
     [

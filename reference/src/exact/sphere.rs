@@ -29,11 +29,7 @@ pub fn overlap_balls(a: (&Ball, &Pose), b: (&Ball, &Pose)) -> Decision<bool> {
 /// The largest unit of length such that all lengths of both are multiples of it.
 pub(crate) fn common_unit(a: (&Ball, &Pose), b: (&Ball, &Pose)) -> i32 {
     let unit = |(ball, pose): (&Ball, &Pose)| {
-        let lengths = ball
-            .centre
-            .map(f64::from)
-            .into_iter()
-            .chain(pose.translation());
+        let lengths = ball.centre.map(f64::from).into_iter().chain(pose.translation());
         unit_of(lengths.chain([f64::from(ball.radius)]))
     };
     unit(a).min(unit(b))
@@ -43,13 +39,8 @@ pub(crate) fn judge<N: Number>(a: (&Ball, &Pose), b: (&Ball, &Pose), unit: i32) 
     let relative = Relative::<N>::between(a.1, b.1, unit);
     let lift = |x: f32| N::lift(f64::from(x), unit);
     let [centre_a, centre_b] = [a.0.centre, b.0.centre].map(|c| c.map(f64::from));
-    let d = sub(
-        &relative.seen(&centre_b, unit),
-        &relative.own(&centre_a, unit),
-    );
-    let reach = relative
-        .scale
-        .times(&lift(a.0.radius).plus(&lift(b.0.radius)));
+    let d = sub(&relative.seen(&centre_b, unit), &relative.own(&centre_a, unit));
+    let reach = relative.scale.times(&lift(a.0.radius).plus(&lift(b.0.radius)));
     Some(reach.times(&reach).minus(&dot(&d, &d)).sign()? != Ordering::Less)
 }
 
@@ -57,11 +48,7 @@ pub(crate) fn filter(a: (&Ball, &Pose), b: (&Ball, &Pose)) -> Option<bool> {
     let relative = Approximate::between(a.1, b.1);
     let (centre_a, centre_b) = (a.0.centre.map(f64::from), b.0.centre.map(f64::from));
     let d = sub(&relative.map(&centre_b), &centre_a);
-    compare(
-        &d,
-        relative.error(largest(&centre_b)),
-        f64::from(a.0.radius) + f64::from(b.0.radius),
-    )
+    compare(&d, relative.error(largest(&centre_b)), f64::from(a.0.radius) + f64::from(b.0.radius))
 }
 
 /// ‖d‖ ≤ reach? in f64. d̂² − r̂² is off by less than 6δ|d|∞ + 3δ² from the coordinates and 4u(d² +

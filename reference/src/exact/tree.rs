@@ -37,10 +37,7 @@ pub struct Tree {
 impl Tree {
     /// Splits at the median along the longest side.
     pub fn new(triangles: &[[Vector<f64>; 3]]) -> Self {
-        let mut tree = Self {
-            nodes: Vec::new(),
-            order: (0..triangles.len() as u32).collect(),
-        };
+        let mut tree = Self { nodes: Vec::new(), order: (0..triangles.len() as u32).collect() };
         if !triangles.is_empty() {
             let mut order = std::mem::take(&mut tree.order);
             tree.build(triangles, &mut order, 0);
@@ -53,29 +50,17 @@ impl Tree {
         let corners = order.iter().flat_map(|t| &triangles[*t as usize]);
         let empty = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         let (lo, hi) = corners.fold(empty, |(lo, hi), p| {
-            (
-                [0, 1, 2].map(|i| lo[i].min(p[i])),
-                [0, 1, 2].map(|i| hi[i].max(p[i])),
-            )
+            ([0, 1, 2].map(|i| lo[i].min(p[i])), [0, 1, 2].map(|i| hi[i].max(p[i])))
         });
         let centre = [0, 1, 2].map(|i| 0.5 * (lo[i] + hi[i]));
         let half = [0, 1, 2].map(|i| (hi[i] - centre[i]).max(centre[i] - lo[i]).next_up());
         let content = Content::Triangles(first, first + order.len() as u32);
-        self.nodes.push(Node {
-            centre,
-            half,
-            content,
-        });
+        self.nodes.push(Node { centre, half, content });
         if order.len() <= LEAF {
             return;
         }
         let longest = (0..3).fold(0, |best, i| if half[i] > half[best] { i } else { best });
-        let place = |t: &u32| {
-            triangles[*t as usize]
-                .iter()
-                .map(|p| p[longest])
-                .sum::<f64>()
-        };
+        let place = |t: &u32| triangles[*t as usize].iter().map(|p| p[longest]).sum::<f64>();
         let middle = order.len() / 2;
         order.select_nth_unstable_by(middle, |s, t| place(s).total_cmp(&place(t)).then(s.cmp(t)));
         let (left, right) = order.split_at_mut(middle);

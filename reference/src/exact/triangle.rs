@@ -21,11 +21,7 @@ pub fn meet(
     interval: impl FnOnce() -> [Triangle<Vector<Interval>>; 2],
     exact: impl FnOnce() -> [Triangle<Vector<IBig>>; 2],
 ) -> Decision<bool> {
-    cascade(
-        || filter(rounded, error),
-        || enclosed(&interval()),
-        || integral(&exact()),
-    )
+    cascade(|| filter(rounded, error), || enclosed(&interval()), || integral(&exact()))
 }
 
 /// f64: boxes apart, then the signs.
@@ -120,11 +116,7 @@ pub fn crossing<S: Side>(
         return Some(Some(false));
     }
     let signs = [ends[0]?, ends[1]?, passes[0]?, passes[1]?, passes[2]?];
-    Some(if signs.contains(&Ordering::Equal) {
-        None
-    } else {
-        Some(true)
-    })
+    Some(if signs.contains(&Ordering::Equal) { None } else { Some(true) })
 }
 
 #[cfg(test)]
@@ -138,24 +130,12 @@ mod tests {
         let t = [[0, 0, 0], [4, 0, 0], [0, 4, 0]].map(point);
         let crossing = |p, q| crossing(&Known::stage(), [&point(p), &point(q)], &t);
         assert_eq!(crossing([1, 1, -1], [1, 1, 1]), Some(Some(true)));
-        assert_eq!(
-            crossing([1, 1, 1], [1, 1, 2]),
-            Some(Some(false)),
-            "one side"
-        );
+        assert_eq!(crossing([1, 1, 1], [1, 1, 2]), Some(Some(false)), "one side");
         assert_eq!(crossing([5, 5, -1], [5, 5, 1]), Some(Some(false)), "beside");
-        assert_eq!(
-            crossing([5, 5, 0], [5, 5, 1]),
-            Some(Some(false)),
-            "beside, from the plane"
-        );
+        assert_eq!(crossing([5, 5, 0], [5, 5, 1]), Some(Some(false)), "beside, from the plane");
         assert_eq!(crossing([2, 0, -1], [2, 0, 1]), Some(None), "an edge");
         assert_eq!(crossing([4, 0, -1], [4, 0, 1]), Some(None), "a corner");
         assert_eq!(crossing([-1, 1, 0], [5, 1, 0]), Some(None), "in the plane");
-        assert_eq!(
-            crossing([1, 1, 0], [1, 1, 3]),
-            Some(None),
-            "from the surface"
-        );
+        assert_eq!(crossing([1, 1, 0], [1, 1, 3]), Some(None), "from the surface");
     }
 }

@@ -36,11 +36,8 @@ impl<'a> View<'a> {
     /// B as A sees it.
     pub fn new(a: Posed<'a>, b: Posed<'a>) -> Self {
         let map = Approximate::between(a.1, b.1);
-        let unit = |(mesh, pose): Posed| {
-            mesh.unit
-                .min(mesh.ray_unit())
-                .min(unit_of(pose.translation()))
-        };
+        let unit =
+            |(mesh, pose): Posed| mesh.unit.min(mesh.ray_unit()).min(unit_of(pose.translation()));
         Self {
             a: a.0,
             b: b.0,
@@ -54,32 +51,25 @@ impl<'a> View<'a> {
     }
 
     fn intervals(&self) -> &Relative<Interval> {
-        self.intervals
-            .get_or_init(|| Relative::between(&self.poses[0], &self.poses[1], self.unit))
+        self.intervals.get_or_init(|| Relative::between(&self.poses[0], &self.poses[1], self.unit))
     }
 
     fn integers(&self) -> &Relative<IBig> {
-        self.integers
-            .get_or_init(|| Relative::between(&self.poses[0], &self.poses[1], self.unit))
+        self.integers.get_or_init(|| Relative::between(&self.poses[0], &self.poses[1], self.unit))
     }
 
     /// Whether triangle `a` of A meets triangle `b` of B, whose mapped corners are `mapped`.
     pub fn triangles_meet(&self, a: u32, b: u32, mapped: &Triangle<Vector<f64>>) -> Decision<bool> {
         let rounded = [&self.a.triangles[a as usize], mapped];
-        let (interval, exact) = (
-            || self.corners(self.intervals(), a, b),
-            || self.corners(self.integers(), a, b),
-        );
+        let (interval, exact) =
+            (|| self.corners(self.intervals(), a, b), || self.corners(self.integers(), a, b));
         triangle::meet(rounded, self.error, interval, exact)
     }
 
     /// Both triangles' corners at a stage, as A sees them, times its scale.
     fn corners<N: Number>(&self, map: &Relative<N>, a: u32, b: u32) -> [Triangle<Vector<N>>; 2] {
         let (a, b) = (&self.a.triangles[a as usize], &self.b.triangles[b as usize]);
-        [
-            a.each_ref().map(|p| map.own(p, self.unit)),
-            b.each_ref().map(|p| map.seen(p, self.unit)),
-        ]
+        [a.each_ref().map(|p| map.own(p, self.unit)), b.each_ref().map(|p| map.seen(p, self.unit))]
     }
 
     /// Whether the segment from a point of B's frame, mapped to `mapped`, to a point of A's frame
@@ -110,10 +100,6 @@ impl<'a> View<'a> {
         t: &Triangle<Vector<f64>>,
     ) -> Option<Option<bool>> {
         let segment = [&map.seen(from, self.unit), &map.own(to, self.unit)];
-        triangle::crossing(
-            &Known::stage(),
-            segment,
-            &t.each_ref().map(|p| map.own(p, self.unit)),
-        )
+        triangle::crossing(&Known::stage(), segment, &t.each_ref().map(|p| map.own(p, self.unit)))
     }
 }

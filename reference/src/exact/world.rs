@@ -39,20 +39,13 @@ impl<'a> Extents<'a> {
         let ends = extents(body, directions);
         let reach = body.shape.points().map(|p| largest(&p)).fold(0.0, f64::max);
         let directions = directions.coefficients();
-        Self {
-            body: *body,
-            directions,
-            ends,
-            error: HEIGHT_ERROR * reach,
-        }
+        Self { body: *body, directions, ends, error: HEIGHT_ERROR * reach }
     }
 
     /// The vertices that may be the highest (`end` = 1) or lowest (0) along a direction.
     fn candidates(&self, n: usize, end: usize) -> Vec<Vector<f64>> {
-        let direction = apply(
-            &transpose(&self.body.pose.rotation()),
-            &integers(self.directions[n]),
-        );
+        let direction =
+            apply(&transpose(&self.body.pose.rotation()), &integers(self.directions[n]));
         let near =
             |p: &Vector<f64>| (dot(&direction, p) - self.ends[n][end]).abs() <= 4.0 * self.error;
         self.body.shape.points().filter(near).collect()
@@ -78,11 +71,7 @@ pub fn overlap_extents(a: &Extents, b: &Extents) -> Decision<bool> {
     let open = || (0..gaps.len()).filter(|n| !closed(*n));
     let filter = || {
         let apart = gaps.iter().any(|gap| *gap > bound);
-        if apart {
-            Some(true)
-        } else {
-            open().next().is_none().then_some(false)
-        }
+        if apart { Some(true) } else { open().next().is_none().then_some(false) }
     };
     cascade(
         filter,
@@ -110,9 +99,7 @@ fn separates<N: Number>(a: &Extents, b: &Extents, n: usize) -> Option<bool> {
     let [qa, qb] = poses.map(quaternion::<N>);
     let [ta, tb] = poses.map(|pose| pose.translation().map(|x| N::lift(x, unit)));
     let (norm_a, norm_b) = (norm_squared(&qa), norm_squared(&qb));
-    let shift = norm_a
-        .times(&norm_b)
-        .times(&dot(&direction, &sub(&tb, &ta)));
+    let shift = norm_a.times(&norm_b).times(&dot(&direction, &sub(&tb, &ta)));
     let along = |q, norm| scale(norm, &apply(&transpose(&rotation(q)), &direction));
     let fit_a = fit(&along(&qa, &norm_b), &candidates[0], unit);
     let fit_b = fit(&along(&qb, &norm_a), &candidates[1], unit);

@@ -16,10 +16,7 @@ pub use ordop::Overlap;
 /// The interval that points cover along an axis; empty (∞, −∞) for none.
 pub fn interval(axis: &Vector<f64>, points: &[Vector<f64>]) -> [f64; 2] {
     let empty = [f64::INFINITY, f64::NEG_INFINITY];
-    points
-        .iter()
-        .map(|p| dot(axis, p))
-        .fold(empty, |[lo, hi], h| [lo.min(h), hi.max(h)])
+    points.iter().map(|p| dot(axis, p)).fold(empty, |[lo, hi], h| [lo.min(h), hi.max(h)])
 }
 
 /// Whether two intervals share no number.
@@ -33,6 +30,5 @@ pub fn separated<'a>(
     a: &[Vector<f64>],
     b: &[Vector<f64>],
 ) -> bool {
-    axes.into_iter()
-        .any(|axis| apart(interval(axis, a), interval(axis, b)))
+    axes.into_iter().any(|axis| apart(interval(axis, a), interval(axis, b)))
 }

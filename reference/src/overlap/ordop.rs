@@ -45,13 +45,7 @@ impl TurnedPolytope {
         let turn =
             |vectors: Vec<Vector<f64>>| vectors.iter().map(|v| apply(&rotation, v)).collect();
         Self {
-            corners: turn(
-                polytope
-                    .rounded
-                    .iter()
-                    .map(|xi| polytope.position(xi))
-                    .collect(),
-            ),
+            corners: turn(polytope.rounded.iter().map(|xi| polytope.position(xi)).collect()),
             normals: turn(polytope.directions(&polytope.normals)),
             edges: turn(polytope.directions(&polytope.edges)),
         }
@@ -76,11 +70,7 @@ pub fn overlap_turned(
 ) -> bool {
     let corners_b: Vec<_> = b.corners.iter().map(|x| add(x, delta)).collect();
     let apart_along = |axes: &[Vector<f64>]| separated(axes, &a.corners, &corners_b);
-    let crossed = || {
-        a.edges
-            .iter()
-            .flat_map(|ea| b.edges.iter().map(move |eb| cross(ea, eb)))
-    };
+    let crossed = || a.edges.iter().flat_map(|ea| b.edges.iter().map(move |eb| cross(ea, eb)));
     let apart = match test {
         Overlap::OneSided => apart_along(&a.normals),
         Overlap::TwoSided => apart_along(&a.normals) || apart_along(&b.normals),

@@ -10,21 +10,13 @@ use crate::volume::DirectionSet;
 pub fn extents(body: &Body, directions: DirectionSet) -> Vec<[f64; 2]> {
     let rotation = body.pose.rotation();
     let turned: Vec<_> = body.shape.points().map(|x| apply(&rotation, &x)).collect();
-    world_directions(directions)
-        .iter()
-        .map(|d| interval(d, &turned))
-        .collect()
+    world_directions(directions).iter().map(|d| interval(d, &turned)).collect()
 }
 
 /// Whether the re-fitted k-DOPs overlap.
 pub fn overlap(a: &Body, b: &Body, directions: DirectionSet) -> bool {
     let delta = separation(&a.pose, &b.pose);
-    overlap_extents(
-        &extents(a, directions),
-        &extents(b, directions),
-        &delta,
-        directions,
-    )
+    overlap_extents(&extents(a, directions), &extents(b, directions), &delta, directions)
 }
 
 /// [`overlap`] of extents already fitted, B's origin at `delta` from A's.
@@ -34,17 +26,11 @@ pub fn overlap_extents(
     delta: &Vector<f64>,
     directions: DirectionSet,
 ) -> bool {
-    let shifts = world_directions(directions)
-        .into_iter()
-        .map(|d| dot(&d, delta));
+    let shifts = world_directions(directions).into_iter().map(|d| dot(&d, delta));
     let mut slabs = a.iter().zip(b).zip(shifts);
     !slabs.any(|((a, b), shift)| apart(*a, [b[0] + shift, b[1] + shift]))
 }
 
 fn world_directions(directions: DirectionSet) -> Vec<Vector<f64>> {
-    directions
-        .coefficients()
-        .into_iter()
-        .map(integers)
-        .collect()
+    directions.coefficients().into_iter().map(integers).collect()
 }

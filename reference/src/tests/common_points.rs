@@ -21,16 +21,11 @@ fn in_slabs(body: &Body, point: &Point) -> bool {
     let slabs = &body.shape.slabs;
     let basis = slabs.basis.map(rational3);
     let ends = slabs.lo.iter().zip(&slabs.hi);
-    slabs
-        .directions
-        .coefficients()
-        .iter()
-        .zip(ends)
-        .all(|(c, (lo, hi))| {
-            let height = (0..3).map(|j| RBig::from(c[j]) * dot(&basis[j], &x));
-            let height = height.fold(RBig::ZERO, |sum, part| sum + part);
-            rational(f64::from(*lo)) <= height && height <= rational(f64::from(*hi))
-        })
+    slabs.directions.coefficients().iter().zip(ends).all(|(c, (lo, hi))| {
+        let height = (0..3).map(|j| RBig::from(c[j]) * dot(&basis[j], &x));
+        let height = height.fold(RBig::ZERO, |sum, part| sum + part);
+        rational(f64::from(*lo)) <= height && height <= rational(f64::from(*hi))
+    })
 }
 
 /// Whether the point is within the box that a mesh's vertices span in the body frame: exact for a
@@ -44,11 +39,7 @@ fn in_cuboid(body: &Body, half: [f32; 3], point: &Point) -> bool {
 }
 
 fn body(shape: &Shape, pose: Pose) -> Body<'_> {
-    Body {
-        shape,
-        pose,
-        dynamic: true,
-    }
+    Body { shape, pose, dynamic: true }
 }
 
 /// There is a common point whenever bodies meet and it is in both.
@@ -66,10 +57,7 @@ fn meeting_bodies_have_common_points() {
         let b = body(&shapes[n / 2 % 2], draws.pose(1.5));
         let answers = [
             (sphere::overlap(&a, &b).value, of_balls(&a, &b)),
-            (
-                ordop::overlap(&a, &b, Overlap::Full).value,
-                of_slabs(&a, &b),
-            ),
+            (ordop::overlap(&a, &b, Overlap::Full).value, of_slabs(&a, &b)),
             (meeting::overlap(&a, &b).meets, of_meshes(&a, &b)),
         ];
         for (claim, (meets, point)) in answers.into_iter().enumerate() {
@@ -89,26 +77,14 @@ fn meeting_bodies_have_common_points() {
             }
         }
     }
-    assert!(
-        met.iter().all(|n| *n > 15) && apart.iter().all(|n| *n > 10),
-        "{met:?} {apart:?}"
-    );
+    assert!(met.iter().all(|n| *n > 15) && apart.iter().all(|n| *n > 10), "{met:?} {apart:?}");
 }
 
 /// Bodies that touch in a corner an edge or a face share a point there.
 #[test]
 fn touching_bodies_share_the_contact_point() {
-    let cube = shape(
-        cuboid([1.0; 3]),
-        DirectionSet::K6,
-        exact_basis([0, 0, 0, 1]),
-    );
-    for t in [
-        [2.0, 2.0, 2.0],
-        [2.0, 2.0, 0.5],
-        [2.0, 0.5, 0.25],
-        [0.25; 3],
-    ] {
+    let cube = shape(cuboid([1.0; 3]), DirectionSet::K6, exact_basis([0, 0, 0, 1]));
+    for t in [[2.0, 2.0, 2.0], [2.0, 2.0, 0.5], [2.0, 0.5, 0.25], [0.25; 3]] {
         let a = body(&cube, Pose::IDENTITY);
         let b = body(&cube, Pose::new([0.0, 0.0, 0.0, 2.0], t).unwrap());
         let point = of_meshes(&a, &b).unwrap();

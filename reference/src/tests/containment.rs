@@ -43,33 +43,17 @@ fn contact_is_containment_to_the_bit() {
     for exponent in [-147, 0, 57] {
         let scale = power_of_two(exponent) as f32;
         let vertex = [[2.0, 3.0, 6.0].map(|x: f32| x * scale)];
-        let ball = |radius: f32| Ball {
-            centre: [0.0; 3],
-            radius,
-        };
+        let ball = |radius: f32| Ball { centre: [0.0; 3], radius };
         let turned = Pose::new([1e-18, 2e-18, 0.0, -1e-18], [0.0; 3]).unwrap();
         for pose in [Pose::IDENTITY, turned] {
             assert_eq!(check_ball(&ball(7.0 * scale), &vertex, &pose), Ok(()));
             let less = (7.0 * scale).next_down();
-            assert_eq!(
-                check_ball(&ball(less), &vertex, &pose),
-                Err(Breach::Ball { vertex: 0 })
-            );
+            assert_eq!(check_ball(&ball(less), &vertex, &pose), Err(Breach::Ball { vertex: 0 }));
         }
-        let inner = Ball {
-            centre: vertex[0],
-            radius: scale,
-        };
+        let inner = Ball { centre: vertex[0], radius: scale };
         assert!(ball_in_ball(&ball(8.0 * scale), &inner, &turned));
-        assert!(!ball_in_ball(
-            &ball((8.0 * scale).next_down()),
-            &inner,
-            &turned
-        ));
-        let concentric = Ball {
-            radius: 2.0 * scale,
-            ..ball(0.0)
-        };
+        assert!(!ball_in_ball(&ball((8.0 * scale).next_down()), &inner, &turned));
+        let concentric = Ball { radius: 2.0 * scale, ..ball(0.0) };
         assert!(!ball_in_ball(&ball(scale), &concentric, &turned));
         assert!(ball_in_ball(&concentric, &concentric, &turned));
         for direction in DirectionSet::ALL {
@@ -86,19 +70,11 @@ fn contact_is_containment_to_the_bit() {
 
 #[test]
 fn directions_that_round_are_named() {
-    let with = |basis| Slabs {
-        directions: DirectionSet::K18,
-        basis,
-        lo: vec![0.0; 9],
-        hi: vec![0.0; 9],
-    };
+    let with =
+        |basis| Slabs { directions: DirectionSet::K18, basis, lo: vec![0.0; 9], hi: vec![0.0; 9] };
     assert_eq!(check_directions(&with(exact_basis([3, 1, -2, 11]))), Ok(()));
     // Exact columns, but their sum needs 25 bits.
-    let long = with([
-        [1.0, 0.0, 0.0],
-        [power_of_two(-24) as f32, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-    ]);
+    let long = with([[1.0, 0.0, 0.0], [power_of_two(-24) as f32, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     assert_eq!(check_directions(&long), Err(Breach::Direction { slab: 3 }));
 }
 

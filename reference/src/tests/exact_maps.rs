@@ -21,11 +21,7 @@ fn mapped_points_stay_within_the_bound() {
     let (mut worst, mut worst_over) = (0.0_f64, 0.0_f64);
     for n in 0..4000 {
         let case = draws.hard_case();
-        let (a, b) = if n % 2 == 0 {
-            (case.a, case.b)
-        } else {
-            (draws.pose(1.0), draws.pose(1.0))
-        };
+        let (a, b) = if n % 2 == 0 { (case.a, case.b) } else { (draws.pose(1.0), draws.pose(1.0)) };
         let point = draws.vector(power_of_two(if n % 2 == 0 { case.size } else { 0 }) as f32);
         let seen = unposed(&a, &posed(&b, &rational3(point)));
         let map = Approximate::between(&a, &b);
@@ -43,9 +39,7 @@ fn mapped_points_stay_within_the_bound() {
         let norm = super::rational::dot(&rows(&over_b)[0], &rows(&over_b)[0]);
         let columns = rows(&over_b);
         let y = [0, 1, 2].map(|i| {
-            (0..3)
-                .map(|j| rational(xi[j]) * &columns[j][i])
-                .fold(rational(0.0), |s, x| s + x)
+            (0..3).map(|j| rational(xi[j]) * &columns[j][i]).fold(rational(0.0), |s, x| s + x)
                 / &norm
         });
         let x = unposed(&a, &posed(&b, &y));
@@ -56,8 +50,5 @@ fn mapped_points_stay_within_the_bound() {
     }
     // 256u are taken, 72u and 180u derived; a bound that nothing comes near would hide a map that
     // never runs.
-    assert!(
-        worst > 1.0 / 256.0 && worst_over > 1.0 / 256.0,
-        "{worst} {worst_over}"
-    );
+    assert!(worst > 1.0 / 256.0 && worst_over > 1.0 / 256.0, "{worst} {worst_over}");
 }

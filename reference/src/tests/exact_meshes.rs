@@ -31,10 +31,7 @@ fn grid_triangles_agree_with_rational_axes() {
         let mut corners = [(); 2].map(|()| grid_triangle(&mut draws, scale));
         if n % 5 == 0 {
             // All in one plane.
-            corners
-                .as_flattened_mut()
-                .iter_mut()
-                .for_each(|p| p[n / 5 % 3] = 0.0);
+            corners.as_flattened_mut().iter_mut().for_each(|p| p[n / 5 % 3] = 0.0);
         }
         let truth = {
             let [a, b] = corners.map(|t| t.map(rational::rational3));
@@ -45,15 +42,10 @@ fn grid_triangles_agree_with_rational_axes() {
         fn lift<N: Number>(t: &[Vector<f64>; 3], unit: i32) -> [Vector<N>; 3] {
             t.map(|p| p.map(|x| N::lift(x, unit)))
         }
-        assert_eq!(
-            integral(&[lift::<IBig>(&a, unit), lift(&b, unit)]),
-            Some(truth),
-            "{corners:?}"
-        );
-        for guess in [
-            filter([&a, &b], 0.0),
-            enclosed(&[lift::<Interval>(&a, unit), lift(&b, unit)]),
-        ] {
+        assert_eq!(integral(&[lift::<IBig>(&a, unit), lift(&b, unit)]), Some(truth), "{corners:?}");
+        for guess in
+            [filter([&a, &b], 0.0), enclosed(&[lift::<Interval>(&a, unit), lift(&b, unit)])]
+        {
             silent += u32::from(guess.is_none());
             assert!(guess.is_none_or(|guess| guess == truth), "{corners:?}");
         }
@@ -75,18 +67,12 @@ fn turned_triangles_keep_contacts() {
         let lift = |t: &[[f32; 3]; 3]| t.map(|p| p.map(|x| IBig::lift(f64::from(x), 0)));
         let truth = integral(&[lift(&corners[0]), lift(&corners[1])]) == Some(true);
         let alone = |corners: [[f32; 3]; 3]| prepared(&(corners.to_vec(), vec![[0, 1, 2]]));
-        let (a, b) = (
-            alone(corners[0].map(|p| p.map(|x| x * TURN))),
-            alone(corners[1].map(turned_back)),
-        );
+        let (a, b) =
+            (alone(corners[0].map(|p| p.map(|x| x * TURN))), alone(corners[1].map(turned_back)));
         let (pose_a, pose_b) = draws.turned_poses();
         let forth = meet((&a, &pose_a), (&b, &pose_b));
         let back = meet((&b, &pose_b), (&a, &pose_a));
-        assert_eq!(
-            (forth.meets, back.meets),
-            (truth, truth),
-            "{corners:?} {pose_a:?}"
-        );
+        assert_eq!((forth.meets, back.meets), (truth, truth), "{corners:?} {pose_a:?}");
         met += u32::from(truth);
         paths.count(forth.path);
     }
@@ -98,9 +84,8 @@ fn turned_triangles_keep_contacts() {
 
 /// A closed tetrahedron with corners on a grid, perhaps flat.
 fn tetrahedron(draws: &mut Draws, scale: f32) -> Arrays {
-    let vertices = (0..4)
-        .map(|_| [(); 3].map(|()| draws.signed(4.0).trunc() / 2.0 * scale))
-        .collect();
+    let vertices =
+        (0..4).map(|_| [(); 3].map(|()| draws.signed(4.0).trunc() / 2.0 * scale)).collect();
     (vertices, vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [0, 2, 3]])
 }
 
@@ -110,10 +95,7 @@ fn small_mesh(draws: &mut Draws, scale: f32) -> Arrays {
     match draws.bits() % 6 {
         0 => (vec![point(draws)], vec![[0, 0, 0]]),
         1 => (vec![point(draws), point(draws)], vec![[0, 1, 1]]),
-        2 => (
-            vec![point(draws), point(draws), point(draws)],
-            vec![[0, 1, 2]],
-        ),
+        2 => (vec![point(draws), point(draws), point(draws)], vec![[0, 1, 2]]),
         3 => {
             let (mut vertices, mut triangles) = tetrahedron(draws, 0.125 * scale);
             vertices.push(point(draws));
@@ -139,19 +121,12 @@ fn hard_meshes_agree_with_brute_force() {
         let truth = rational::meshes_meet(a, b);
         for (a, b) in [(a, b), (b, a)] {
             let meeting = meet(a, b);
-            assert_eq!(
-                meeting.meets, truth,
-                "{case:?} {:?} {:?}",
-                a.0.triangles, b.0.triangles
-            );
+            assert_eq!(meeting.meets, truth, "{case:?} {:?} {:?}", a.0.triangles, b.0.triangles);
             paths.count(meeting.path);
         }
         met += u32::from(truth);
     }
-    assert!(
-        (100..400).contains(&met) && paths.exact > 50,
-        "{met} met, {paths:?}"
-    );
+    assert!((100..400).contains(&met) && paths.exact > 50, "{met} met, {paths:?}");
 }
 
 #[test]
@@ -170,21 +145,14 @@ fn inside_needs_a_closed_component() {
     let (mut vertices, mut triangles) = cuboid([1.0; 3]);
     triangles.pop();
     assert!(
-        !meets(
-            &prepared(&(vertices.clone(), triangles.clone())),
-            &inner,
-            [0.0; 3]
-        ),
+        !meets(&prepared(&(vertices.clone(), triangles.clone())), &inner, [0.0; 3]),
         "an open box has no inside"
     );
     // An open box about a closed one about the inner: the closed component alone decides.
     let (closer, faces) = cuboid([0.5; 3]);
     triangles.extend(faces.iter().map(|t| t.map(|i| i + 8)));
     vertices.extend(closer);
-    assert!(
-        meets(&prepared(&(vertices, triangles)), &inner, [0.0; 3]),
-        "inside one component"
-    );
+    assert!(meets(&prepared(&(vertices, triangles)), &inner, [0.0; 3]), "inside one component");
     // An open box about the inner and a closed one elsewhere.
     let (mut vertices, mut triangles) = cuboid([1.0; 3]);
     triangles.pop();
@@ -200,10 +168,7 @@ fn inside_needs_a_closed_component() {
     let (closer, faces) = cuboid([0.5; 3]);
     triangles.extend(faces.iter().map(|t| t.map(|i| i + 8)));
     vertices.extend(closer);
-    assert!(
-        meets(&prepared(&(vertices, triangles)), &inner, [0.0; 3]),
-        "parity is per component"
-    );
+    assert!(meets(&prepared(&(vertices, triangles)), &inner, [0.0; 3]), "parity is per component");
 }
 
 /// Collapsed faces do not confuse the parity.
@@ -214,15 +179,9 @@ fn collapsed_faces_keep_the_parity() {
     let (mut vertices, mut triangles) = cuboid([1.0; 3]);
     let middle = vertices.len() as u32;
     vertices.extend([[0.0, -1.0, -1.0], [0.0, -1.0, -1.0]]);
-    let split = triangles
-        .iter()
-        .position(|t| t.contains(&0) && t.contains(&1))
-        .unwrap();
+    let split = triangles.iter().position(|t| t.contains(&0) && t.contains(&1)).unwrap();
     let [a, b, c] = triangles.remove(split);
-    let rotated = [[a, b, c], [b, c, a], [c, a, b]]
-        .into_iter()
-        .find(|t| t[0] + t[1] == 1)
-        .unwrap();
+    let rotated = [[a, b, c], [b, c, a], [c, a, b]].into_iter().find(|t| t[0] + t[1] == 1).unwrap();
     let [a, b, c] = rotated;
     // The edge's new middle, twice: a sliver (a, middle, b) closes the gap to the other face, a
     // point face the rest.
@@ -244,11 +203,7 @@ fn collapsed_faces_keep_the_parity() {
         let mote = prepared(&(vec![point], vec![[0, 0, 0]]));
         let pose = Pose::new([0.0, 0.0, 0.0, 1.0], [0.0; 3]).unwrap();
         let inside = point.iter().all(|x| x.abs() <= 1.0);
-        assert_eq!(
-            meet((&shell, &pose), (&mote, &pose)).meets,
-            inside,
-            "{point:?}"
-        );
+        assert_eq!(meet((&shell, &pose), (&mote, &pose)).meets, inside, "{point:?}");
     }
 }
 
@@ -263,8 +218,5 @@ fn generic_meshes_never_leave_the_filter() {
         met += u32::from(meeting.meets);
         tally.filter += meeting.tally.filter;
     }
-    assert!(
-        (50..180).contains(&met) && tally.filter > 1000,
-        "{met} met, {tally:?}"
-    );
+    assert!((50..180).contains(&met) && tally.filter > 1000, "{met} met, {tally:?}");
 }

@@ -25,16 +25,9 @@ fn touching_radius(draws: &mut Draws, a: (&Ball, &Pose), b: (&Ball, &Pose)) -> f
 
 fn ball(draws: &mut Draws, case: &Case) -> Ball {
     let scale = power_of_two(case.size) as f32;
-    let reach = if draws.bits().is_multiple_of(2) {
-        0.0
-    } else {
-        4.0
-    };
+    let reach = if draws.bits().is_multiple_of(2) { 0.0 } else { 4.0 };
     let centre = [(); 3].map(|()| draws.signed(reach).trunc() / 4.0 * scale);
-    Ball {
-        centre,
-        radius: (draws.signed(4.0).trunc().abs() / 8.0 + 0.25) * scale,
-    }
+    Ball { centre, radius: (draws.signed(4.0).trunc().abs() / 8.0 + 0.25) * scale }
 }
 
 /// Spheres agree with rationals and between stages.
@@ -50,17 +43,9 @@ fn spheres_agree_with_rationals() {
         let (a, b) = ((&ball_a, &case.a), (&ball_b, &case.b));
         let decision = sphere::overlap_balls(a, b);
         tally.count(decision.path);
-        assert_eq!(
-            decision.value,
-            rational::balls_overlap(a, b),
-            "{case:?} {ball_a:?} {ball_b:?}"
-        );
+        assert_eq!(decision.value, rational::balls_overlap(a, b), "{case:?} {ball_a:?} {ball_b:?}");
         let exact = sphere::judge::<IBig>(a, b, sphere::common_unit(a, b));
-        assert_eq!(
-            exact,
-            Some(decision.value),
-            "{case:?} {ball_a:?} {ball_b:?}"
-        );
+        assert_eq!(exact, Some(decision.value), "{case:?} {ball_a:?} {ball_b:?}");
         for stage in [sphere::filter(a, b), sphere::judge::<Interval>(a, b, 0)] {
             silent += u32::from(stage.is_none());
             assert!(
@@ -70,10 +55,7 @@ fn spheres_agree_with_rationals() {
         }
     }
     // The families are hard enough to reach every stage, and not so hard that none decides.
-    assert!(
-        tally.filter > 1000 && tally.exact > 100,
-        "{tally:?}, {silent} silent"
-    );
+    assert!(tally.filter > 1000 && tally.exact > 100, "{tally:?}, {silent} silent");
 }
 
 /// Balls, turned so that f64 rounds every centre, whose centres are as far apart as the radii
@@ -86,32 +68,18 @@ fn turned_spheres_that_touch() {
         let nothing = power_of_two(-20 - n / 3 % 60) as f32;
         let off = [0.0, nothing, -nothing][n as usize % 3];
         let (ball_a, ball_b) = (
-            Ball {
-                centre: [-off, 0.0, 0.0],
-                radius: TURN,
-            },
-            Ball {
-                centre: turned_back([2.0, 3.0, 6.0]),
-                radius: 6.0 * TURN,
-            },
+            Ball { centre: [-off, 0.0, 0.0], radius: TURN },
+            Ball { centre: turned_back([2.0, 3.0, 6.0]), radius: 6.0 * TURN },
         );
         let (pose_a, pose_b) = draws.turned_poses();
         let (a, b) = ((&ball_a, &pose_a), (&ball_b, &pose_b));
         for (a, b) in [(a, b), (b, a)] {
             let decision = sphere::overlap_balls(a, b);
-            assert_eq!(
-                decision.value,
-                off <= 0.0,
-                "{pose_a:?} {off:e} {:?}",
-                decision.path
-            );
+            assert_eq!(decision.value, off <= 0.0, "{pose_a:?} {off:e} {:?}", decision.path);
             paths.count(decision.path);
         }
     }
-    assert!(
-        paths.filter > 500 && paths.interval > 50 && paths.exact > 1000,
-        "{paths:?}"
-    );
+    assert!(paths.filter > 500 && paths.interval > 50 && paths.exact > 1000, "{paths:?}");
 }
 
 /// A polytope of random slabs that a handful of grid points bound, as a mesh's would.
@@ -135,11 +103,8 @@ fn polytope(draws: &mut Draws, directions: DirectionSet, size: i32) -> Polytope 
     // Exact ends where f32 can hold them, so that flat things stay flat and contacts exact.
     let mut fitted = slabs(directions, basis, &vertices);
     let tight = super::shapes::exact_slabs(directions, basis, &vertices);
-    for (end, exact) in fitted
-        .lo
-        .iter_mut()
-        .zip(&tight.lo)
-        .chain(fitted.hi.iter_mut().zip(&tight.hi))
+    for (end, exact) in
+        fitted.lo.iter_mut().zip(&tight.lo).chain(fitted.hi.iter_mut().zip(&tight.hi))
     {
         if exact.is_finite() {
             *end = *exact;
@@ -164,10 +129,7 @@ fn world((pose, polytope): Posed) -> World {
     };
     let unit = rational(power_of_two(polytope.unit)) / RBig::from(DENOMINATOR);
     let corner = |xi: &[IBig; 3]| {
-        posed(
-            pose,
-            &combine(xi.each_ref().map(|x| RBig::from(x.clone()) * &unit)),
-        )
+        posed(pose, &combine(xi.each_ref().map(|x| RBig::from(x.clone()) * &unit)))
     };
     let origin = posed(pose, &[RBig::ZERO, RBig::ZERO, RBig::ZERO]);
     let direction =
@@ -185,14 +147,10 @@ fn stages_agree(a: Posed, b: Posed) {
     let (filter, interval) = (Rounded::new(a, b), Corners::<Interval>::new(a, b));
     for normal in &a.1.normals {
         let truth = exact.separates(&integers(*normal));
-        let guesses = [
-            filter.separates(&integers(*normal)),
-            interval.separates(&integers(*normal)),
-        ];
+        let guesses =
+            [filter.separates(&integers(*normal)), interval.separates(&integers(*normal))];
         assert!(
-            guesses
-                .iter()
-                .all(|guess| guess.is_none() || *guess == truth),
+            guesses.iter().all(|guess| guess.is_none() || *guess == truth),
             "{guesses:?} {truth:?}"
         );
     }
@@ -210,25 +168,17 @@ fn polytopes_agree_with_rational_axes() {
         let (a, b) = ((&case.a, &shapes[0]), (&case.b, &shapes[1]));
         let (world_a, world_b) = (world(a), world(b));
         let apart = |axes: &[Rational3]| {
-            axes.iter()
-                .any(|axis| rational::separates(axis, &world_a.corners, &world_b.corners))
+            axes.iter().any(|axis| rational::separates(axis, &world_a.corners, &world_b.corners))
         };
         let one_sided = axes::overlap_one_sided(a, b);
-        assert_eq!(
-            one_sided.value,
-            !apart(&world_a.normals),
-            "one-sided {case:?}"
-        );
+        assert_eq!(one_sided.value, !apart(&world_a.normals), "one-sided {case:?}");
         stages_agree(a, b);
         let two_sided = axes::overlap_two_sided(a, b);
         let apart_sided = apart(&world_a.normals) || apart(&world_b.normals);
         assert_eq!(two_sided.value, !apart_sided, "two-sided {case:?}");
         assert_eq!(axes::two_sided::<IBig>(a, b), Some(apart_sided), "{case:?}");
         let enclosed = axes::two_sided::<Interval>(a, b);
-        assert!(
-            enclosed.is_none_or(|apart| apart == apart_sided),
-            "{case:?}"
-        );
+        assert!(enclosed.is_none_or(|apart| apart == apart_sided), "{case:?}");
         let crossed: Vec<Rational3> = world_a
             .edges
             .iter()
@@ -236,19 +186,10 @@ fn polytopes_agree_with_rational_axes() {
             .collect();
         let decision = ordop::meet(a, b);
         let meets = matches!(decision.value, Certificate::Common { .. });
-        assert_eq!(
-            meets,
-            !(apart_sided || apart(&crossed)),
-            "full {case:?} {:?}",
-            decision.path
-        );
+        assert_eq!(meets, !(apart_sided || apart(&crossed)), "full {case:?} {:?}", decision.path);
         assert!(decision.value.verify(a, b), "{case:?} {:?}", decision);
         let exact = ordop::solve(a, b, ordop::START);
-        assert_eq!(
-            matches!(exact, Certificate::Common { .. }),
-            meets,
-            "{case:?}"
-        );
+        assert_eq!(matches!(exact, Certificate::Common { .. }), meets, "{case:?}");
         assert!(exact.verify(a, b), "{case:?}");
         full.count(decision.path);
         sided.count(one_sided.path);
@@ -256,10 +197,7 @@ fn polytopes_agree_with_rational_axes() {
         met += u32::from(meets);
     }
     assert!((100..300).contains(&met), "{met} met");
-    assert!(
-        full.filter > 100 && full.exact > 20 && sided.exact > 20,
-        "{full:?} {sided:?}"
-    );
+    assert!(full.filter > 100 && full.exact > 20 && sided.exact > 20, "{full:?} {sided:?}");
 }
 
 /// Certificates that do not hold are refused.
@@ -268,13 +206,7 @@ fn invalid_certificates_are_rejected() {
     let cube = |half: f32| {
         let (lo, hi) = (vec![-half; 3], vec![half; 3]);
         let basis = exact_basis([0, 0, 0, 1]);
-        Polytope::new(&Slabs {
-            directions: DirectionSet::K6,
-            basis,
-            lo,
-            hi,
-        })
-        .unwrap()
+        Polytope::new(&Slabs { directions: DirectionSet::K6, basis, lo, hi }).unwrap()
     };
     let (small, large) = (cube(1.0), cube(2.0));
     let at = |x: f32| Pose::new([0.0, 0.0, 0.0, 2.0], [x, 0.0, 0.0]).unwrap();
@@ -303,61 +235,28 @@ fn turned_faces_that_touch() {
         let half = |c: &[i32; 3]| 0.75 * c.iter().map(|x| x.abs()).sum::<i32>() as f32;
         // The ends of the regular k-DOP about (x, 0, 0).
         let ends = |x: f32, sign: f32, scale: f32| -> Vec<f32> {
-            coefficients
-                .iter()
-                .map(|c| scale * (sign * half(c) + x * c[0] as f32))
-                .collect()
+            coefficients.iter().map(|c| scale * (sign * half(c) + x * c[0] as f32)).collect()
         };
         let nothing = power_of_two(-20 - n as i32 / 12 % 50) as f32;
         let past = [0.0, nothing, -nothing][n / 4 % 3];
         let mut hi = ends(-0.75, 1.0, 1.0);
         hi[0] = past;
         let axes = exact_basis([0, 0, 0, 1]);
-        let below = Slabs {
-            directions,
-            basis: axes,
-            lo: ends(-0.75, -1.0, 1.0),
-            hi,
-        };
+        let below = Slabs { directions, basis: axes, lo: ends(-0.75, -1.0, 1.0), hi };
         let (lo, hi) = (ends(0.75, -1.0, TURN), ends(0.75, 1.0, TURN));
-        let above = Slabs {
-            directions,
-            basis: axes.map(turned_back),
-            lo,
-            hi,
-        };
+        let above = Slabs { directions, basis: axes.map(turned_back), lo, hi };
         let [below, above] = [below, above].map(|slabs| Polytope::new(&slabs).unwrap());
         let (pose_a, pose_b) = draws.turned_poses();
         let (a, b) = ((&pose_a, &below), (&pose_b, &above));
         for (a, b) in [(a, b), (b, a)] {
             let decision = ordop::meet(a, b);
             let meets = matches!(decision.value, Certificate::Common { .. });
-            assert_eq!(
-                meets,
-                past >= 0.0,
-                "{pose_a:?} {past:e} {:?}",
-                decision.path
-            );
-            assert!(
-                decision.value.verify(a, b),
-                "{pose_a:?} {past:e} {:?}",
-                decision.path
-            );
-            assert_eq!(
-                axes::overlap_one_sided(a, b).value,
-                meets,
-                "one-sided {pose_a:?} {past:e}"
-            );
-            assert_eq!(
-                axes::overlap_two_sided(a, b).value,
-                meets,
-                "two-sided {pose_a:?} {past:e}"
-            );
+            assert_eq!(meets, past >= 0.0, "{pose_a:?} {past:e} {:?}", decision.path);
+            assert!(decision.value.verify(a, b), "{pose_a:?} {past:e} {:?}", decision.path);
+            assert_eq!(axes::overlap_one_sided(a, b).value, meets, "one-sided {pose_a:?} {past:e}");
+            assert_eq!(axes::overlap_two_sided(a, b).value, meets, "two-sided {pose_a:?} {past:e}");
             paths.count(decision.path);
         }
     }
-    assert!(
-        paths.exact > 400 && paths.interval > 10 && paths.filter > 200,
-        "{paths:?}"
-    );
+    assert!(paths.exact > 400 && paths.interval > 10 && paths.filter > 200, "{paths:?}");
 }

@@ -52,14 +52,7 @@ impl Draws {
         match self.below(8) {
             0 => self.vector(2.0 * scale),
             1..4 => {
-                let quadruples = [
-                    [1, 2, 2],
-                    [2, 3, 6],
-                    [1, 4, 8],
-                    [4, 4, 7],
-                    [3, 4, 0],
-                    [1, 0, 0],
-                ];
+                let quadruples = [[1, 2, 2], [2, 3, 6], [1, 4, 8], [4, 4, 7], [3, 4, 0], [1, 0, 0]];
                 let v = quadruples[self.below(6) as usize].map(|x| x as f32 / 4.0 * scale);
                 let first = self.below(3) as usize;
                 [v[first], v[(first + 1) % 3], -v[(first + 2) % 3]]
@@ -91,20 +84,12 @@ impl Draws {
         let mut tb = [0, 1, 2].map(|i| origin[i] + step[i]);
         if self.below(3) == 0 {
             let i = self.below(3) as usize;
-            tb[i] = if self.below(2) == 0 {
-                tb[i].next_up()
-            } else {
-                tb[i].next_down()
-            };
+            tb[i] = if self.below(2) == 0 { tb[i].next_up() } else { tb[i].next_down() };
         }
         let qb = if self.below(5) == 0 { qa } else { qb };
         let tb = if self.below(9) == 0 { origin } else { tb };
         let pose = |q, t| Pose::new(q, t).unwrap();
-        Case {
-            a: pose(qa, origin),
-            b: pose(qb, tb),
-            size,
-        }
+        Case { a: pose(qa, origin), b: pose(qb, tb), size }
     }
 }
 

@@ -1,8 +1,5 @@
 //! Suites that need whole shapes. Tests of a single formula are next to that formula.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot build its input has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot build its input has failed")]
 
 mod common_points;
 mod containment;

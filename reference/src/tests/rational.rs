@@ -63,10 +63,7 @@ pub fn posed(pose: &Pose, x: &Rational3) -> Rational3 {
 
 /// Which point the pose puts there.
 pub fn unposed(pose: &Pose, p: &Rational3) -> Rational3 {
-    turned(
-        &conjugate(&pose.quaternion().map(rational)),
-        &sub(p, &pose.translation().map(rational)),
-    )
+    turned(&conjugate(&pose.quaternion().map(rational)), &sub(p, &pose.translation().map(rational)))
 }
 
 /// a·b
@@ -76,11 +73,7 @@ pub fn dot(a: &Rational3, b: &Rational3) -> RBig {
 
 /// a × b
 pub fn cross(a: &Rational3, b: &Rational3) -> Rational3 {
-    [
-        &a[1] * &b[2] - &a[2] * &b[1],
-        &a[2] * &b[0] - &a[0] * &b[2],
-        &a[0] * &b[1] - &a[1] * &b[0],
-    ]
+    [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
 }
 
 /// a − b
@@ -117,17 +110,12 @@ pub fn triangles_meet(a: &[Rational3; 3], b: &[Rational3; 3]) -> bool {
         .flat_map(|t| [(0, 1), (1, 2), (2, 0)].map(|(i, j)| sub(&t[j], &t[i])))
         .collect();
     let apart = |axis: &Rational3| separates(axis, a, b);
-    let between: Vec<Rational3> = a
-        .iter()
-        .flat_map(|p| b.iter().map(move |q| sub(q, p)))
-        .collect();
+    let between: Vec<Rational3> = a.iter().flat_map(|p| b.iter().map(move |q| sub(q, p))).collect();
     if lines.iter().chain(&between).any(&apart) {
         return false;
     }
     let crossed = |u: &[Rational3], v: &[Rational3]| -> Vec<Rational3> {
-        u.iter()
-            .flat_map(|x| v.iter().map(move |y| cross(x, y)))
-            .collect()
+        u.iter().flat_map(|x| v.iter().map(move |y| cross(x, y))).collect()
     };
     let normals = crossed(&lines, &lines);
     if normals.iter().any(&apart) {
@@ -135,63 +123,42 @@ pub fn triangles_meet(a: &[Rational3; 3], b: &[Rational3; 3]) -> bool {
     }
     // Perpendicular to a line and as near as possible to a difference: it separates a segment from
     // a point next to it.
-    let beside: Vec<Rational3> = lines
-        .iter()
-        .flat_map(|l| between.iter().map(|d| cross(&cross(l, d), l)))
-        .collect();
+    let beside: Vec<Rational3> =
+        lines.iter().flat_map(|l| between.iter().map(|d| cross(&cross(l, d), l))).collect();
     !crossed(&normals, &lines).iter().chain(&beside).any(apart)
 }
 
 /// Triangles in world coordinates.
 pub fn world_triangles((mesh, pose): (&Mesh, &Pose)) -> Vec<[Rational3; 3]> {
     let corner = |p: &[f64; 3]| posed(pose, &p.map(rational));
-    mesh.triangles
-        .iter()
-        .map(|t| t.each_ref().map(corner))
-        .collect()
+    mesh.triangles.iter().map(|t| t.each_ref().map(corner)).collect()
 }
 
 /// Whether two posed meshes intersect: every pair of triangles, then a ray from every vertex.
 pub fn meshes_meet(a: (&Mesh, &Pose), b: (&Mesh, &Pose)) -> bool {
     let (world_a, world_b) = (world_triangles(a), world_triangles(b));
-    let touching = world_a
-        .iter()
-        .any(|t| world_b.iter().any(|s| triangles_meet(t, s)));
+    let touching = world_a.iter().any(|t| world_b.iter().any(|s| triangles_meet(t, s)));
     touching || some_inside(&world_a, a.0, &world_b) || some_inside(&world_b, b.0, &world_a)
 }
 
 fn some_inside(triangles: &[[Rational3; 3]], mesh: &Mesh, others: &[[Rational3; 3]]) -> bool {
     let closed = (0..mesh.components.len()).filter(|c| mesh.components[*c].closed);
     let mut shells = closed.map(|c| {
-        let of_shell = triangles
-            .iter()
-            .zip(&mesh.component_of)
-            .filter(|(_, of)| **of as usize == c);
+        let of_shell =
+            triangles.iter().zip(&mesh.component_of).filter(|(_, of)| **of as usize == c);
         of_shell.map(|(t, _)| t.clone()).collect::<Vec<_>>()
     });
-    shells.any(|shell| {
-        others
-            .iter()
-            .flatten()
-            .any(|point| odd_crossings(&shell, point))
-    })
+    shells.any(|shell| others.iter().flatten().any(|point| odd_crossings(&shell, point)))
 }
 
 /// Ray parity by solving point + s·direction = a + u(b − a) + v(c − a); the next direction when a
 /// ray meets a border.
 fn odd_crossings(shell: &[[Rational3; 3]], point: &Rational3) -> bool {
-    let directions = (1..).map(|n: i32| {
-        [
-            RBig::from(n),
-            RBig::from(7 * n * n + 1),
-            RBig::from(3 - 5 * n),
-        ]
-    });
+    let directions =
+        (1..).map(|n: i32| [RBig::from(n), RBig::from(7 * n * n + 1), RBig::from(3 - 5 * n)]);
     let counts = |direction: &Rational3| {
-        let hits = shell
-            .iter()
-            .map(|t| ray_hits(t, point, direction))
-            .collect::<Option<Vec<bool>>>()?;
+        let hits =
+            shell.iter().map(|t| ray_hits(t, point, direction)).collect::<Option<Vec<bool>>>()?;
         Some(hits.into_iter().filter(|hit| *hit).count() % 2 == 1)
     };
     directions.take(50).find_map(|d| counts(&d)).unwrap()
@@ -205,20 +172,12 @@ fn ray_hits([a, b, c]: &[Rational3; 3], point: &Rational3, direction: &Rational3
         return Some(false);
     }
     if determinant == RBig::ZERO {
-        return if dot(&normal, &p) == RBig::ZERO {
-            None
-        } else {
-            Some(false)
-        };
+        return if dot(&normal, &p) == RBig::ZERO { None } else { Some(false) };
     }
     let ahead = -dot(&normal, &p) / &determinant;
     let u = dot(&cross(&f, direction), &p) / &determinant;
     let v = dot(&cross(direction, &e), &p) / &determinant;
     let w = RBig::ONE - &u - &v;
     let smallest = ahead.min(u).min(v).min(w);
-    if smallest == RBig::ZERO {
-        None
-    } else {
-        Some(smallest > RBig::ZERO)
-    }
+    if smallest == RBig::ZERO { None } else { Some(smallest > RBig::ZERO) }
 }

@@ -25,17 +25,9 @@ fn strategies<'a>(interest: &'a [bool], tested: &'a [(u32, u32)]) -> [Strategy<'
 
 fn forms(directions: DirectionSet) -> Vec<Shape> {
     vec![
-        shape(
-            torus(0.7, 0.3, 16, 8),
-            directions,
-            exact_basis([1, 2, -3, 5]),
-        ),
+        shape(torus(0.7, 0.3, 16, 8), directions, exact_basis([1, 2, -3, 5])),
         shape(wedge(0.8), directions, exact_basis([0, 0, 0, 1])),
-        shape(
-            cuboid([1.2, 0.05, 0.02]),
-            directions,
-            exact_basis([3, 0, 0, 1]),
-        ),
+        shape(cuboid([1.2, 0.05, 0.02]), directions, exact_basis([3, 0, 0, 1])),
     ]
 }
 
@@ -46,27 +38,15 @@ fn plain_and_exact_agree() {
     for directions in DirectionSet::ALL {
         let shapes = forms(directions);
         let bodies: Vec<Body> = (0..40)
-            .map(|n| Body {
-                shape: &shapes[n % 3],
-                pose: draws.pose(2.0),
-                dynamic: n % 4 != 0,
-            })
+            .map(|n| Body { shape: &shapes[n % 3], pose: draws.pose(2.0), dynamic: n % 4 != 0 })
             .collect();
         let (meeting, tally) = meeting_pairs(&bodies);
-        assert!(
-            meeting.len() > 20 && tally.meshes.total() > 100,
-            "{} {tally:?}",
-            meeting.len()
-        );
+        assert!(meeting.len() > 20 && tally.meshes.total() > 100, "{} {tally:?}", meeting.len());
         let interest: Vec<bool> = (0..40).map(|n| n % 5 == 0).collect();
         for strategy in strategies(&interest, &[(0, 1), (3, 7)]) {
             for overlap in Overlap::ALL {
                 let (exact, _) = judge::pairs(&bodies, strategy, overlap);
-                assert_eq!(
-                    exact,
-                    pairs(&bodies, strategy, overlap),
-                    "{strategy:?} {overlap:?}"
-                );
+                assert_eq!(exact, pairs(&bodies, strategy, overlap), "{strategy:?} {overlap:?}");
                 let missed = meeting.iter().find(|pair| !exact.contains(pair));
                 assert_eq!(missed, None, "{strategy:?} {overlap:?} {directions:?}");
             }
@@ -91,18 +71,10 @@ fn world_volumes_agree_with_rationals() {
             (vertices, triangles)
         });
         let world = [(&shapes[0], &case.a), (&shapes[1], &case.b)].map(|((vertices, _), pose)| {
-            vertices
-                .iter()
-                .map(|v| posed(pose, &rational3(*v)))
-                .collect::<Vec<_>>()
+            vertices.iter().map(|v| posed(pose, &rational3(*v))).collect::<Vec<_>>()
         });
-        let axes = directions
-            .coefficients()
-            .into_iter()
-            .map(|c| rational3(c.map(|x| x as f32)));
-        let truth = !axes
-            .into_iter()
-            .any(|axis| rational::separates(&axis, &world[0], &world[1]));
+        let axes = directions.coefficients().into_iter().map(|c| rational3(c.map(|x| x as f32)));
+        let truth = !axes.into_iter().any(|axis| rational::separates(&axis, &world[0], &world[1]));
         let shapes = shapes.map(|mesh| shape(mesh, DirectionSet::K6, exact_basis([0, 0, 0, 1])));
         let [a, b] = [(&shapes[0], case.a), (&shapes[1], case.b)].map(|(shape, pose)| Body {
             shape,
@@ -115,8 +87,5 @@ fn world_volumes_agree_with_rationals() {
         overlaps += u32::from(truth);
         tally.count(decision.path);
     }
-    assert!(
-        (100..700).contains(&overlaps) && tally.exact > 10,
-        "{overlaps} {tally:?}"
-    );
+    assert!((100..700).contains(&overlaps) && tally.exact > 10, "{overlaps} {tally:?}");
 }

@@ -12,30 +12,16 @@ pub type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
 /// A closed box of the given half sizes.
 pub fn cuboid(half: [f32; 3]) -> Mesh {
     let corner = |n: usize| [0, 1, 2].map(|i| if n >> i & 1 == 1 { half[i] } else { -half[i] });
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let split = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-    (
-        (0..8).map(corner).collect(),
-        quads.into_iter().flat_map(split).collect(),
-    )
+    ((0..8).map(corner).collect(), quads.into_iter().flat_map(split).collect())
 }
 
 /// A closed tetrahedron with legs 1 : 2 : 3 about no centre of symmetry: what a mirrored formula
 /// would show on.
 pub fn wedge(size: f32) -> Mesh {
-    let vertices = [
-        [0.0, 0.0, 0.0],
-        [0.5, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.5],
-    ];
+    let vertices = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.5]];
     (
         vertices.map(|v| v.map(|x| x * size)).to_vec(),
         vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
@@ -53,18 +39,10 @@ pub fn torus(major: f32, minor: f32, rings: u32, sides: u32) -> Mesh {
     let index = |ring: u32, side: u32| ring % rings * sides + side % sides;
     let quad = |n: u32| {
         let (r, s) = (n / sides, n % sides);
-        let [a, b, c, d] = [
-            index(r, s),
-            index(r + 1, s),
-            index(r + 1, s + 1),
-            index(r, s + 1),
-        ];
+        let [a, b, c, d] = [index(r, s), index(r + 1, s), index(r + 1, s + 1), index(r, s + 1)];
         [[a, b, c], [a, c, d]]
     };
-    (
-        (0..rings * sides).map(point).collect(),
-        (0..rings * sides).flat_map(quad).collect(),
-    )
+    ((0..rings * sides).map(point).collect(), (0..rings * sides).flat_map(quad).collect())
 }
 
 /// A basis whose columns have equal norm and are orthogonal in exact arithmetic: R of a small
@@ -77,11 +55,7 @@ pub fn exact_basis(q: [i32; 4]) -> [[f32; 3]; 3] {
 /// The next f32 not below / not above an f64 that may itself be off by rounding.
 fn outward(x: f64, up: bool) -> f32 {
     let nearest = x as f32;
-    if up {
-        nearest.next_up()
-    } else {
-        nearest.next_down()
-    }
+    if up { nearest.next_up() } else { nearest.next_down() }
 }
 
 /// Slabs about the vertices, rounded outward.
@@ -98,12 +72,7 @@ pub fn slabs(directions: DirectionSet, basis: [[f32; 3]; 3], vertices: &[[f32; 3
         )
     };
     let (lo, hi) = directions.coefficients().iter().map(ends).unzip();
-    Slabs {
-        directions,
-        basis,
-        lo,
-        hi,
-    }
+    Slabs { directions, basis, lo, hi }
 }
 
 /// Slabs whose ends are the vertices' exact heights where an f32 holds them, infinite elsewhere.
@@ -116,37 +85,20 @@ pub fn exact_slabs(directions: DirectionSet, basis: [[f32; 3]; 3], vertices: &[[
                 .map(|j| super::rational::dot(&columns[j], &rational(*v)) * RBig::from(c[j]));
             h.into_iter().fold(RBig::ZERO, |sum, x| sum + x)
         });
-        let exact = if highest {
-            heights.max()
-        } else {
-            heights.min()
-        }
-        .unwrap();
+        let exact = if highest { heights.max() } else { heights.min() }.unwrap();
         let nearest = exact.to_f32().value();
-        if super::rational::rational(f64::from(nearest)) == exact {
-            nearest
-        } else {
-            f32::INFINITY
-        }
+        if super::rational::rational(f64::from(nearest)) == exact { nearest } else { f32::INFINITY }
     };
     let ends = |c: &[i32; 3]| (end(c, false), end(c, true));
     let (lo, hi) = directions.coefficients().iter().map(ends).unzip();
-    Slabs {
-        directions,
-        basis,
-        lo,
-        hi,
-    }
+    Slabs { directions, basis, lo, hi }
 }
 
 /// A shape whose volumes contain the mesh.
 pub fn shape((vertices, triangles): Mesh, directions: DirectionSet, basis: [[f32; 3]; 3]) -> Shape {
     let norm = |v: &[f32; 3]| dot(&v.map(f64::from), &v.map(f64::from)).sqrt();
     let radius = outward(vertices.iter().map(norm).fold(0.0, f64::max), true);
-    let ball = Ball {
-        centre: [0.0; 3],
-        radius,
-    };
+    let ball = Ball { centre: [0.0; 3], radius };
     let slabs = slabs(directions, basis, &vertices);
     Shape::new(ball, slabs, vertices, triangles).unwrap()
 }

@@ -12,20 +12,12 @@ fn forms() -> Vec<Shape> {
     vec![
         shape(wedge(0.8), DirectionSet::K18, basis),
         shape(torus(0.8, 0.2, 12, 6), DirectionSet::K26, basis),
-        shape(
-            cuboid([1.0, 0.01, 0.01]),
-            DirectionSet::K14,
-            exact_basis([0, 0, 0, 1]),
-        ),
+        shape(cuboid([1.0, 0.01, 0.01]), DirectionSet::K14, exact_basis([0, 0, 0, 1])),
     ]
 }
 
 fn scene(shapes: &[Shape], poses: Vec<Pose>) -> Vec<Body<'_>> {
-    let body = |(n, pose)| Body {
-        shape: &shapes[n % shapes.len()],
-        pose,
-        dynamic: n % 3 != 0,
-    };
+    let body = |(n, pose)| Body { shape: &shapes[n % shapes.len()], pose, dynamic: n % 3 != 0 };
     poses.into_iter().enumerate().map(body).collect()
 }
 
@@ -94,11 +86,7 @@ fn unrotated_intervals_are_not_compared() {
     let needle = &shapes[2];
     let along_x = Pose::new([0.0, 0.0, 0.0, 1.0], [0.0; 3]).unwrap();
     let along_y = |x: f32| Pose::new([0.0, 0.0, 1.0, 1.0], [x, 0.0, 0.0]).unwrap();
-    let body = |pose| Body {
-        shape: needle,
-        pose,
-        dynamic: true,
-    };
+    let body = |pose| Body { shape: needle, pose, dynamic: true };
     for test in Overlap::ALL {
         assert!(ordop::overlap(&body(along_x), &body(along_y(1.0)), test));
         assert!(!ordop::overlap(&body(along_x), &body(along_y(1.05)), test));
@@ -111,11 +99,7 @@ fn unrotated_intervals_are_not_compared() {
 /// .505 for exact boxes.
 #[test]
 fn cube_survival_matches_the_integral() {
-    let cube = shape(
-        cuboid([1.0; 3]),
-        DirectionSet::K6,
-        exact_basis([0, 0, 0, 1]),
-    );
+    let cube = shape(cuboid([1.0; 3]), DirectionSet::K6, exact_basis([0, 0, 0, 1]));
     let (mut draws, mut spheres, mut boxes) = (Draws(1), 0_u32, 0_u32);
     let a = Body {
         shape: &cube,
@@ -123,11 +107,7 @@ fn cube_survival_matches_the_integral() {
         dynamic: true,
     };
     while spheres < 6000 {
-        let b = Body {
-            shape: &cube,
-            pose: draws.pose(3.5),
-            dynamic: true,
-        };
+        let b = Body { shape: &cube, pose: draws.pose(3.5), dynamic: true };
         spheres += u32::from(sphere::overlap(&a, &b));
         boxes += u32::from(sphere::overlap(&a, &b) && obb::overlap(&a, &b));
     }

@@ -97,10 +97,8 @@ fn wide_contacts_are_kept_when_turned() {
         let corners =
             [(); 2].map(|()| [(); 3].map(|()| [(); 3].map(|()| draws.signed(3.0).trunc())));
         let alone = |corners: [[f32; 3]; 3]| prepared(&(corners.to_vec(), vec![[0, 1, 2]]));
-        let (a, b) = (
-            alone(corners[0].map(|p| p.map(|x| x * TURN))),
-            alone(corners[1].map(turned_back)),
-        );
+        let (a, b) =
+            (alone(corners[0].map(|p| p.map(|x| x * TURN))), alone(corners[1].map(turned_back)));
         let odd = ((1_u64 << 30) + 1) as f64;
         let place = [(); 3].map(|()| 1e9 * signed(&mut draws));
         let (pose_a, pose_b) = draws.turned_poses();
@@ -123,10 +121,7 @@ fn wide_contacts_are_kept_when_turned() {
 
 #[test]
 fn any_norm_is_the_same_turn() {
-    let boxes = [
-        prepared(&cuboid([1.0; 3])),
-        prepared(&cuboid([1.0, 2.0, 3.0])),
-    ];
+    let boxes = [prepared(&cuboid([1.0; 3])), prepared(&cuboid([1.0, 2.0, 3.0]))];
     let at = |norm: f64, x: f64| {
         let q = [0.0, 0.0, 1.0, 1.0].map(|c| c * norm);
         WidePose::new(q, [x, 0.0, 0.0]).unwrap()
@@ -144,14 +139,8 @@ fn any_norm_is_the_same_turn() {
 fn lost_components_are_refused() {
     let refused = |q, t| WidePose::new(q, t).unwrap_err();
     assert_eq!(refused([0.0; 4], [0.0; 3]), InvalidInput::ZeroQuaternion);
-    assert_eq!(
-        refused([1e200, 0.0, 0.0, 1e-200], [0.0; 3]),
-        InvalidInput::QuaternionSpread
-    );
-    assert_eq!(
-        refused([1.0, 0.0, 0.0, 1e-300], [0.0; 3]),
-        InvalidInput::QuaternionSpread
-    );
+    assert_eq!(refused([1e200, 0.0, 0.0, 1e-200], [0.0; 3]), InvalidInput::QuaternionSpread);
+    assert_eq!(refused([1.0, 0.0, 0.0, 1e-300], [0.0; 3]), InvalidInput::QuaternionSpread);
     for (q, t) in [([f64::NAN; 4], [0.0; 3]), (UNTURNED, [f64::INFINITY; 3])] {
         assert!(matches!(refused(q, t), InvalidInput::NotFinite(_)));
     }

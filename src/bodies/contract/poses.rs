@@ -51,9 +51,7 @@ pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<
         return refuse_number(body, number, shapes.len());
     };
     if !has_sound_size(shape) {
-        let Shape {
-            name, reach, ball, ..
-        } = shape;
+        let Shape { name, reach, ball, .. } = shape;
         let value = format!("{name} with reach {reach} and {ball:?}");
         return refuse(body, "shape", value, "sizes are finite and at most 2^60");
     }
@@ -91,11 +89,7 @@ pub fn check_poses(bodies: &Bodies, range: Range<usize>) -> Result<(), ContractE
 fn are_within_limit(column: &[[f32; 3]]) -> bool {
     // Without an early exit, so that the compiler vectorises it. Only one column ever fails,
     // because culling ends there.
-    column
-        .as_flattened()
-        .iter()
-        .fold(0, |most, x| size(*x).max(most))
-        <= size(LIMIT)
+    column.as_flattened().iter().fold(0, |most, x| size(*x).max(most)) <= size(LIMIT)
 }
 
 /// Checks that every column has one entry per body, and that there are at most
@@ -138,13 +132,9 @@ fn size(number: f32) -> u32 {
 
 pub(crate) fn has_sound_size(shape: &Shape) -> bool {
     // The reach bounds the ball's centre and radius, but does not exclude a NaN in them.
-    [
-        shape.reach,
-        shape.ball.radius,
-        Vec3::from_array(shape.ball.centre).length(),
-    ]
-    .iter()
-    .all(|size| (0.0..=LIMIT).contains(size))
+    [shape.reach, shape.ball.radius, Vec3::from_array(shape.ball.centre).length()]
+        .iter()
+        .all(|size| (0.0..=LIMIT).contains(size))
 }
 
 #[inline]
@@ -204,13 +194,8 @@ mod tests {
     use super::*;
 
     /// Invalid coordinates: one ulp beyond the limit, and further.
-    const BEYOND_LIMIT: [f32; 5] = [
-        LIMIT.next_up(),
-        -LIMIT.next_up(),
-        f32::INFINITY,
-        f32::NAN,
-        -f32::NAN,
-    ];
+    const BEYOND_LIMIT: [f32; 5] =
+        [LIMIT.next_up(), -LIMIT.next_up(), f32::INFINITY, f32::NAN, -f32::NAN];
 
     /// Coordinates are refused for an ulp beyond the limit.
     #[test]

@@ -39,12 +39,7 @@ impl BoxLevel {
     /// An empty level for boxes up to a size, in units of `unit`.
     fn new(number: i32, unit: f64) -> Self {
         let bound = (unit * size_of_number(number)).next_up();
-        Self {
-            number,
-            bound,
-            cells_per_unit: 0.5 / bound,
-            boxes: 0,
-        }
+        Self { number, bound, cells_per_unit: 0.5 / bound, boxes: 0 }
     }
 
     fn cell(&self, x: f64) -> i64 {
@@ -85,15 +80,11 @@ impl BoxLevel {
     /// boxes, which only costs time.
     #[inline(always)]
     pub fn name(&self, cell: [i64; 3]) -> u32 {
-        const FACTORS: [u64; 3] = [
-            0x9e37_79b9_7f4a_7c15,
-            0xc2b2_ae3d_27d4_eb4f,
-            0x1656_67b1_9e37_79f9,
-        ];
+        const FACTORS: [u64; 3] =
+            [0x9e37_79b9_7f4a_7c15, 0xc2b2_ae3d_27d4_eb4f, 0x1656_67b1_9e37_79f9];
         let start = (self.number as u64).wrapping_mul(0xff51_afd7_ed55_8ccd);
-        let mixed = (cell.iter().zip(FACTORS)).fold(start, |sum, (&x, factor)| {
-            sum.wrapping_add((x as u64).wrapping_mul(factor))
-        });
+        let mixed = (cell.iter().zip(FACTORS))
+            .fold(start, |sum, (&x, factor)| sum.wrapping_add((x as u64).wrapping_mul(factor)));
         let mixed = (mixed ^ mixed >> 32).wrapping_mul(0xd6e8_feb8_6659_fd93);
         ((mixed >> 32) as u32).max(1)
     }
@@ -143,11 +134,7 @@ impl Levels {
             let least = (0.5 * distance).max(tiniest);
             (least, least)
         };
-        Self {
-            unit,
-            least: size_number(least.max(tiniest) / unit),
-            all: Vec::new(),
-        }
+        Self { unit, least: size_number(least.max(tiniest) / unit), all: Vec::new() }
     }
 
     /// The index of the level of a box.
@@ -194,14 +181,7 @@ mod tests {
 
     #[test]
     fn numbers_of_sizes_round_up() {
-        for (size, number) in [
-            (1.0, 0),
-            (1.5, 1),
-            (2.0, 2),
-            (3.0, 3),
-            (0.75, -1),
-            (0.5, -2),
-        ] {
+        for (size, number) in [(1.0, 0), (1.5, 1), (2.0, 2), (3.0, 3), (0.75, -1), (0.5, -2)] {
             assert_eq!((size_number(size), size_of_number(number)), (number, size));
             assert_eq!(size_number(size.next_up()), number + 1);
             assert_eq!(size_number(size.next_down()), number);
@@ -216,9 +196,7 @@ mod tests {
         .boxed()
         .prop_union((-9.0_f32..9.0).boxed())
         .or((0_u32..40).prop_map(f32::from_bits).boxed())
-        .or(any::<f32>()
-            .prop_filter("finite", |x| x.is_finite())
-            .boxed())
+        .or(any::<f32>().prop_filter("finite", |x| x.is_finite()).boxed())
     }
 
     fn aabb() -> impl Strategy<Value = Aabb> {

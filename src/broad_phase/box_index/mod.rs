@@ -92,12 +92,7 @@ impl BoxIndex {
     /// Moves a box to its present cell, or removes it if it is gone. Returns the work: the number
     /// of entries read.
     pub fn put(&mut self, indexed: &IndexedBox) -> usize {
-        let &IndexedBox {
-            slot,
-            is_present,
-            ref aabb,
-            ..
-        } = indexed;
+        let &IndexedBox { slot, is_present, ref aabb, .. } = indexed;
         if !is_present {
             return self.remove(slot);
         }
@@ -172,8 +167,7 @@ impl BoxIndex {
         let mut filled: Vec<Cell> = filled.copied().collect();
         self.taken = filled.len();
         self.cells = vec![Cell::default(); size];
-        self.boxes
-            .compact(filled.iter_mut().map(|cell| &mut cell.boxes));
+        self.boxes.compact(filled.iter_mut().map(|cell| &mut cell.boxes));
         for cell in filled {
             let at = self.find(cell.name);
             self.cells[at] = cell;
@@ -183,8 +177,7 @@ impl BoxIndex {
     /// Frees the room that boxes have left in cells, if it is much.
     pub fn compact(&mut self) {
         if self.boxes.is_sparse(self.cells.len()) {
-            self.boxes
-                .compact(self.cells.iter_mut().map(|cell| &mut cell.boxes));
+            self.boxes.compact(self.cells.iter_mut().map(|cell| &mut cell.boxes));
         }
     }
 
@@ -351,12 +344,7 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
 
 impl IndexedBox {
     fn tagged(&self) -> TaggedBox {
-        TaggedBox {
-            min: self.aabb.min,
-            slot: self.slot,
-            max: self.aabb.max,
-            tags: self.tags,
-        }
+        TaggedBox { min: self.aabb.min, slot: self.slot, max: self.aabb.max, tags: self.tags }
     }
 
     /// Whether a pair with another box, is reported if the boxes

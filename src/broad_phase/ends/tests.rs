@@ -15,16 +15,7 @@ fn full_vectors_cost_no_more() {
 /// Grown boxes hold their own and are no longer than they may be.
 #[test]
 fn grown_boxes_are_tight() {
-    let ends = [
-        0.0_f32,
-        1.0,
-        1e-30,
-        3.0e7,
-        1.0e9,
-        1e30,
-        f32::MAX,
-        f32::from_bits(1),
-    ];
+    let ends = [0.0_f32, 1.0, 1e-30, 3.0e7, 1.0e9, 1e30, f32::MAX, f32::from_bits(1)];
     for end in ends.into_iter().flat_map(|end| [end, -end]) {
         for by in [1e-20, 0.3, 0.375, 5.0e3, 1e30, f32::INFINITY] {
             let Aabb { min, max } = grown(Aabb::new([end; 3], [end; 3]), by);
@@ -82,17 +73,9 @@ fn only_moving_boxes_grow() {
     let boxes = [1.0, 2.0, 3.0].map(|x| Aabb::new([x; 3], [x + 10.0; 3]));
     let (pool, mut ends) = (Threads::default(), EndSlots::default());
     let (cubes, skin) = ([[0.0, 0.0, 0.0, 0.5]; 2], Skin::share(0.125));
-    ends.fill_grown(
-        pool.executor(Tier::SCALAR),
-        &[2, 0, 1],
-        &boxes,
-        (&cubes, skin),
-    );
+    ends.fill_grown(pool.executor(Tier::SCALAR), &[2, 0, 1], &boxes, (&cubes, skin));
     let slots = |ends: &EndSlots| [0, 1, 2].map(|slot| [ends.lower[slot], ends.upper[slot]]);
-    for (found, (name, grows)) in slots(&ends)
-        .into_iter()
-        .zip([(2, true), (0, true), (1, false)])
-    {
+    for (found, (name, grows)) in slots(&ends).into_iter().zip([(2, true), (0, true), (1, false)]) {
         let aabb: Aabb = boxes[name];
         let Aabb { min, max } = if grows { grown(aabb, 0.5) } else { aabb };
         assert_eq!(found.map(|quad| [quad[0], quad[1], quad[2]]), [min, max]);
@@ -120,12 +103,7 @@ fn ends_follow_slot_order() {
             .map(|i| Aabb::new([f32::from(i); 3], [f32::from(i) + 9.0; 3]))
             .collect();
         let order: Vec<u32> = (0..bodies as u32).rev().collect();
-        slots.fill(
-            Threads::default().executor(Tier::detect()),
-            &order,
-            &boxes,
-            true,
-        );
+        slots.fill(Threads::default().executor(Tier::detect()), &order, &boxes, true);
         let padded = bodies + MAX_WIDTH;
         assert_eq!([slots.lower.len(), slots.upper.len()], [padded; 2]);
         for (index, column) in slots.columns.iter().enumerate() {

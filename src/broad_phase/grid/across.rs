@@ -36,10 +36,8 @@ pub fn plan(a: &GridLevel, b: &GridLevel) -> (bool, LevelSearch) {
             continue;
         }
         let cells = |axis: usize| span.min(f64::from(target.cells.count()[axis]));
-        let found = all
-            * (0..3)
-                .map(|i| cells(i) / f64::from(target.cells.count()[i]))
-                .product::<f64>();
+        let found =
+            all * (0..3).map(|i| cells(i) / f64::from(target.cells.count()[i])).product::<f64>();
         let cost = seeker.range.len() as f64 * cells(1) * cells(2) * BODIES_PER_ROW_SEARCH + found;
         if cost < best.2 {
             best = (is_a, LevelSearch::Cells, cost);
@@ -138,8 +136,7 @@ mod tests {
             let mut count = PairCount([[0; TARGETS]; SEEKERS]);
             let (seekers, mut page) = (self.0.levels[1].range.clone(), BlockPage::new());
             let seekers = (seekers, Reach::NONE);
-            self.0
-                .across(l, seekers, &self.0.levels[0], &mut page, &mut count);
+            self.0.across(l, seekers, &self.0.levels[0], &mut page, &mut count);
             count
         }
     }
@@ -165,10 +162,7 @@ mod tests {
                 ..Grid::default()
             };
             let pool = crate::threads::Threads::default();
-            let executor = crate::threads::Executor {
-                tier: Tier::SCALAR,
-                pool: &pool,
-            };
+            let executor = crate::threads::Executor { tier: Tier::SCALAR, pool: &pool };
             grid.arrange(executor, &balls, &names);
             let PairCount(found) = dispatch(Tier::SCALAR, SearchAcross(&grid));
             for (i, found) in (TARGETS..).zip(found) {
@@ -186,11 +180,7 @@ mod tests {
     fn level(bodies: usize, widest: f32, cells: [u8; 3], layout: TableLayout) -> GridLevel {
         let mut level = GridLevel::new(0..bodies, layout);
         let hi = cells.map(|count| 2.0 * widest * (f32::from(count) - 1.0));
-        let bounds = BallBounds {
-            lo: [0.0; 3],
-            hi,
-            widest,
-        };
+        let bounds = BallBounds { lo: [0.0; 3], hi, widest };
         level.cells = Cells::fit(&bounds, bodies, layout);
         assert_eq!(level.cells.count(), cells.map(u32::from));
         level.widest = widen(widest).into();
@@ -201,26 +191,16 @@ mod tests {
     /// may reach, cells are looked through when 15·s_y·s_z < n·(1 − s_x·s_y·s_z/c).
     #[test]
     fn search_mode_follows_row_cost() {
-        for (radius, cells, most) in [
-            (0.5, [10, 4, 2], 116),
-            (1.5, [20, 8, 6], 431),
-            (0.25, [9, 9, 9], 95),
-        ] {
+        for (radius, cells, most) in
+            [(0.5, [10, 4, 2], 116), (1.5, [20, 8, 6], 431), (0.25, [9, 9, 9], 95)]
+        {
             for seekers in [1, 7] {
                 let seekers = level(seekers, radius, [1; 3], TableLayout::Box);
                 let target = |bodies| level(bodies, 0.5, cells, TableLayout::Box);
                 for (bodies, search) in [(most, LevelSearch::All), (most + 1, LevelSearch::Cells)] {
                     let target = target(bodies);
-                    assert_eq!(
-                        plan(&seekers, &target),
-                        (true, search),
-                        "{radius}, {bodies}"
-                    );
-                    assert_eq!(
-                        plan(&target, &seekers),
-                        (false, search),
-                        "{radius}, {bodies}"
-                    );
+                    assert_eq!(plan(&seekers, &target), (true, search), "{radius}, {bodies}");
+                    assert_eq!(plan(&target, &seekers), (false, search), "{radius}, {bodies}");
                 }
             }
         }

@@ -99,10 +99,7 @@ impl Cells {
         let longest = (0..3).map(|i| hi[i] - lo[i]).fold(0.0, f64::max);
         let needed = 2.0 * f64::from(widen(bounds.widest)) * (1.0 + 1.0 / 65536.0);
         let mut size = needed.max(longest / MOST_CELLS);
-        let rule = |size: f64| CellRule {
-            origin: lo,
-            inverse: 1.0 / size,
-        };
+        let rule = |size: f64| CellRule { origin: lo, inverse: 1.0 / size };
         if layout == TableLayout::Box {
             let most = CELLS_PER_BODY * bodies as f64 + SPARE_CELLS;
             let fits = |size: f64| {
@@ -160,9 +157,7 @@ impl Cells {
     fn take_forward(&mut self, has: impl Fn([i32; 2]) -> bool) {
         for step in FORWARD_ROWS.into_iter().filter(|&step| has(step)) {
             let [y, z] = step.map(|k| k as u32);
-            let offset = y
-                .wrapping_mul(self.row)
-                .wrapping_add(z.wrapping_mul(self.layer));
+            let offset = y.wrapping_mul(self.row).wrapping_add(z.wrapping_mul(self.layer));
             self.forward[self.forward_len] = offset & self.mask;
             self.forward_len += 1;
         }
@@ -196,11 +191,7 @@ impl Cells {
 
     /// The layout.
     pub fn layout(&self) -> TableLayout {
-        if self.mask == u32::MAX {
-            TableLayout::Box
-        } else {
-            TableLayout::Wrapped
-        }
+        if self.mask == u32::MAX { TableLayout::Box } else { TableLayout::Wrapped }
     }
 
     /// How many cells per axis a search may span.
@@ -269,10 +260,7 @@ impl Cells {
         for axis in 0..3 {
             let x = f64::from(ball[axis]);
             let last = TO_INTEGER + f64::from(self.count[axis] - 1);
-            let (lo, hi) = (
-                self.rule.cell(axis, x - reach),
-                self.rule.cell(axis, x + reach),
-            );
+            let (lo, hi) = (self.rule.cell(axis, x - reach), self.rule.cell(axis, x + reach));
             if lo > last || hi < TO_INTEGER {
                 return None;
             }
@@ -286,10 +274,7 @@ impl Cells {
 }
 
 /// The number itself, or the nearest finite one.
-#[allow(
-    clippy::manual_clamp,
-    reason = "clamp keeps NaN, which these make a number"
-)]
+#[allow(clippy::manual_clamp, reason = "clamp keeps NaN, which these make a number")]
 fn finite(x: f32) -> f64 {
     f64::from(x.max(f32::MIN).min(f32::MAX))
 }

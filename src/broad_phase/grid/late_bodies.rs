@@ -33,10 +33,7 @@ impl Grid {
         self.take_levels(static_levels, stays, moving..bodies);
         // Slots belong to the former set. No order of places is taken from them until bodies are
         // sorted again.
-        self.age = self
-            .age
-            .next_multiple_of(FRAMES_PER_REORDER)
-            .max(FRAMES_PER_REORDER);
+        self.age = self.age.next_multiple_of(FRAMES_PER_REORDER).max(FRAMES_PER_REORDER);
         (self.fixed_sorted, self.candidates) = (false, 0);
         let late = self.levels.iter().filter(|level| level.is_late);
         let late: usize = late.map(|level| level.range.len()).sum();
@@ -70,10 +67,7 @@ mod tests {
     fn planned(balls: &[[f32; 4]]) -> Grid {
         let (mut grid, mut order) = (Grid::default(), Vec::new());
         let names: Vec<u32> = (0..balls.len() as u32).collect();
-        assert_eq!(
-            grid.reorder(balls.len(), balls, &names, &mut order),
-            Reorder::All
-        );
+        assert_eq!(grid.reorder(balls.len(), balls, &names, &mut order), Reorder::All);
         grid
     }
 
@@ -81,15 +75,11 @@ mod tests {
     #[test]
     fn late_bodies_share_one_level() {
         let radius = |i: usize| if i.is_multiple_of(50) { 64.0 } else { 1.0 };
-        let balls: Vec<_> = (0..2000)
-            .map(|i| [2.0 * i as f32, 0.0, 0.0, radius(i)])
-            .collect();
+        let balls: Vec<_> = (0..2000).map(|i| [2.0 * i as f32, 0.0, 0.0, radius(i)]).collect();
         let mut grid = planned(&balls);
         let ranges = |grid: &Grid| -> Vec<_> {
             let levels = grid.levels.iter();
-            levels
-                .map(|level| (level.range.clone(), level.is_late))
-                .collect()
+            levels.map(|level| (level.range.clone(), level.is_late)).collect()
         };
         assert_eq!(ranges(&grid), [(0..40, false), (40..2000, false)]);
         // A giant and two small ones go, five come.

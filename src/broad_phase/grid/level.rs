@@ -49,10 +49,7 @@ impl GridLevel {
 
     /// A level for bodies that came after the levels were planned.
     pub fn late(range: Range<usize>) -> Self {
-        Self {
-            is_late: true,
-            ..Self::new(range, TableLayout::Box)
-        }
+        Self { is_late: true, ..Self::new(range, TableLayout::Box) }
     }
 
     /// The level with another range of places.
@@ -94,11 +91,7 @@ impl GridLevel {
         self.starts[0] = range.start as u32;
         let last = self.cells.last();
         loop {
-            let from = BodiesByPlace {
-                balls,
-                names,
-                cells: place_cells,
-            };
+            let from = BodiesByPlace { balls, names, cells: place_cells };
             let to = CellShare {
                 first_cell: 0,
                 ends: &mut self.starts[1..],
@@ -131,10 +124,7 @@ impl GridLevel {
         let range = self.range.clone();
         // Checksums of the names, because sorting them would allocate.
         let sums = |names: &[u32]| {
-            let sums = names
-                .iter()
-                .map(|&name| u64::from(name))
-                .map(|x| (x, x * x));
+            let sums = names.iter().map(|&name| u64::from(name)).map(|x| (x, x * x));
             sums.fold((0u64, 0u64), |a, b| (a.0 + b.0, a.1.wrapping_add(b.1)))
         };
         let slotted = &slots.names[range.clone()];
@@ -229,14 +219,7 @@ impl<'a> CellShare<'a> {
                 self.cells = rest;
                 let first_slot = self.first_slot;
                 self.first_slot += bodies as u32;
-                CellShare {
-                    first_cell,
-                    ends,
-                    first_slot,
-                    balls,
-                    names,
-                    cells,
-                }
+                CellShare { first_cell, ends, first_slot, balls, names, cells }
             })
             .collect();
         pool.each(&mut shares, |_, share| share.place(from));
@@ -302,10 +285,7 @@ mod tests {
         let (mut level, balls) = (GridLevel::new(0..2, TableLayout::Box), [[0.25; 4]; 2]);
         level.cells = Cells::fit(&BallBounds::of(Tier::SCALAR, &balls), 2, TableLayout::Box);
         (level.starts, level.widest) = (vec![0, 2], widen(0.25).into());
-        let slots = Slots {
-            names: slotted.to_vec(),
-            ..Slots::default()
-        };
+        let slots = Slots { names: slotted.to_vec(), ..Slots::default() };
         level.check(&slots, &balls, &names);
     }
 
@@ -360,12 +340,7 @@ mod tests {
         let names: Vec<u32> = (0..100).collect();
         let sorted = |level: &mut GridLevel, step: f32| {
             let ball = |&i: &u32| [step * i as f32, 0.0, 0.0, 1.0];
-            sort(
-                level,
-                1,
-                &names.iter().map(ball).collect::<Vec<_>>(),
-                &names,
-            );
+            sort(level, 1, &names.iter().map(ball).collect::<Vec<_>>(), &names);
             (level.cells.table_len() + 1, level.starts.capacity())
         };
         for step in [1.0, 2.0] {
@@ -393,13 +368,7 @@ mod tests {
         let sorted = |threads| {
             let mut level = GridLevel::new(0..len, TableLayout::Box);
             let (slots, slot_cells) = sort(&mut level, threads, &balls, &names);
-            (
-                level.starts,
-                level.widest,
-                slots.balls,
-                slots.names,
-                slot_cells,
-            )
+            (level.starts, level.widest, slots.balls, slots.names, slot_cells)
         };
         let one = sorted(1);
         assert!(one.4.is_sorted() && one.0.len() > 10_000);

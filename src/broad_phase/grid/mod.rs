@@ -118,9 +118,7 @@ impl Grid {
     /// Whether the levels no longer fit, or there are none.
     pub(super) fn needs_plan(&self, bodies: usize) -> bool {
         let most = |planned| PLAN_GROWTH * planned + bodies as u64;
-        let grown = self
-            .planned
-            .is_some_and(|planned| self.candidates > most(planned));
+        let grown = self.planned.is_some_and(|planned| self.candidates > most(planned));
         (self.levels.is_empty() && bodies > 0) || (grown && self.age >= FRAMES_PER_PLAN_CHECK)
     }
 
@@ -168,11 +166,7 @@ impl Grid {
         self.slots.resize(balls.len());
         self.slot_cells.resize(balls.len(), 0);
         self.place_cells.resize(balls.len(), 0);
-        let changed = if self.fixed_sorted {
-            self.moving_levels
-        } else {
-            self.levels.len()
-        };
+        let changed = if self.fixed_sorted { self.moving_levels } else { self.levels.len() };
         for level in &mut self.levels[..changed] {
             level.sort(
                 executor,
@@ -200,11 +194,8 @@ impl Grid {
             push_parts(&mut self.parts, near, SLOTS_PER_PART);
             for (other_index, other) in self.levels.iter().enumerate().skip(index + 1) {
                 let (seeks, search) = across::plan(level, other);
-                let (seeker, target) = if seeks {
-                    (index, other_index)
-                } else {
-                    (other_index, index)
-                };
+                let (seeker, target) =
+                    if seeks { (index, other_index) } else { (other_index, index) };
                 let size = match search {
                     LevelSearch::Cells => SEEKERS_BY_CELLS,
                     LevelSearch::All => SEEKERS_OF_ALL,
@@ -287,10 +278,7 @@ impl Grid {
 fn push_parts(parts: &mut Vec<GridPart>, whole: GridPart, size: usize) {
     let slots = whole.slots.clone();
     for start in slots.clone().step_by(size) {
-        parts.push(GridPart {
-            slots: start..slots.end.min(start + size),
-            ..whole.clone()
-        });
+        parts.push(GridPart { slots: start..slots.end.min(start + size), ..whole.clone() });
     }
 }
 
@@ -345,16 +333,10 @@ mod tests {
         let mut order = vec![9];
         let followed = grid.follow_slots(2, &[0, 1, 3, 2], &mut order);
         assert_eq!((followed, &order), (Reorder::Moving, &vec![1, 0, 3, 2]));
-        assert_eq!(
-            (grid.age, grid.fixed_sorted),
-            (FRAMES_PER_PLAN_CHECK + 1, true)
-        );
+        assert_eq!((grid.age, grid.fixed_sorted), (FRAMES_PER_PLAN_CHECK + 1, true));
         let followed = grid.follow_slots(2, &[0, 1, 2, 3], &mut order);
         assert_eq!((followed, &order), (Reorder::All, &vec![1, 0, 3, 2]));
-        assert_eq!(
-            (grid.age, grid.fixed_sorted),
-            (FRAMES_PER_PLAN_CHECK + 2, false)
-        );
+        assert_eq!((grid.age, grid.fixed_sorted), (FRAMES_PER_PLAN_CHECK + 2, false));
         grid.rest();
         assert_eq!(grid.age, FRAMES_PER_PLAN_CHECK + 3);
     }
@@ -370,12 +352,7 @@ mod tests {
         grid.slot_cells.resize(6, 0);
         assert_eq!(grid.bodies(), 6);
         grid.parts = [(0, 0), (0, 1), (1, 0)]
-            .map(|(seeker, level)| GridPart {
-                slots: 0..1,
-                seeker,
-                level,
-                kind: PartKind::Near,
-            })
+            .map(|(seeker, level)| GridPart { slots: 0..1, seeker, level, kind: PartKind::Near })
             .to_vec();
         let moves = [0, 1, 2].map(|part| grid.moves(part));
         assert_eq!(moves, [[true, true], [true, false], [false, true]]);

@@ -69,10 +69,7 @@ impl Grid {
     fn in_box(&self, level: &GridLevel, bodies: Range<usize>, mut pen: RunWriter<'_>) {
         let starts = level.starts.as_slice();
         for (lane, &cell) in self.slot_cells[bodies.clone()].iter().enumerate() {
-            pen.push(
-                lane,
-                (bodies.start + lane) as u32 + 1..starts[cell as usize + 2],
-            );
+            pen.push(lane, (bodies.start + lane) as u32 + 1..starts[cell as usize + 2]);
             for &row in level.cells.forward() {
                 let at = (cell + row) as usize;
                 pen.push(lane, starts[at - 1]..starts[at + 2]);

@@ -141,10 +141,7 @@ mod tests {
         let diagonal = |n: usize, step: f32| {
             let at = |i: usize| i as f32 * step;
             let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
-            planned(&balls)
-                .into_iter()
-                .map(|level| level.1)
-                .collect::<Vec<_>>()
+            planned(&balls).into_iter().map(|level| level.1).collect::<Vec<_>>()
         };
         assert_eq!(diagonal(1000, 1.5), [TableLayout::Wrapped]);
         assert_eq!(diagonal(8, 1.5), [TableLayout::Box]);
@@ -155,11 +152,7 @@ mod tests {
     fn crowd_sums_cell_occupancy() {
         let at = |x: f32| [x, 0.0, 0.0, 0.5];
         let balls = [0.0, 50.0, 0.1, 50.1, 50.2, 100.0].map(at);
-        let cells = Cells::fit(
-            &BallBounds::of(simd::Tier::SCALAR, &balls),
-            6,
-            TableLayout::Box,
-        );
+        let cells = Cells::fit(&BallBounds::of(simd::Tier::SCALAR, &balls), 6, TableLayout::Box);
         assert_eq!(crowd(&cells, &balls), 4 + 9 + 1);
         assert_eq!(fit(&balls).1, 14);
     }

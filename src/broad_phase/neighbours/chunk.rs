@@ -34,11 +34,7 @@ impl Chunk {
     /// Opens an entry, replacing the last one if that is empty.
     #[inline(always)]
     pub fn open(&mut self, first: usize) {
-        if self
-            .entries
-            .last()
-            .is_some_and(|&(_, end)| end as usize == self.len)
-        {
+        if self.entries.last().is_some_and(|&(_, end)| end as usize == self.len) {
             let before = self.entries.len().checked_sub(2);
             let start = before.map_or(0, |before| self.entries[before].1 as usize);
             if start == self.len {
@@ -121,12 +117,9 @@ mod tests {
     /// A list leaves room for the next one where it has none to spare.
     #[test]
     fn full_list_leaves_room() {
-        for (capacity, spare, room) in [
-            (100, 1.0, 100),
-            (199, 2.0, 300),
-            (200, 2.0, 200),
-            (300, 2.0, 300),
-        ] {
+        for (capacity, spare, room) in
+            [(100, 1.0, 100), (199, 2.0, 300), (200, 2.0, 200), (300, 2.0, 300)]
+        {
             let mut column = hundred(capacity);
             leave_room(&mut column, spare);
             assert_eq!(column.capacity(), room, "{capacity}, {spare}");
@@ -135,18 +128,9 @@ mod tests {
 
     #[test]
     fn entries_without_neighbours_are_overwritten() {
-        let mut chunk = Chunk {
-            spare: 1.0,
-            ..Chunk::default()
-        };
+        let mut chunk = Chunk { spare: 1.0, ..Chunk::default() };
         assert_eq!(chunk.first(), None);
-        for (first, codes) in [
-            (0, &[][..]),
-            (16, &[7, 8]),
-            (32, &[]),
-            (48, &[]),
-            (64, &[9]),
-        ] {
+        for (first, codes) in [(0, &[][..]), (16, &[7, 8]), (32, &[]), (48, &[]), (64, &[9])] {
             chunk.open(first);
             assert_eq!(chunk.first(), Some(first));
             chunk.append(codes);

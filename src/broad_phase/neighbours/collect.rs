@@ -175,10 +175,7 @@ mod tests {
         // One in sixteen is far away, so that hits don't come in whole vectors.
         let is_far = |slot: usize| slot % 16 == 7;
         let ball = |slot| [if is_far(slot) { 9.0 } else { 1.0 }, 1.0, 1.0, 1.0];
-        let slots = Slots {
-            balls: (0..len + MAX_WIDTH).map(ball).collect(),
-            ..Slots::default()
-        };
+        let slots = Slots { balls: (0..len + MAX_WIDTH).map(ball).collect(), ..Slots::default() };
         // Sixteen slots from the first one on share an entry; another before or after them opens
         // one.
         let runs = [
@@ -190,23 +187,15 @@ mod tests {
             (60, 61..61 + MOST_CANDIDATES),
             (37, 1..3),
         ];
-        let all = runs
-            .iter()
-            .flat_map(|(i, run)| run.clone().map(|j| (*i, j)));
+        let all = runs.iter().flat_map(|(i, run)| run.clone().map(|j| (*i, j)));
         let seen = all.clone().count() as u64;
         let expected: Vec<_> = all.filter(|&(_, j)| !is_far(j)).collect();
-        let test = GrownBalls {
-            slots: slots.arranged(),
-            by: [Reach::NONE; 2],
-            volume: Volume::Ball,
-        };
+        let test =
+            GrownBalls { slots: slots.arranged(), by: [Reach::NONE; 2], volume: Volume::Ball };
         for tier in Tier::available() {
             let mut chunk = Chunk::default();
             let effort = SearchEffort::unlimited();
-            dispatch(
-                tier,
-                PassRuns(Collector::new(&test, &mut chunk, &effort), &runs),
-            );
+            dispatch(tier, PassRuns(Collector::new(&test, &mut chunk, &effort), &runs));
             assert_eq!((chunk.len(), effort.tested()), (expected.len(), seen));
             let mut read = ListedPairs(Vec::new());
             dispatch(tier, FindPairs(&NeighbourList::of(chunk), &mut read));

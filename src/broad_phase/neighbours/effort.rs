@@ -52,11 +52,7 @@ pub struct SearchEffort {
 impl SearchEffort {
     /// Counts of zero, with these limits.
     pub fn new(limits: SearchLimits) -> Self {
-        Self {
-            limits,
-            pairs: AtomicU64::new(0),
-            candidates: AtomicU64::new(0),
-        }
+        Self { limits, pairs: AtomicU64::new(0), candidates: AtomicU64::new(0) }
     }
 
     /// Adds a thread's counts.
@@ -79,11 +75,7 @@ impl SearchEffort {
 
     /// Candidates tested. An abandoned search counts as its limit, on any number of threads.
     pub fn tested(&self) -> u64 {
-        if self.is_over() {
-            self.limits.candidates
-        } else {
-            self.candidates.load(Relaxed)
-        }
+        if self.is_over() { self.limits.candidates } else { self.candidates.load(Relaxed) }
     }
 
     /// Checks in debug builds that no thread went on beyond the limits.
@@ -105,20 +97,14 @@ mod tests {
     impl SearchEffort {
         /// The effort of a search that never ends early.
         pub fn unlimited() -> Self {
-            Self::new(SearchLimits {
-                pairs: u64::MAX,
-                candidates: u64::MAX,
-            })
+            Self::new(SearchLimits { pairs: u64::MAX, candidates: u64::MAX })
         }
     }
 
     /// An effort is over beyond either limit.
     #[test]
     fn search_ends_beyond_either_limit() {
-        let limits = SearchLimits {
-            pairs: 10,
-            candidates: 100,
-        };
+        let limits = SearchLimits { pairs: 10, candidates: 100 };
         for (pairs, candidates, over) in [(10, 100, false), (11, 50, true), (5, 101, true)] {
             let effort = SearchEffort::new(limits);
             assert_eq!(effort.is_over_with(pairs, candidates), over);
@@ -127,20 +113,14 @@ mod tests {
             assert_eq!(effort.is_over_with(1, 1), over);
             effort.add(1, 1);
             assert_eq!(effort.is_over(), over);
-            assert_eq!(
-                effort.tested(),
-                100.min(candidates).max(if over { 100 } else { 0 })
-            );
+            assert_eq!(effort.tested(), 100.min(candidates).max(if over { 100 } else { 0 }));
         }
     }
 
     #[test]
     #[cfg_attr(debug_assertions, should_panic(expected = "ends at its limits"))]
     fn a_search_without_end_is_noticed() {
-        let limits = SearchLimits {
-            pairs: 10,
-            candidates: 100,
-        };
+        let limits = SearchLimits { pairs: 10, candidates: 100 };
         let effort = SearchEffort::new(limits);
         effort.add(0, 100_000);
         effort.check(4);

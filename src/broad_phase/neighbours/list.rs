@@ -65,14 +65,7 @@ impl NeighbourList {
             if effort.is_over() {
                 return;
             }
-            let make = BuildList {
-                grid,
-                part,
-                near,
-                skin,
-                chunk,
-                effort: &effort,
-            };
+            let make = BuildList { grid, part, near, skin, chunk, effort: &effort };
             dispatch(executor.tier, make);
         });
         effort.check(executor.pool.threads());
@@ -162,12 +155,7 @@ mod tests {
         /// A list with a single part.
         pub(in crate::broad_phase) fn of(mut chunk: Chunk) -> Self {
             chunk.close();
-            Self {
-                parts: 1,
-                len: chunk.len(),
-                tested: 0,
-                chunks: vec![chunk],
-            }
+            Self { parts: 1, len: chunk.len(), tested: 0, chunks: vec![chunk] }
         }
     }
 

@@ -86,10 +86,7 @@ enum ListState {
 impl Neighbours {
     /// A finder for balls that stand for `volume`.
     pub fn new(volume: Volume) -> Self {
-        Self {
-            volume,
-            ..Self::default()
-        }
+        Self { volume, ..Self::default() }
     }
 
     /// The volume that balls stand for.
@@ -174,8 +171,7 @@ impl Neighbours {
             });
         }
         self.state = ListState::Searching;
-        self.policy
-            .turn_to(long.is_some(), || sizes(balls, names, long));
+        self.policy.turn_to(long.is_some(), || sizes(balls, names, long));
         let Some(skin) = self.policy.next() else {
             return self.search(executor, balls, names);
         };
@@ -199,10 +195,7 @@ impl Neighbours {
         // The grid plans by the candidates that it would have without a skin.
         let number = (self.list_tests as f64 / self.policy.more_candidates()) as u64;
         self.grid.observe(number);
-        self.candidates = CandidateEstimate {
-            number,
-            is_counted: false,
-        };
+        self.candidates = CandidateEstimate { number, is_counted: false };
     }
 
     /// Lets the grid find the frame's pairs, without a list.
@@ -268,10 +261,7 @@ impl Neighbours {
     pub(super) fn observe(&mut self, candidates: u64) {
         if self.state == ListState::Searching {
             self.grid.observe(candidates);
-            self.candidates = CandidateEstimate {
-                number: candidates,
-                is_counted: true,
-            };
+            self.candidates = CandidateEstimate { number: candidates, is_counted: true };
         }
     }
 }

@@ -42,10 +42,7 @@ impl LargestDrift {
         });
         let [own, length] =
             farthest.map(|square| f64::from(f32::from_bits(square.into_inner())).sqrt());
-        Self {
-            own,
-            typical: length / typical,
-        }
+        Self { own, typical: length / typical }
     }
 }
 
@@ -62,10 +59,7 @@ pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> 
     let (mut sums, mut asked, mut smallest) = ([0.0; 7], 0.0, f64::INFINITY);
     for body in (0..bodies).step_by(bodies.div_ceil(SAMPLE_SIZE).max(1)) {
         let [x, y, z] = half_sides(body).map(|half| f64::from(half.max(LEAST_RADIUS)));
-        for (sum, product) in sums
-            .iter_mut()
-            .zip([x, y, z, y * z, z * x, x * y, x * y * z])
-        {
+        for (sum, product) in sums.iter_mut().zip([x, y, z, y * z, z * x, x * y, x * y * z]) {
             *sum += product;
         }
         (asked, smallest) = (asked + 1.0, smallest.min(x.max(y).max(z)));
@@ -75,11 +69,7 @@ pub fn typical_radius(bodies: usize, half_sides: impl Fn(usize) -> [f32; 3]) -> 
     let product = 2.0 * (xyz + x * yz + y * zx + z * xy);
     let of_two = 2.0 * ((yz + y * z) + (zx + z * x) + (xy + x * y));
     let typical = 3.0 * product / (2.0 * of_two);
-    if typical > MOST_SIZE_RATIO * smallest {
-        0.0
-    } else {
-        typical
-    }
+    if typical > MOST_SIZE_RATIO * smallest { 0.0 } else { typical }
 }
 
 /// Whether most balls are smaller than the floor of the skin and of its rounding margin. A list's
@@ -107,11 +97,7 @@ pub struct SizeSummary {
 impl SizeSummary {
     /// The sizes of boxes, or of balls if those are listed.
     pub fn new(typical: f64, of_balls: f64) -> Self {
-        let of_balls = if typical > 0.0 && of_balls > typical {
-            typical / of_balls
-        } else {
-            1.0
-        };
+        let of_balls = if typical > 0.0 && of_balls > typical { typical / of_balls } else { 1.0 };
         Self { typical, of_balls }
     }
 }
@@ -147,11 +133,7 @@ fn raise<L: Lanes>(
 ) {
     let (now, then) = (quads_in_columns(l, now), quads_in_columns(l, then));
     for i in 0..BLOCK_BODIES {
-        let (dx, dy, dz) = (
-            now[0][i] - then[0][i],
-            now[1][i] - then[1][i],
-            now[2][i] - then[2][i],
-        );
+        let (dx, dy, dz) = (now[0][i] - then[0][i], now[1][i] - then[1][i], now[2][i] - then[2][i]);
         let growth = larger(now[3][i] - then[3][i], 0.0);
         let square = dx * dx + dy * dy + dz * dz + growth * growth;
         let radius = larger(then[3][i], LEAST_RADIUS);
@@ -230,9 +212,7 @@ mod tests {
         let found = typical(&[1.0, 3.0]);
         assert!((found - 352.0 / 144.0).abs() < 1e-12, "{found}");
         // One in two is asked of more than 256.
-        let every_other: Vec<f32> = (0..512)
-            .map(|i| if i % 2 == 0 { 1.0 } else { 50.0 })
-            .collect();
+        let every_other: Vec<f32> = (0..512).map(|i| if i % 2 == 0 { 1.0 } else { 50.0 }).collect();
         assert!((typical(&every_other) - 1.0).abs() < 1e-12);
         assert!(typical(&[0.0]) > 0.0);
     }
@@ -241,23 +221,13 @@ mod tests {
     /// typical radius.
     #[test]
     fn typical_radius_of_long_boxes() {
-        let sides = [
-            [0.125, 1.0, 8.0],
-            [8.0, 1.0, 0.125],
-            [1.0, 8.0, 0.125],
-            [3.0, 2.0, 1.0],
-        ];
+        let sides = [[0.125, 1.0, 8.0], [8.0, 1.0, 0.125], [1.0, 8.0, 0.125], [3.0, 2.0, 1.0]];
         let typical = typical_radius(4, |body| sides[body]);
         let pairs = |skin: f64| -> f64 {
             let product = |a: [f32; 3], b: [f32; 3]| -> f64 {
-                (0..3)
-                    .map(|k| f64::from(a[k] + b[k]) + 2.0 * skin)
-                    .product()
+                (0..3).map(|k| f64::from(a[k] + b[k]) + 2.0 * skin).product()
             };
-            sides
-                .iter()
-                .flat_map(|&a| sides.map(|b| product(a, b)))
-                .sum()
+            sides.iter().flat_map(|&a| sides.map(|b| product(a, b))).sum()
         };
         let step = 1e-6;
         let growth = (pairs(step) - pairs(-step)) / (2.0 * step) / pairs(0.0);

@@ -195,11 +195,7 @@ impl Policy {
                 let make =
                     LIST_BODY_COST + LIST_CANDIDATE_COST * candidates * self.candidates(skin);
                 let cost = make / frames + FRAME_BODY_COST + FRAME_PAIR_COST * pairs * wider(skin);
-                let penalty = if radii == self.radii {
-                    1.0
-                } else {
-                    1.0 / MOST_SWITCH_COST_RATIO
-                };
+                let penalty = if radii == self.radii { 1.0 } else { 1.0 / MOST_SWITCH_COST_RATIO };
                 if cost * penalty < best.0 {
                     best = (cost * penalty, radii, index);
                 }
@@ -244,11 +240,7 @@ impl Policy {
 
     /// The search for the list exceeded its limits.
     pub fn overflowed(&mut self) {
-        let radii = if self.knows_a_length() {
-            RadiusKind::Typical
-        } else {
-            RadiusKind::Own
-        };
+        let radii = if self.knows_a_length() { RadiusKind::Typical } else { RadiusKind::Own };
         (self.radii, self.skin) = (radii, 0);
         self.give_up();
     }

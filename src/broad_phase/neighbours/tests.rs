@@ -47,9 +47,7 @@ impl<'a> Kernel for FindPairs<'a> {
         let mut found = Candidates(finder, BTreeMap::new());
         match finder.list().filter(|_| of_list) {
             Some(list) => list.find(l, 0..list.parts(), &mut &mut found),
-            None => finder
-                .grid()
-                .find(l, 0..finder.grid().parts(), &mut &mut found),
+            None => finder.grid().find(l, 0..finder.grid().parts(), &mut &mut found),
         }
         found.1
     }
@@ -75,22 +73,16 @@ impl TrackedBodies {
         let pool = Threads::default();
         let executor = pool.executor(Tier::SCALAR);
         let in_places = |names: &[u32]| -> Vec<_> {
-            names
-                .iter()
-                .map(|&name| self.balls[name as usize])
-                .collect()
+            names.iter().map(|&name| self.balls[name as usize]).collect()
         };
         let mut order = Vec::new();
         let before = in_places(&self.names);
-        let reorder = self
-            .finder
-            .reorder(self.moving, &before, &self.names, &mut order);
+        let reorder = self.finder.reorder(self.moving, &before, &self.names, &mut order);
         if reorder != Reorder::None {
             self.names.copy_from_slice(&order);
         }
         let now = in_places(&self.names);
-        self.finder
-            .arrange(executor, self.moving, &now, &self.names, boxes);
+        self.finder.arrange(executor, self.moving, &now, &self.names, boxes);
         if self.finder.list().is_none() {
             let candidates = self.candidates(false).values().sum::<u32>();
             self.finder.observe(candidates.into());
@@ -123,11 +115,7 @@ fn scattered(thin: bool) -> TrackedBodies {
         let [x, y, z] = [7919, 104_729, 1_299_709].map(|p| (i * p % 1000) as f32 * 0.011);
         let far = 300.0 * (i % 41) as f32;
         let [y, z] = if thin { [far, far] } else { [y, z] };
-        let radius = if i % 50 == 7 {
-            2.0
-        } else {
-            0.4 + 0.05 * (i % 5) as f32
-        };
+        let radius = if i % 50 == 7 { 2.0 } else { 0.4 + 0.05 * (i % 5) as f32 };
         [if thin { far + x } else { x }, y, z, radius]
     };
     TrackedBodies::new(500, (0..620).map(place).collect())
@@ -137,10 +125,7 @@ fn scattered(thin: bool) -> TrackedBodies {
 #[test]
 fn list_has_each_touching_pair_once() {
     // A skin of 0.25 radii, their own or typical ones of this size.
-    let skins = [
-        (Policy::default(), [0.25, 0.0]),
-        (Policy::of_typical(0.8), [0.0, 0.2]),
-    ];
+    let skins = [(Policy::default(), [0.25, 0.0]), (Policy::of_typical(0.8), [0.0, 0.2])];
     for thin in [false, true] {
         for (policy, skin) in skins.clone() {
             let mut bodies = scattered(thin);
@@ -191,9 +176,7 @@ fn second_list_lasts_for_mixed_sizes() {
         bodies.balls[9][1] += 0.03;
     }
     use ListState::{Followed, Made, Searching};
-    let wanted = [
-        Searching, Made, Made, Followed, Followed, Followed, Followed, Followed,
-    ];
+    let wanted = [Searching, Made, Made, Followed, Followed, Followed, Followed, Followed];
     assert_eq!(states, wanted);
     let skin = bodies.finder.policy.skin();
     let is_share = |sixteenths: u8| skin == Skin::share(f32::from(sixteenths) / 16.0);
@@ -220,25 +203,15 @@ fn list_lasts_until_skin_drift() {
     );
     bodies.step();
     assert_eq!(
-        (
-            bodies.candidates(true),
-            bodies.finder.grid.age_and_candidates().0
-        ),
+        (bodies.candidates(true), bodies.finder.grid.age_and_candidates().0),
         (listed, age + 1)
     );
     bodies.balls[9][1] += 0.25 * 0.6;
     bodies.step();
-    assert!(
-        bodies.finder.state != ListState::Followed,
-        "a jump by a skin"
-    );
+    assert!(bodies.finder.state != ListState::Followed, "a jump by a skin");
     // Bodies that jump in every frame are the grid's.
     for _ in 0..3 {
-        bodies
-            .balls
-            .iter_mut()
-            .take(500)
-            .for_each(|ball| ball[2] = -ball[2]);
+        bodies.balls.iter_mut().take(500).for_each(|ball| ball[2] = -ball[2]);
         bodies.step();
     }
     assert_eq!(bodies.finder.state, ListState::Searching);
@@ -250,22 +223,12 @@ fn list_lasts_until_skin_drift() {
 /// ones; the others are alone.
 fn clusters(bodies: usize, first: &[usize], last: &[usize]) -> TrackedBodies {
     let many = |places: usize, sizes: &[usize]| -> Vec<usize> {
-        (places..)
-            .zip(sizes)
-            .flat_map(|(place, &size)| vec![place; size])
-            .collect()
+        (places..).zip(sizes).flat_map(|(place, &size)| vec![place; size]).collect()
     };
     let mut places = many(0, first);
     places.extend(many(bodies, last));
     places.extend(first.len()..first.len() + bodies - places.len());
-    let ball = |place: usize| {
-        [
-            10.0 * (place % 10) as f32,
-            10.0 * (place / 10) as f32,
-            0.0,
-            1.0,
-        ]
-    };
+    let ball = |place: usize| [10.0 * (place % 10) as f32, 10.0 * (place / 10) as f32, 0.0, 1.0];
     TrackedBodies::new(bodies, places.into_iter().map(ball).collect())
 }
 

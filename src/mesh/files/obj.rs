@@ -82,11 +82,7 @@ impl ObjReader {
         let corner = |word: &Token| {
             let index: i64 = word.text.split('/').next()?.parse().ok()?;
             let from_start = index.saturating_add(so_far + 1);
-            Some(if index < 0 && from_start > 0 {
-                from_start
-            } else {
-                index
-            })
+            Some(if index < 0 && from_start > 0 { from_start } else { index })
         };
         let corners: Option<Vec<i64>> = words.iter().map(corner).collect();
         let Some(corners) = corners else {

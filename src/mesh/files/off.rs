@@ -16,24 +16,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     let text = text::decode(bytes);
     let without_comment =
         |(number, line): (usize, _)| (number, str::split(line, '#').next().unwrap_or_default());
-    let tokens: Vec<Token> = text::lines(&text)
-        .map(without_comment)
-        .flat_map(text::words)
-        .collect();
+    let tokens: Vec<Token> =
+        text::lines(&text).map(without_comment).flat_map(text::words).collect();
     let (layout, rest) = header(&tokens)?;
-    let by_line = OffBody {
-        rest,
-        line: 0,
-        by_line: true,
-    }
-    .read(&layout);
+    let by_line = OffBody { rest, line: 0, by_line: true }.read(&layout);
     by_line.or_else(|fault| {
-        let free = OffBody {
-            rest,
-            line: 0,
-            by_line: false,
-        }
-        .read(&layout);
+        let free = OffBody { rest, line: 0, by_line: false }.read(&layout);
         free.map_err(|_| fault)
     })
 }
@@ -56,29 +44,20 @@ fn header<'t, 'a>(tokens: &'t [Token<'a>]) -> Result<(OffLayout, &'t [Token<'a>]
         return refused("this is a binary OFF file".to_owned(), "convert it to text");
     }
     if text::number(first.text).is_some() {
-        let layout = OffLayout {
-            weight: false,
-            extra: Some(0),
-        };
+        let layout = OffLayout { weight: false, extra: Some(0) };
         return Ok((layout, tokens)); // no header
     }
     let upper = first.text.to_ascii_uppercase();
     let help = "an OFF file starts with OFF, COFF, NOFF, CNOFF, STOFF or 4OFF";
     let Some(letters) = upper.strip_suffix("OFF") else {
-        return refused(
-            format!("this is not OFF: found {}", text::excerpt(first.text)),
-            help,
-        );
+        return refused(format!("this is not OFF: found {}", text::excerpt(first.text)), help);
     };
     let after_texture = letters.strip_prefix("ST");
     let after_colour = after_texture.unwrap_or(letters).trim_start_matches('C');
     let after_normal = after_colour.trim_start_matches('N');
     if !matches!(after_normal, "" | "4") || first.text.ends_with("nOFF") {
         return refused(
-            format!(
-                "vertices of {} have another number of dimensions",
-                first.text
-            ),
+            format!("vertices of {} have another number of dimensions", first.text),
             help,
         );
     }
@@ -105,10 +84,7 @@ impl<'t, 'a> OffBody<'t, 'a> {
         let counts = self.take(2, || "the numbers of vertices and faces".to_owned())?;
         let [vertices, faces] = [count(&counts[0])?, count(&counts[1])?];
         // The number of edges follows. Some programs omit it, and none uses it.
-        let same_line = self
-            .rest
-            .first()
-            .is_some_and(|token| token.line == self.line);
+        let same_line = self.rest.first().is_some_and(|token| token.line == self.line);
         if same_line {
             self.take(1, || "the number of edges".to_owned())?;
         }
@@ -171,10 +147,8 @@ impl<'t, 'a> OffBody<'t, 'a> {
         let what = || format!("face {index} of {faces}");
         let size = &self.take(1, what)?[0];
         let corners = self.take(count(size)?, what)?;
-        let corners: Vec<i64> = corners
-            .iter()
-            .map(|corner| corner.integer("an index"))
-            .collect::<Result<_, _>>()?;
+        let corners: Vec<i64> =
+            corners.iter().map(|corner| corner.integer("an index")).collect::<Result<_, _>>()?;
         if corners.is_empty() {
             let message = format!("face {index} has no vertices");
             return Err((Some(size.line), Problem::malformed(message, "remove it")));
@@ -216,9 +190,6 @@ fn count(token: &Token) -> Result<usize, LineProblem> {
     let count = token.integer("a count")?;
     usize::try_from(count).map_err(|_| {
         let message = format!("a count should not be negative, found {count}");
-        (
-            Some(token.line),
-            Problem::malformed(message, "correct the count"),
-        )
+        (Some(token.line), Problem::malformed(message, "correct the count"))
     })
 }

@@ -22,20 +22,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     let data = &bytes[header.size..];
     let Encoding::Binary { big_endian } = header.encoding else {
         let text = text::decode(data);
-        let body = |by_line| PlyBody::Text {
-            tokens: tokens(&text, header.lines).peekable(),
-            by_line,
-        };
+        let body =
+            |by_line| PlyBody::Text { tokens: tokens(&text, header.lines).peekable(), by_line };
         let exact = read_body(&header, body(false));
         return exact.or_else(|fault| read_body(&header, body(true)).map_err(|_| fault));
     };
-    read_body(
-        &header,
-        PlyBody::Binary {
-            rest: data,
-            big_endian,
-        },
-    )
+    read_body(&header, PlyBody::Binary { rest: data, big_endian })
 }
 
 fn read_body(header: &Header, mut body: PlyBody) -> Result<RawMesh, LineProblem> {
@@ -121,11 +113,7 @@ impl PlyBody<'_> {
 
     /// Ends an element whose last value is on this line.
     fn end_element(&mut self, line: Option<usize>) {
-        if let Self::Text {
-            tokens,
-            by_line: true,
-        } = self
-        {
+        if let Self::Text { tokens, by_line: true } = self {
             while tokens.next_if(|token| Some(token.line) == line).is_some() {}
         }
     }
@@ -217,8 +205,7 @@ impl PlyMesh {
                         (1, &[a, b, c]) => [b, a, c],
                         (_, corners) => [corners[0], corners[1], corners[2]],
                     };
-                    self.triangles
-                        .extend(strip.windows(3).enumerate().map(turned));
+                    self.triangles.extend(strip.windows(3).enumerate().map(turned));
                 }
             }
             PropertyUse::Coordinate(_) | PropertyUse::Nothing => {}

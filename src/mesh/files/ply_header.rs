@@ -104,12 +104,7 @@ pub(super) struct Header {
 impl Header {
     pub fn read(bytes: &[u8]) -> Result<Self, LineProblem> {
         let mut encoding = None;
-        let mut header = Self {
-            encoding: Encoding::Text,
-            elements: Vec::new(),
-            size: 0,
-            lines: 0,
-        };
+        let mut header = Self { encoding: Encoding::Text, elements: Vec::new(), size: 0, lines: 0 };
         while let Some(line) = header.next_line(bytes) {
             let line = text::decode(line);
             let words: Vec<Token> = text::words((header.lines, &line)).collect();
@@ -143,10 +138,7 @@ impl Header {
                 return Err((Some(header.lines), malformed(message)));
             }
         }
-        Err((
-            Some(header.lines),
-            malformed("the file ends in a PLY header".to_owned()),
-        ))
+        Err((Some(header.lines), malformed("the file ends in a PLY header".to_owned())))
     }
 
     /// The next line. Lines end with LF (a CR before it is white space), or all of them with CR.
@@ -191,11 +183,7 @@ impl Header {
             ("tristrips", _) if is_indices => PropertyUse::Strips,
             _ => PropertyUse::Nothing,
         };
-        element.properties.push(Property {
-            length,
-            scalar: Scalar::named(scalar)?,
-            used_as,
-        });
+        element.properties.push(Property { length, scalar: Scalar::named(scalar)?, used_as });
         Some(())
     }
 

@@ -34,10 +34,7 @@ pub struct ReadOptions {
 
 impl Default for ReadOptions {
     fn default() -> Self {
-        Self {
-            tri_format: None,
-            max_bytes: files::MAX_BYTES,
-        }
+        Self { tri_format: None, max_bytes: files::MAX_BYTES }
     }
 }
 
@@ -58,11 +55,7 @@ impl MeshFormat {
     /// "written".
     pub(super) fn of_path(path: &Path, action: &'static str) -> Result<Self, Problem> {
         Self::from_path(path).ok_or_else(|| Problem::UnknownFormat {
-            found: path
-                .extension()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned(),
+            found: path.extension().unwrap_or_default().to_string_lossy().into_owned(),
             action,
         })
     }
@@ -78,13 +71,8 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TriangleMes
     let format = MeshFormat::of_path(path, "read").map_err(|problem| problem.at(&file, None))?;
     let bytes = files::read(path, options.max_bytes).map_err(|source| {
         let problem = match source.kind() {
-            ErrorKind::FileTooLarge => Problem::TooLong {
-                most: options.max_bytes,
-            },
-            _ => Problem::Io {
-                action: "read",
-                source,
-            },
+            ErrorKind::FileTooLarge => Problem::TooLong { most: options.max_bytes },
+            _ => Problem::Io { action: "read", source },
         };
         problem.at(&file, None)
     })?;
@@ -111,16 +99,12 @@ pub fn read_bytes(
         MeshFormat::Off => off::read(bytes),
     };
     let RawMesh { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
-    let stem = Path::new(file)
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
+    let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
     let mesh = match triangles {
         Some(triangles) => {
             TriangleMesh::from_f64(&points, &triangles).map_err(|error| error.problem)
         }
         None => TriangleMesh::from_soup(&points),
     };
-    mesh.map(|mesh| mesh.named(stem))
-        .map_err(|problem| problem.at(file, None))
+    mesh.map(|mesh| mesh.named(stem)).map_err(|problem| problem.at(file, None))
 }

@@ -18,10 +18,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     if bytes.is_empty() {
         return Err((None, Problem::NoVertices));
     }
-    let count = bytes
-        .get(80..HEADER_BYTES)
-        .and_then(|count| count.try_into().ok())
-        .map(u32::from_le_bytes);
+    let count =
+        bytes.get(80..HEADER_BYTES).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
     let size = count.map(|n| HEADER_BYTES as u64 + TRIANGLE_BYTES as u64 * u64::from(n));
     if size == Some(bytes.len() as u64) {
         return binary(&bytes[HEADER_BYTES..]);
@@ -62,10 +60,7 @@ fn binary(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
 
 /// The words of a text file, if it begins with a solid or a facet.
 fn start_of_text<'t, 'a>(tokens: &'t [Token<'a>]) -> Option<Facets<'t, 'a>> {
-    let mut facets = Facets {
-        tokens,
-        points: Vec::new(),
-    };
+    let mut facets = Facets { tokens, points: Vec::new() };
     while facets.skip_comment() {}
     let first = facets.tokens.first()?;
     (first.is("solid") || first.is("facet")).then_some(facets)
@@ -95,20 +90,14 @@ impl Facets<'_, '_> {
             }
         }
         if open {
-            return Err((
-                last,
-                malformed("the file ends before `endsolid`".to_owned()),
-            ));
+            return Err((last, malformed("the file ends before `endsolid`".to_owned())));
         }
         Ok(RawMesh::soup(self.points))
     }
 
     fn starts_with(&self, keywords: &[&str]) -> bool {
         self.tokens.len() >= keywords.len()
-            && keywords
-                .iter()
-                .zip(self.tokens)
-                .all(|(word, token)| token.is(word))
+            && keywords.iter().zip(self.tokens).all(|(word, token)| token.is(word))
     }
 
     /// Reads a keyword that may be spelled in two ways.
@@ -125,26 +114,18 @@ impl Facets<'_, '_> {
     fn missing(&self, what: &str) -> LineProblem {
         match self.tokens.first() {
             Some(token) => {
-                let message = format!(
-                    "{what} should stand here, found {}",
-                    text::excerpt(token.text)
-                );
+                let message =
+                    format!("{what} should stand here, found {}", text::excerpt(token.text));
                 (Some(token.line), malformed(message))
             }
-            None => (
-                None,
-                malformed(format!("the file ends where {what} should stand")),
-            ),
+            None => (None, malformed(format!("the file ends where {what} should stand"))),
         }
     }
 
     /// Skips a comment, which ends with its line; returns whether there was one.
     fn skip_comment(&mut self) -> bool {
-        let comment = |token: &Token| {
-            ["#", ";", "//"]
-                .iter()
-                .any(|mark| token.text.starts_with(mark))
-        };
+        let comment =
+            |token: &Token| ["#", ";", "//"].iter().any(|mark| token.text.starts_with(mark));
         let found = self.tokens.first().is_some_and(comment);
         if found {
             self.skip_line();
@@ -154,20 +135,14 @@ impl Facets<'_, '_> {
 
     fn skip_line(&mut self) {
         let line = self.tokens.first().map(|token| token.line);
-        let rest = self
-            .tokens
-            .iter()
-            .position(|token| Some(token.line) != line);
+        let rest = self.tokens.iter().position(|token| Some(token.line) != line);
         self.tokens = &self.tokens[rest.unwrap_or(self.tokens.len())..];
     }
 
     fn facet(&mut self) -> Result<(), LineProblem> {
         self.take(&["facet"], &["facet"])?;
         let structure = ["outer", "facet", "vertex", "endfacet", "endsolid"];
-        while self
-            .tokens
-            .first()
-            .is_some_and(|token| !structure.iter().any(|word| token.is(word)))
+        while self.tokens.first().is_some_and(|token| !structure.iter().any(|word| token.is(word)))
         {
             self.tokens = &self.tokens[1..]; // the word `normal` and what follows it
         }
@@ -224,10 +199,7 @@ fn text(mesh: &TriangleMesh) -> String {
     let mut text = "solid mesh\n".to_owned();
     for triangle in &mesh.triangles {
         let [x, y, z] = normal(triangle.map(|i| mesh.vertices[i as usize]));
-        put(
-            &mut text,
-            format_args!("facet normal {x} {y} {z}\nouter loop\n"),
-        );
+        put(&mut text, format_args!("facet normal {x} {y} {z}\nouter loop\n"));
         for corner in triangle {
             let [x, y, z] = points[*corner as usize].map(wide);
             put(&mut text, format_args!("vertex {x} {y} {z}\n"));

@@ -44,10 +44,7 @@ impl Token<'_> {
     /// A whole number.
     pub(super) fn integer(&self, what: &str) -> Result<i64, LineProblem> {
         self.text.parse().map_err(|_| {
-            let message = format!(
-                "{what} should be a whole number, found {}",
-                excerpt(self.text)
-            );
+            let message = format!("{what} should be a whole number, found {}", excerpt(self.text));
             let help = "counts and indices have no decimal point";
             (Some(self.line), Problem::malformed(message, help))
         })
@@ -98,9 +95,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
             Some(end) => text.split_at(end),
             None => (text, ""),
         };
-        rest = after
-            .strip_prefix("\r\n")
-            .or_else(|| after.strip_prefix(['\n', '\r']));
+        rest = after.strip_prefix("\r\n").or_else(|| after.strip_prefix(['\n', '\r']));
         Some(line)
     });
     lines.enumerate().map(|(index, line)| (index + 1, line))
@@ -108,8 +103,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 
 /// The words of one line.
 pub(super) fn words((line, text): (usize, &str)) -> impl Iterator<Item = Token<'_>> {
-    text.split_whitespace()
-        .map(move |text| Token { text, line })
+    text.split_whitespace().map(move |text| Token { text, line })
 }
 
 /// The words of all lines.
@@ -177,10 +171,7 @@ pub(super) fn wide(x: f64) -> String {
         return text;
     }
     let all_digits = format!("{x:.1074}");
-    all_digits
-        .trim_end_matches('0')
-        .trim_end_matches('.')
-        .to_owned()
+    all_digits.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Appends to a text.
@@ -192,11 +183,7 @@ pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
 /// The shorter of the plain and the exponent form that reads back to the same number.
 pub(super) fn shortest(value: impl Display + LowerExp) -> String {
     let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
-    if exponent.len() < plain.len() {
-        exponent
-    } else {
-        plain
-    }
+    if exponent.len() < plain.len() { exponent } else { plain }
 }
 
 /// A polygon as a fan of triangles about its first corner. One or two corners give a degenerate
@@ -222,12 +209,7 @@ pub(super) struct Cursor<'t, 'a> {
 
 impl<'t, 'a> Cursor<'t, 'a> {
     pub(super) fn new(tokens: &'t [Token<'a>], by_line: bool) -> Self {
-        Self {
-            tokens,
-            by_line,
-            at: 0,
-            seen_triangle: false,
-        }
+        Self { tokens, by_line, at: 0, seen_triangle: false }
     }
 
     pub(super) fn rest(&self) -> &'t [Token<'a>] {
@@ -256,9 +238,7 @@ impl<'t, 'a> Cursor<'t, 'a> {
         let rest = self.rest();
         let line = rest.first().or(self.tokens.last()).map(|token| token.line);
         let found = if self.by_line {
-            rest.iter()
-                .take_while(|token| Some(token.line) == line)
-                .count()
+            rest.iter().take_while(|token| Some(token.line) == line).count()
         } else {
             rest.len().min(numbers)
         };

@@ -79,13 +79,7 @@ impl TriFormat {
             Self::Soup => return None,
         };
         let (dashed, components) = (self == Self::OpenMeeg, self == Self::Cart3d);
-        Some(TriLayout {
-            dashed,
-            vertex_numbers,
-            face_numbers,
-            first_index,
-            components,
-        })
+        Some(TriLayout { dashed, vertex_numbers, face_numbers, first_index, components })
     }
 }
 
@@ -134,10 +128,8 @@ pub(super) fn read(bytes: &[u8], format: Option<TriFormat>) -> Result<RawMesh, L
 /// file of another dialect would fit it when line ends are ignored. In that case a first line like
 /// `nv nt` excludes `soup`.
 fn candidates(format: Option<TriFormat>, tokens: &[Token], by_line: bool) -> Vec<TriFormat> {
-    let first_line: Vec<_> = tokens
-        .iter()
-        .take_while(|token| token.line == tokens[0].line)
-        .collect();
+    let first_line: Vec<_> =
+        tokens.iter().take_while(|token| token.line == tokens[0].line).collect();
     let counted = first_line.len() == 2 && first_line.iter().all(|token| count(token).is_ok());
     let possible = |candidate: &TriFormat| by_line || !counted || *candidate != TriFormat::Soup;
     match format {
@@ -151,10 +143,7 @@ const HEADER_TOKENS: usize = 2;
 
 fn ambiguous(fits: &[(TriFormat, RawMesh)]) -> Problem {
     Problem::Ambiguous {
-        readings: fits
-            .iter()
-            .map(|(format, _)| format.description())
-            .collect(),
+        readings: fits.iter().map(|(format, _)| format.description()).collect(),
         names: fits.iter().map(|(format, _)| format.name()).collect(),
     }
 }
@@ -170,11 +159,7 @@ fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<RawMesh, LineProblem>
     let Some(layout) = format.layout() else {
         return soup(cursor);
     };
-    let header = if layout.dashed {
-        "the header `- nv`"
-    } else {
-        "the header `nv nt`"
-    };
+    let header = if layout.dashed { "the header `- nv`" } else { "the header `nv nt`" };
     let header = cursor.record(2, header)?;
     let vertex_count = if layout.dashed {
         dash(&header[0])?;
@@ -215,11 +200,7 @@ fn parse(format: TriFormat, cursor: &mut Cursor) -> Result<RawMesh, LineProblem>
 }
 
 fn excess(count: usize) -> String {
-    if count == 1 {
-        "1 number too many".to_owned()
-    } else {
-        format!("{count} numbers too many")
-    }
+    if count == 1 { "1 number too many".to_owned() } else { format!("{count} numbers too many") }
 }
 
 fn vertices(
@@ -249,11 +230,7 @@ fn triangles(
     layout: &TriLayout,
     vertices: usize,
 ) -> Result<Vec<[u32; 3]>, LineProblem> {
-    let TriLayout {
-        face_numbers,
-        first_index,
-        ..
-    } = *layout;
+    let TriLayout { face_numbers, first_index, .. } = *layout;
     if count == 0 {
         return Err((None, Problem::NoTriangles));
     }
@@ -282,16 +259,11 @@ fn component_numbers(cursor: &mut Cursor, triangles: usize) -> Result<(), LinePr
     let numbers = cursor.rest();
     cursor.at = cursor.tokens.len();
     if numbers.len() != triangles {
-        let message = format!(
-            "{} component numbers for {triangles} triangles",
-            numbers.len()
-        );
+        let message = format!("{} component numbers for {triangles} triangles", numbers.len());
         let help = "give one component number for each triangle, or none at all";
         return Err((Some(numbers[0].line), Problem::malformed(message, help)));
     }
-    numbers
-        .iter()
-        .try_for_each(|token| token.integer("a component number").map(|_| ()))
+    numbers.iter().try_for_each(|token| token.integer("a component number").map(|_| ()))
 }
 
 fn soup(cursor: &mut Cursor) -> Result<RawMesh, LineProblem> {
@@ -328,10 +300,8 @@ fn without_colours<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
 
 fn count(token: &Token) -> Result<usize, LineProblem> {
     token.text.parse().map_err(|_| {
-        let message = format!(
-            "a count should be a whole number, found {}",
-            text::excerpt(token.text)
-        );
+        let message =
+            format!("a count should be a whole number, found {}", text::excerpt(token.text));
         let help = "the header names the number of vertices and of triangles";
         (Some(token.line), Problem::malformed(message, help))
     })
@@ -341,10 +311,8 @@ fn dash(token: &Token) -> Result<(), LineProblem> {
     if token.text == "-" {
         return Ok(());
     }
-    let message = format!(
-        "the header should start with a dash, found {}",
-        text::excerpt(token.text)
-    );
+    let message =
+        format!("the header should start with a dash, found {}", text::excerpt(token.text));
     let help = "OpenMEEG writes `- nv` before the vertices and `- nt nt nt` before the triangles";
     Err((Some(token.line), Problem::malformed(message, help)))
 }

@@ -17,9 +17,7 @@ pub(crate) fn weld(corners: &mut Vec<[f32; 3]>) -> Vec<[u32; 3]> {
         })
     };
     let triangles = corners.as_chunks::<3>().0.iter();
-    let triangles = triangles
-        .map(|[a, b, c]| [index(a), index(b), index(c)])
-        .collect();
+    let triangles = triangles.map(|[a, b, c]| [index(a), index(b), index(c)]).collect();
     *corners = vertices;
     triangles
 }

@@ -24,13 +24,8 @@ pub fn write(mesh: &TriangleMesh, path: impl AsRef<Path>) -> Result<(), MeshErro
     let path = path.as_ref();
     let file = path.display().to_string();
     let format = MeshFormat::of_path(path, "written").map_err(|problem| problem.at(&file, None))?;
-    files::write(path, write_bytes(mesh, format)).map_err(|source| {
-        Problem::Io {
-            action: "write",
-            source,
-        }
-        .at(&file, None)
-    })
+    files::write(path, write_bytes(mesh, format))
+        .map_err(|source| Problem::Io { action: "write", source }.at(&file, None))
 }
 
 /// The contents of a mesh file.
@@ -49,10 +44,7 @@ fn tri_text(mesh: &TriangleMesh) -> String {
     let mut text = format!("{} {}\n", mesh.vertices.len(), mesh.triangles.len());
     for ([x, y, z], normal) in coordinates(mesh).zip(vertex_normals(mesh)) {
         let [nx, ny, nz] = normal.to_array().map(three_decimals);
-        put(
-            &mut text,
-            format_args!("{x} {y} {z} {nx} {ny} {nz} 1 1 1\n"),
-        );
+        put(&mut text, format_args!("{x} {y} {z} {nx} {ny} {nz} 1 1 1\n"));
     }
     for [a, b, c] in &mesh.triangles {
         put(&mut text, format_args!("{a} {b} {c}\n"));
@@ -136,7 +128,5 @@ fn vertex_normals(mesh: &TriangleMesh) -> Vec<DVec3> {
             sums[corner as usize] += (b - a).cross(c - a);
         }
     }
-    sums.into_iter()
-        .map(|sum| sum.try_normalize().unwrap_or(DVec3::Z))
-        .collect()
+    sums.into_iter().map(|sum| sum.try_normalize().unwrap_or(DVec3::Z)).collect()
 }

@@ -105,64 +105,20 @@ pub enum ProceduralShape {
 
 impl ProceduralShape {
     /// The name of every shape in scene files and on the command line.
-    pub const NAMES: [&str; 8] = [
-        "box",
-        "icosphere",
-        "needle",
-        "plate",
-        "torus",
-        "gear",
-        "l-shape",
-        "knot",
-    ];
+    pub const NAMES: [&str; 8] =
+        ["box", "icosphere", "needle", "plate", "torus", "gear", "l-shape", "knot"];
 
     /// The shape of that name with its default sizes.
     pub fn default_of(name: &str) -> Option<Self> {
         Some(match name {
-            "box" => Self::Box {
-                x: 1.0,
-                y: 1.0,
-                z: 1.0,
-            },
-            "icosphere" => Self::Icosphere {
-                radius: 1.0,
-                subdivisions: 3,
-            },
-            "needle" => Self::Needle {
-                length: 2.0,
-                radius: 0.05,
-                sides: 6,
-            },
-            "plate" => Self::Plate {
-                x: 2.0,
-                y: 2.0,
-                thickness: 0.02,
-            },
-            "torus" => Self::Torus {
-                radius: 1.0,
-                tube: 0.25,
-                segments: 48,
-                sides: 16,
-            },
-            "gear" => Self::Gear {
-                tip: 1.0,
-                root: 0.8,
-                bore: 0.3,
-                thickness: 0.3,
-                teeth: 16,
-            },
-            "l-shape" => Self::LShape {
-                x: 1.0,
-                y: 1.0,
-                arm: 0.3,
-                thickness: 0.3,
-            },
-            "knot" => Self::Knot {
-                radius: 1.0,
-                tube: 0.15,
-                segments: 96,
-                sides: 12,
-            },
+            "box" => Self::Box { x: 1.0, y: 1.0, z: 1.0 },
+            "icosphere" => Self::Icosphere { radius: 1.0, subdivisions: 3 },
+            "needle" => Self::Needle { length: 2.0, radius: 0.05, sides: 6 },
+            "plate" => Self::Plate { x: 2.0, y: 2.0, thickness: 0.02 },
+            "torus" => Self::Torus { radius: 1.0, tube: 0.25, segments: 48, sides: 16 },
+            "gear" => Self::Gear { tip: 1.0, root: 0.8, bore: 0.3, thickness: 0.3, teeth: 16 },
+            "l-shape" => Self::LShape { x: 1.0, y: 1.0, arm: 0.3, thickness: 0.3 },
+            "knot" => Self::Knot { radius: 1.0, tube: 0.15, segments: 96, sides: 12 },
             _ => return None,
         })
     }
@@ -186,9 +142,8 @@ impl ProceduralShape {
     /// # Errors
     /// An unknown shape or size, or a value that is not allowed. The error lists what is allowed.
     pub fn from_name(name: &str, sizes: &[(&str, f64)]) -> Result<Self, ShapeError> {
-        let mut shape = Self::default_of(name).ok_or_else(|| ShapeError::UnknownShape {
-            name: name.to_owned(),
-        })?;
+        let mut shape = Self::default_of(name)
+            .ok_or_else(|| ShapeError::UnknownShape { name: name.to_owned() })?;
         for &(size, value) in sizes {
             shape.set(size, value)?;
         }
@@ -206,40 +161,18 @@ impl ProceduralShape {
             Self::Box { x, y, z } | Self::Plate { x, y, thickness: z } => {
                 polyhedra::cuboid([x, y, z])
             }
-            Self::Icosphere {
-                radius,
-                subdivisions,
-            } => polyhedra::icosphere(radius, subdivisions),
-            Self::Needle {
-                length,
-                radius,
-                sides,
-            } => polyhedra::bipyramid(length, radius, sides),
-            Self::Torus {
-                radius,
-                tube,
-                segments,
-                sides,
-            } => tubes::torus(radius, tube, segments, sides),
-            Self::Gear {
-                tip,
-                root,
-                bore,
-                thickness,
-                teeth,
-            } => prisms::gear([tip, root, bore], thickness, teeth),
-            Self::LShape {
-                x,
-                y,
-                arm,
-                thickness,
-            } => prisms::l_shape([x, y], arm, thickness),
-            Self::Knot {
-                radius,
-                tube,
-                segments,
-                sides,
-            } => tubes::trefoil(radius, tube, segments, sides),
+            Self::Icosphere { radius, subdivisions } => polyhedra::icosphere(radius, subdivisions),
+            Self::Needle { length, radius, sides } => polyhedra::bipyramid(length, radius, sides),
+            Self::Torus { radius, tube, segments, sides } => {
+                tubes::torus(radius, tube, segments, sides)
+            }
+            Self::Gear { tip, root, bore, thickness, teeth } => {
+                prisms::gear([tip, root, bore], thickness, teeth)
+            }
+            Self::LShape { x, y, arm, thickness } => prisms::l_shape([x, y], arm, thickness),
+            Self::Knot { radius, tube, segments, sides } => {
+                tubes::trefoil(radius, tube, segments, sides)
+            }
         };
         Ok(TriangleMesh {
             name: self.name().to_owned(),

@@ -11,27 +11,16 @@ use super::quad;
 pub(super) fn cuboid(edges: [f32; 3]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let half = Vec3::from_array(edges) * 0.5;
     let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
-    let vertices = (0..8)
-        .map(|i| half * Vec3::new(sign(i, 0), sign(i, 1), sign(i, 2)))
-        .collect();
+    let vertices = (0..8).map(|i| half * Vec3::new(sign(i, 0), sign(i, 1), sign(i, 2))).collect();
     // -x, +x, -y, +y, -z, +z, each counter-clockwise from outside.
-    let faces = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
+    let faces =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     (vertices, faces.into_iter().flat_map(quad).collect())
 }
 
 /// Two pyramids base to base: a ring of `sides` vertices in the xy plane, tips at ±length/2 on z.
 pub(super) fn bipyramid(length: f32, radius: f32, sides: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let mut vertices = vec![
-        Vec3::new(0.0, 0.0, length * 0.5),
-        Vec3::new(0.0, 0.0, -length * 0.5),
-    ];
+    let mut vertices = vec![Vec3::new(0.0, 0.0, length * 0.5), Vec3::new(0.0, 0.0, -length * 0.5)];
     let mut triangles = Vec::new();
     for i in 0..sides {
         let angle = TAU * f64::from(i) / f64::from(sides);
@@ -49,10 +38,7 @@ pub(super) fn icosphere(radius: f32, subdivisions: u32) -> (Vec<Vec3>, Vec<[u32;
     for _ in 0..subdivisions {
         triangles = split(&mut directions, &triangles);
     }
-    let vertices = directions
-        .iter()
-        .map(|d| (*d * f64::from(radius)).as_vec3())
-        .collect();
+    let vertices = directions.iter().map(|d| (*d * f64::from(radius)).as_vec3()).collect();
     (vertices, triangles)
 }
 
@@ -62,12 +48,7 @@ fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let golden = (1.0 + libm::sqrt(5.0)) / 2.0;
     let mut corners = Vec::new();
     for axis in 0..3 {
-        for (one, phi) in [
-            (1.0, golden),
-            (-1.0, golden),
-            (1.0, -golden),
-            (-1.0, -golden),
-        ] {
+        for (one, phi) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
             let mut corner = [0.0; 3];
             corner[(axis + 1) % 3] = one;
             corner[(axis + 2) % 3] = phi;
@@ -87,10 +68,7 @@ fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
             }
         }
     }
-    (
-        corners.into_iter().map(DVec3::normalize).collect(),
-        triangles,
-    )
+    (corners.into_iter().map(DVec3::normalize).collect(), triangles)
 }
 
 /// Splits every triangle in four at its edges' midpoints, which are pushed out to the unit sphere.

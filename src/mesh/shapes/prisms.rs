@@ -48,14 +48,7 @@ fn corners(i: u32) -> [u32; 4] {
 /// there fills it.
 pub(super) fn l_shape([x, y]: [f32; 2], arm: f32, thickness: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let inner_corner = 3;
-    let outline = [
-        [0.0, 0.0],
-        [x, 0.0],
-        [x, arm],
-        [arm, arm],
-        [arm, y],
-        [0.0, y],
-    ];
+    let outline = [[0.0, 0.0], [x, 0.0], [x, arm], [arm, arm], [arm, y], [0.0, y]];
     let n = outline.len() as u32;
     let mut vertices = Vec::new();
     for z in [-thickness * 0.5, thickness * 0.5] {

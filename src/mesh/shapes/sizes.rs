@@ -97,33 +97,18 @@ impl ProceduralShape {
                 }
                 SizeSlot::Count(_) => {
                     let allowed = "a whole number".to_owned();
-                    return Err(ShapeError::BadSize {
-                        shape,
-                        size,
-                        value,
-                        allowed,
-                    });
+                    return Err(ShapeError::BadSize { shape, size, value, allowed });
                 }
             }
             return Ok(());
         }
-        Err(ShapeError::UnknownSize {
-            shape,
-            size: name.to_owned(),
-            known,
-        })
+        Err(ShapeError::UnknownSize { shape, size: name.to_owned(), known })
     }
 
     pub(super) fn check(mut self) -> Result<(), ShapeError> {
         let shape = self.name();
-        let bad = |size, value, allowed: String| {
-            Err(ShapeError::BadSize {
-                shape,
-                size,
-                value,
-                allowed,
-            })
-        };
+        let bad =
+            |size, value, allowed: String| Err(ShapeError::BadSize { shape, size, value, allowed });
         for (size, slot) in self.sizes() {
             match slot {
                 SizeSlot::Length(&mut length) => {
@@ -145,11 +130,7 @@ impl ProceduralShape {
         }
         for (size, value, limit, meaning) in self.relations() {
             if value >= limit {
-                return bad(
-                    size,
-                    f64::from(value),
-                    format!("less than {limit}, {meaning}"),
-                );
+                return bad(size, f64::from(value), format!("less than {limit}, {meaning}"));
             }
         }
         Ok(())
@@ -160,9 +141,7 @@ impl ProceduralShape {
     fn relations(&self) -> Vec<(&'static str, f32, f32, &'static str)> {
         match *self {
             Self::Torus { radius, tube, .. } => vec![("tube", tube, radius, "the ring's radius")],
-            Self::Gear {
-                tip, root, bore, ..
-            } => vec![
+            Self::Gear { tip, root, bore, .. } => vec![
                 ("root", root, tip, "the tips' radius"),
                 ("bore", bore, 0.9 * root, "nine tenths of the root's radius"),
             ],

@@ -24,11 +24,7 @@ pub(super) fn torus(
 ) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     sweep(tube, segments, sides, |u| {
         let outward = DVec3::new(libm::cos(u), libm::sin(u), 0.0);
-        CurveFrame {
-            point: outward * f64::from(radius),
-            n: outward,
-            m: DVec3::Z,
-        }
+        CurveFrame { point: outward * f64::from(radius), n: outward, m: DVec3::Z }
     })
 }
 
@@ -50,11 +46,7 @@ pub(super) fn trefoil(
         let acceleration = DVec3::new(-s1 - 8.0 * s2, 8.0 * c2 - c1, 9.0 * s3);
         let tangent = velocity.normalize();
         let binormal = velocity.cross(acceleration).normalize();
-        CurveFrame {
-            point,
-            n: binormal.cross(tangent),
-            m: -binormal,
-        }
+        CurveFrame { point, n: binormal.cross(tangent), m: -binormal }
     })
 }
 

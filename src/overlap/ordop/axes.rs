@@ -44,12 +44,7 @@ impl<L: Lanes> PairFrames<L> {
                 *entry = dot::<L>(axis::<L>(&a, i), axis::<L>(&b, j));
             }
         }
-        Self {
-            turn,
-            gap_a,
-            gap_b,
-            shapes: [a[S], b[S]],
-        }
+        Self { turn, gap_a, gap_b, shapes: [a[S], b[S]] }
     }
 
     /// The frames as an array of vectors.
@@ -57,10 +52,7 @@ impl<L: Lanes> PairFrames<L> {
     pub fn numbers(&self) -> [L::F; NUMBERS_PER_FRAMES] {
         let ([x, y, z], [ga, gb, gc], [ha, hb, hc]) = (self.turn, self.gap_b, self.gap_a);
         let [one, other] = self.shapes;
-        [
-            one, other, x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2], ga, gb, gc, ha, hb,
-            hc,
-        ]
+        [one, other, x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2], ga, gb, gc, ha, hb, hc]
     }
 
     /// The inverse of [`Self::numbers`].
@@ -207,11 +199,7 @@ fn dot<L: Lanes>(a: Vector<L>, b: Vector<L>) -> L::F {
 /// v with every sign flipped where `sign` is negative.
 #[inline(always)]
 fn flip<L: Lanes>(l: L, v: Vector<L>, sign: L::F) -> Vector<L> {
-    [
-        l.flip_sign(v[0], sign),
-        l.flip_sign(v[1], sign),
-        l.flip_sign(v[2], sign),
-    ]
+    [l.flip_sign(v[0], sign), l.flip_sign(v[1], sign), l.flip_sign(v[2], sign)]
 }
 
 /// n·v for a small integer vector n, whose products are exact.
@@ -224,11 +212,7 @@ fn combine<L: Lanes>(l: L, n: [f32; 3], v: Vector<L>) -> L::F {
 #[inline(always)]
 fn cross<L: Lanes>(l: L, n: [f32; 3], v: Vector<L>) -> Vector<L> {
     let [x, y, z] = [l.splat(n[0]), l.splat(n[1]), l.splat(n[2])];
-    [
-        y * v[2] - z * v[1],
-        z * v[0] - x * v[2],
-        x * v[1] - y * v[0],
-    ]
+    [y * v[2] - z * v[1], z * v[0] - x * v[2], x * v[1] - y * v[0]]
 }
 
 #[cfg(test)]

@@ -68,11 +68,7 @@ mod tests {
                 }
             }
             let listed = of(k).iter().map(|e| primitive(e.map(|x| x as i32)));
-            assert_eq!(
-                listed.collect::<std::collections::BTreeSet<_>>(),
-                found,
-                "k = {k}"
-            );
+            assert_eq!(listed.collect::<std::collections::BTreeSet<_>>(), found, "k = {k}");
             assert_eq!(of(k).len(), found.len());
         }
     }

@@ -144,10 +144,7 @@ impl OrDopColumns<'_> {
             self.by_first::<L, K, FEW>(l, &pairs, later, &mut alive);
             self.by_rest::<L, K, FEW>(l, &alive, out);
         }
-        TestOutcome {
-            tests: first.len() as u64,
-            hits: (out.len() - listed) as u64,
-        }
+        TestOutcome { tests: first.len() as u64, hits: (out.len() - listed) as u64 }
     }
 
     /// Tests pairs with the normals of the first bodies. `later` are the pairs
@@ -303,16 +300,8 @@ impl SurvivorBlock {
     ) {
         let at = self.pairs.len..self.pairs.len + MAX_WIDTH;
         let (first, second) = (&mut self.pairs.first, &mut self.pairs.second);
-        l.compress(
-            keep,
-            l.load_u32(&from.first[start..]),
-            &mut first[at.clone()],
-        );
-        l.compress(
-            keep,
-            l.load_u32(&from.second[start..]),
-            &mut second[at.clone()],
-        );
+        l.compress(keep, l.load_u32(&from.first[start..]), &mut first[at.clone()]);
+        l.compress(keep, l.load_u32(&from.second[start..]), &mut second[at.clone()]);
         let needed = match overlap {
             Overlap::OneSided => 0,
             Overlap::TwoSided => NUMBERS_PER_FRAMES - 3,

@@ -27,33 +27,19 @@ impl PosedOrDops {
         tier: Tier,
     ) -> Self {
         let directions = shapes.clone().next().map(|(_, ordop)| ordop.directions);
-        let frames: ShapeFrames = shapes
-            .clone()
-            .map(|(shape, ordop)| ShapeFrame::new(shape, &ordop.basis))
-            .collect();
+        let frames: ShapeFrames =
+            shapes.clone().map(|(shape, ordop)| ShapeFrame::new(shape, &ordop.basis)).collect();
         let places = Places::as_given(bodies);
         let mut rows = OrDopRows::new(places.len());
-        let posed = UpdateInputs {
-            frames: &frames,
-            bodies,
-            places: &places,
-            balls: &[],
-        };
+        let posed = UpdateInputs { frames: &frames, bodies, places: &places, balls: &[] };
         let pool = Threads::default();
         rows.update(pool.executor(tier), posed, 0..places.len(), 1);
-        Self {
-            rows,
-            tables: SlabTables::new(directions.unwrap_or(DirectionSet::K6), shapes),
-        }
+        Self { rows, tables: SlabTables::new(directions.unwrap_or(DirectionSet::K6), shapes) }
     }
 
     /// The form that the pair test takes.
     #[must_use]
     pub fn columns(&self, overlap: Overlap) -> OrDopColumns<'_> {
-        OrDopColumns {
-            rows: RowsByNumber::all(&self.rows.rows),
-            tables: &self.tables,
-            overlap,
-        }
+        OrDopColumns { rows: RowsByNumber::all(&self.rows.rows), tables: &self.tables, overlap }
     }
 }

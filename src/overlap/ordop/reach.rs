@@ -67,26 +67,15 @@ mod tests {
             // A table in which every half is its normal's length: w = 1, so S is the plain bound on
             // supports.
             let length = |&member: &usize| {
-                COEFFICIENTS[member]
-                    .map(f32::from)
-                    .iter()
-                    .map(|c| c * c)
-                    .sum::<f32>()
+                COEFFICIENTS[member].map(f32::from).iter().map(|c| c * c).sum::<f32>()
             };
-            let table: Vec<f32> = members_of(k)
-                .iter()
-                .flat_map(|m| [length(m).sqrt(); 2])
-                .collect();
+            let table: Vec<f32> =
+                members_of(k).iter().flat_map(|m| [length(m).sqrt(); 2]).collect();
             // Written out, so that the test does not take the margin from the code.
             let factor = reach(&table, k, 0.0) / (1.0 + 1.0 / 4096.0);
             let cosine = directions().map(|e| nearest(k, e)).fold(1.0, f64::min);
-            let support = directions()
-                .map(|e| support_of_unit_halves(k, e))
-                .fold(0.0, f64::max);
-            assert!(
-                support / cosine <= factor * (1.0 + 1e-6),
-                "k = {k}: {support} / {cosine}"
-            );
+            let support = directions().map(|e| support_of_unit_halves(k, e)).fold(0.0, f64::max);
+            assert!(support / cosine <= factor * (1.0 + 1e-6), "k = {k}: {support} / {cosine}");
             assert!(support / cosine >= factor * 0.99, "k = {k}: not wasteful");
         }
     }

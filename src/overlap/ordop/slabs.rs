@@ -96,21 +96,13 @@ impl<L: Lanes> LaneSlabs<L> {
     /// The ends in the directions of the axes.
     #[inline(always)]
     pub fn axes(&self, l: L, DirectionSigns([x, y, z]): DirectionSigns<L>) -> [L::F; 3] {
-        [
-            pick(l, x, self.ends[0]),
-            pick(l, y, self.ends[1]),
-            pick(l, z, self.ends[2]),
-        ]
+        [pick(l, x, self.ends[0]), pick(l, y, self.ends[1]), pick(l, z, self.ends[2])]
     }
 
     /// The ends in the directions of the face diagonals xy, xz and yz.
     #[inline(always)]
     pub fn pairs(&self, l: L, DirectionSigns([x, y, z]): DirectionSigns<L>) -> [L::F; 3] {
-        [
-            self.pair(l, 3, x, y),
-            self.pair(l, 5, x, z),
-            self.pair(l, 7, y, z),
-        ]
+        [self.pair(l, 3, x, y), self.pair(l, 5, x, z), self.pair(l, 7, y, z)]
     }
 
     /// The end of one of the directions (1, 1) and (1, −1) in a pair of coordinates, which are
@@ -135,11 +127,7 @@ impl<L: Lanes> LaneSlabs<L> {
         if L::WIDTH == 1 {
             let (x, y, z) = (bit(l, x), bit(l, y), bit(l, z));
             let facing = |x: usize, y: usize, z: usize| self.ends[9 + (x ^ z) + 2 * (y ^ z)][z];
-            let bent = [
-                facing(1 - x, y, z),
-                facing(x, 1 - y, z),
-                facing(x, y, 1 - z),
-            ];
+            let bent = [facing(1 - x, y, z), facing(x, 1 - y, z), facing(x, y, 1 - z)];
             return (facing(x, y, z), bent);
         }
         let [a, b, c, d] = [self.ends[9], self.ends[10], self.ends[11], self.ends[12]];
@@ -152,19 +140,9 @@ impl<L: Lanes> LaneSlabs<L> {
         }
         let up = pick(l, y, [kept[0], kept[1]]);
         let down = pick(l, y, [kept[2], kept[3]]);
-        let over_x = [
-            pick(l, y, [bent[0], bent[1]]),
-            pick(l, y, [bent[2], bent[3]]),
-        ];
-        let over_y = [
-            pick(l, y, [kept[1], kept[0]]),
-            pick(l, y, [kept[3], kept[2]]),
-        ];
-        let bent = [
-            pick(l, z, over_x),
-            pick(l, z, over_y),
-            pick(l, z, [down, up]),
-        ];
+        let over_x = [pick(l, y, [bent[0], bent[1]]), pick(l, y, [bent[2], bent[3]])];
+        let over_y = [pick(l, y, [kept[1], kept[0]]), pick(l, y, [kept[3], kept[2]])];
+        let bent = [pick(l, z, over_x), pick(l, z, over_y), pick(l, z, [down, up])];
         (pick(l, z, [up, down]), bent)
     }
 }

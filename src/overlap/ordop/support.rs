@@ -189,10 +189,7 @@ mod tests {
                 (26, low * of_three + (median - low) * of_two + lead),
             ] {
                 let found = bound(Tier::SCALAR, k, ball, e);
-                assert!(
-                    (found - expected).abs() < 1e-5,
-                    "k = {k}, {e:?}: {found} of {expected}"
-                );
+                assert!((found - expected).abs() < 1e-5, "k = {k}, {e:?}: {found} of {expected}");
             }
         }
     }

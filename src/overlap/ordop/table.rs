@@ -80,11 +80,8 @@ impl SlabTables {
         directions: DirectionSet,
         shapes: impl IntoIterator<Item = (&'a Shape, &'a OrDop)>,
     ) -> Self {
-        let mut tables = Self {
-            directions,
-            rows: Vec::new(),
-            columns: vec![[0.0; ROW]; directions.k()],
-        };
+        let mut tables =
+            Self { directions, rows: Vec::new(), columns: vec![[0.0; ROW]; directions.k()] };
         for (shape, ordop) in shapes {
             tables.push(ordop, shape.ball.centre, shape.reach);
         }
@@ -161,18 +158,10 @@ fn table(ordop: &OrDop, centre: [f32; 3], reach: f32) -> [f32; FLOATS_PER_TABLE]
     for (slab, &member) in members_of(2 * ordop.lo.len()).iter().enumerate() {
         let coefficients = COEFFICIENTS[member];
         let direction = std::array::from_fn(|axis| {
-            (0..3)
-                .map(|j| f32::from(coefficients[j]) * columns[j][axis])
-                .sum()
+            (0..3).map(|j| f32::from(coefficients[j]) * columns[j][axis]).sum()
         });
-        let (lo, hi) = inflate_slab(
-            ordop.lo[slab],
-            ordop.hi[slab],
-            direction,
-            scale,
-            centre,
-            reach,
-        );
+        let (lo, hi) =
+            inflate_slab(ordop.lo[slab], ordop.hi[slab], direction, scale, centre, reach);
         (table[2 * slab], table[2 * slab + 1]) = (hi, -lo);
     }
     table
@@ -204,11 +193,7 @@ mod tests {
     #[test]
     fn columns_transpose_the_rows() {
         let box_of = |z: u16| {
-            let mesh = ProceduralShape::Box {
-                x: 1.0,
-                y: 2.0,
-                z: f32::from(z),
-            };
+            let mesh = ProceduralShape::Box { x: 1.0, y: 2.0, z: f32::from(z) };
             Shape::build(&mesh.build().unwrap(), &ShapeSpec::default()).unwrap()
         };
         let mut tables = SlabTables::new(box_of(1).ordop.directions, []);
@@ -219,10 +204,7 @@ mod tests {
             assert_eq!(tables.columns().is_empty(), shapes > ROW, "{shapes}");
             for (number, column) in tables.columns().iter().enumerate() {
                 let own = (0..shapes).map(|shape| tables.shape(shape)[number]);
-                assert!(
-                    column[..shapes].iter().copied().eq(own),
-                    "{number} of {shapes}"
-                );
+                assert!(column[..shapes].iter().copied().eq(own), "{number} of {shapes}");
             }
         }
     }

@@ -108,10 +108,7 @@ fn spreading_wears_the_tree() {
     for (at, number) in tree.numbers().to_vec().into_iter().enumerate() {
         let far = (number % 16) as f32 * 100.0;
         let aabb = near[number as usize];
-        tree.set(
-            at as u32,
-            &Aabb::new(aabb.min.map(|x| x + far), aabb.max.map(|x| x + far)),
-        );
+        tree.set(at as u32, &Aabb::new(aabb.min.map(|x| x + far), aabb.max.map(|x| x + far)));
     }
     tree.settle();
     assert!(tree.is_worn());
@@ -120,10 +117,7 @@ fn spreading_wears_the_tree() {
 #[test]
 fn bits_are_spread() {
     assert_eq!(spread(0b1011), 0b1_000_001_001);
-    assert_eq!(
-        spread(0xf_ffff),
-        (0..20).map(|bit| 1 << (3 * bit)).sum::<u64>()
-    );
+    assert_eq!(spread(0xf_ffff), (0..20).map(|bit| 1 << (3 * bit)).sum::<u64>());
 }
 
 /// Small boxes and a far larger one are in separate groups.

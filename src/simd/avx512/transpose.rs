@@ -75,14 +75,10 @@ pub(super) unsafe fn turn_in_quarters([a, b, c, d]: [__m512; 4]) -> [__m512; 4] 
 pub(super) unsafe fn turn_quarters([a, b, c, d]: [__m512; 4]) -> [__m512; 4] {
     // SAFETY: the caller vouches for the feature.
     unsafe {
-        let [ab_even, ab_odd] = [
-            _mm512_shuffle_f32x4::<0x88>(a, b),
-            _mm512_shuffle_f32x4::<0xdd>(a, b),
-        ];
-        let [cd_even, cd_odd] = [
-            _mm512_shuffle_f32x4::<0x88>(c, d),
-            _mm512_shuffle_f32x4::<0xdd>(c, d),
-        ];
+        let [ab_even, ab_odd] =
+            [_mm512_shuffle_f32x4::<0x88>(a, b), _mm512_shuffle_f32x4::<0xdd>(a, b)];
+        let [cd_even, cd_odd] =
+            [_mm512_shuffle_f32x4::<0x88>(c, d), _mm512_shuffle_f32x4::<0xdd>(c, d)];
         [
             _mm512_shuffle_f32x4::<0x88>(ab_even, cd_even),
             _mm512_shuffle_f32x4::<0x88>(ab_odd, cd_odd),

@@ -17,11 +17,7 @@ impl Margins {
     pub fn of(format: &Format) -> Self {
         let margin = 16.0 * format.u();
         let floor = exp2(format.least + 5);
-        Self {
-            wider: 1.0 + margin,
-            narrower: 1.0 - margin,
-            floor,
-        }
+        Self { wider: 1.0 + margin, narrower: 1.0 - margin, floor }
     }
 }
 
@@ -76,14 +72,11 @@ pub fn wrong_apart(format: &Format, margins: &Margins, top: i32) -> u64 {
             });
         }
     }
-    count_pairs(
-        &classes,
-        |[c, h, _], [lo, hi], [d, i, _], [other_lo, other_hi]| {
-            let distance = format.sub(d, c).abs();
-            let meet = lo <= other_hi && other_lo <= hi;
-            format.gt(distance, format.add(h, i)) && meet
-        },
-    )
+    count_pairs(&classes, |[c, h, _], [lo, hi], [d, i, _], [other_lo, other_hi]| {
+        let distance = format.sub(d, c).abs();
+        let meet = lo <= other_hi && other_lo <= hi;
+        format.gt(distance, format.add(h, i)) && meet
+    })
 }
 
 /// How many pairs of classes are wrong: taken to meet without a look, though on this axis some of
@@ -119,10 +112,8 @@ fn count_pairs(
     classes: &Classes,
     wrong: impl Fn([f64; 3], [f64; 2], [f64; 3], [f64; 2]) -> bool,
 ) -> u64 {
-    let classes: Vec<_> = classes
-        .iter()
-        .map(|(key, &ends)| (key.map(f64::from_bits), ends))
-        .collect();
+    let classes: Vec<_> =
+        classes.iter().map(|(key, &ends)| (key.map(f64::from_bits), ends)).collect();
     let mut count = 0;
     for &(a, ends) in &classes {
         for &(b, other) in &classes {
@@ -155,9 +146,7 @@ pub fn wrong_slabs([narrow, wide]: [&Format; 2], margin: [f64; 2], top: i32) -> 
         for &end in &numbers {
             let half = slab_end([narrow, wide], margin, [end, centre, end.abs()]);
             let true_half = (end - centre).max(0.0);
-            let most = ends
-                .entry([centre, half].map(f64::to_bits))
-                .or_insert(true_half);
+            let most = ends.entry([centre, half].map(f64::to_bits)).or_insert(true_half);
             *most = most.max(true_half);
         }
     }

@@ -37,15 +37,12 @@ impl Rule {
     /// `widen`
     pub fn widen(&self, radius: f64) -> f64 {
         let [factor, floor] = self.widening;
-        self.narrow
-            .up(self.wide.add(self.wide.mul(radius, factor), floor))
+        self.narrow.up(self.wide.add(self.wide.mul(radius, factor), floor))
     }
 
     /// `Cells::fit` of a wrapped table.
     pub fn size(&self, longest: f64, widest: f64) -> f64 {
-        let needed = self
-            .wide
-            .mul(self.wide.mul(2.0, self.widen(widest)), self.room);
+        let needed = self.wide.mul(self.wide.mul(2.0, self.widen(widest)), self.room);
         needed.max(self.wide.div(longest, self.most))
     }
 
@@ -78,14 +75,9 @@ pub fn wrong_cells(rule: &Rule, top: i32) -> [u64; 2] {
                 let size = rule.size(rule.wide.sub(hi, origin), widest);
                 let last = rule.last(origin, size, hi, false);
                 let centres = &numbers[first..=end];
-                let cells: Vec<f64> = centres
-                    .iter()
-                    .map(|&x| rule.number(origin, size, x))
-                    .collect();
-                wrong[0] += cells
-                    .iter()
-                    .filter(|&&cell| cell < 0.0 || cell > last)
-                    .count() as u64;
+                let cells: Vec<f64> =
+                    centres.iter().map(|&x| rule.number(origin, size, x)).collect();
+                wrong[0] += cells.iter().filter(|&&cell| cell < 0.0 || cell > last).count() as u64;
                 let mut far = 0;
                 for (x, cell) in centres.iter().zip(&cells) {
                     while far + 1 < centres.len() && centres[far + 1] - x <= reach {

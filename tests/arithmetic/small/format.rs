@@ -11,11 +11,8 @@ pub enum Underflow {
     ReadAsZero,
 }
 
-pub const UNDERFLOWS: [Underflow; 3] = [
-    Underflow::Gradual,
-    Underflow::Flushed,
-    Underflow::ReadAsZero,
-];
+pub const UNDERFLOWS: [Underflow; 3] =
+    [Underflow::Gradual, Underflow::Flushed, Underflow::ReadAsZero];
 
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
@@ -32,16 +29,8 @@ pub fn exp2(e: i32) -> f64 {
 }
 
 impl Format {
-    pub const F32: Self = Self {
-        precision: 24,
-        least: -126,
-        underflow: Underflow::Gradual,
-    };
-    pub const F64: Self = Self {
-        precision: 53,
-        least: -1022,
-        underflow: Underflow::Gradual,
-    };
+    pub const F32: Self = Self { precision: 24, least: -126, underflow: Underflow::Gradual };
+    pub const F64: Self = Self { precision: 53, least: -1022, underflow: Underflow::Gradual };
 
     /// Unit roundoff.
     pub fn u(&self) -> f64 {
@@ -65,11 +54,7 @@ impl Format {
         }
         let quantum = self.quantum(x);
         let rounded = (x / quantum).round_ties_even() * quantum;
-        if self.underflow == Underflow::Flushed && rounded.abs() < tiny {
-            0.0
-        } else {
-            rounded
-        }
+        if self.underflow == Underflow::Flushed && rounded.abs() < tiny { 0.0 } else { rounded }
     }
 
     pub fn read(&self, x: f64) -> f64 {
@@ -103,11 +88,7 @@ impl Format {
     pub fn up(&self, x: f64) -> f64 {
         let x = self.fl(x);
         // Below a power of two numbers lie half as far apart.
-        let step = if x < 0.0 {
-            self.quantum(x.next_up())
-        } else {
-            self.quantum(x)
-        };
+        let step = if x < 0.0 { self.quantum(x.next_up()) } else { self.quantum(x) };
         x + step
     }
     pub fn down(&self, x: f64) -> f64 {

@@ -21,11 +21,7 @@ use super::cases;
 /// A format whose numbers from 2^least on suffice to reach every kind of input: radii that the
 /// floor swamps, radii that swamp the floor, products that underflow.
 fn small(precision: i32, underflow: format::Underflow) -> Format {
-    Format {
-        precision,
-        least: -2 * precision - 6,
-        underflow,
-    }
+    Format { precision, least: -2 * precision - 6, underflow }
 }
 
 /// Each format of these precisions, in each mode.
@@ -47,13 +43,9 @@ fn at_f32_it_is_the_code() {
         let (left, right) = line.split_once('=').unwrap();
         let mut words = left.split_whitespace();
         let name = words.next().unwrap();
-        let bits: Vec<u64> = words
-            .map(|word| u64::from_str_radix(word, 16).unwrap())
-            .collect();
-        let expected: Vec<u64> = right
-            .split_whitespace()
-            .map(|word| u64::from_str_radix(word, 16).unwrap())
-            .collect();
+        let bits: Vec<u64> = words.map(|word| u64::from_str_radix(word, 16).unwrap()).collect();
+        let expected: Vec<u64> =
+            right.split_whitespace().map(|word| u64::from_str_radix(word, 16).unwrap()).collect();
         if let Some(found) = at_f32(name, &bits) {
             let unsigned = |numbers: &[u64]| -> Vec<u64> {
                 let zero = |bits| if bits == 1 << 31 { 0 } else { bits };
@@ -75,19 +67,10 @@ fn at_f32(name: &str, bits: &[u64]) -> Option<Vec<u64>> {
     let x = |i: usize| number(bits[i]);
     let ball = |i: usize| [x(i), x(i + 1), x(i + 2), x(i + 3)];
     let bits_of = |numbers: &[f64]| -> Vec<u64> {
-        numbers
-            .iter()
-            .map(|&x| u64::from((x as f32).to_bits()))
-            .collect()
+        numbers.iter().map(|&x| u64::from((x as f32).to_bits())).collect()
     };
-    let inflation = Inflation {
-        floor: power(-70),
-        ..Inflation::of(&f32s)
-    };
-    let margins = Margins {
-        floor: f64::from(1e-30f32),
-        ..Margins::of(&f32s)
-    };
+    let inflation = Inflation { floor: power(-70), ..Inflation::of(&f32s) };
+    let margins = Margins { floor: f64::from(1e-30f32), ..Margins::of(&f32s) };
     let mut rule = Rule::of(f32s, wide);
     rule.widening[1] = power(-78);
     (rule.room, rule.most) = (1.0 + power(-16), power(29));
@@ -98,20 +81,13 @@ fn at_f32(name: &str, bits: &[u64]) -> Option<Vec<u64>> {
         }
         "widen" => bits_of(&[rule.widen(x(0))]),
         "inflate" => bits_of(&[inflation.inflate(&f32s, x(0))]),
-        "spheres" => vec![u64::from(spheres::rejects(
-            &f32s,
-            &inflation,
-            ball(0),
-            ball(4),
-        ))],
+        "spheres" => vec![u64::from(spheres::rejects(&f32s, &inflation, ball(0), ball(4)))],
         "stays" => {
             let (now, before) = (ball(2), ball(6));
             let skin = spheres::skin_of(&f32s, x(0), x(1), before[3]);
             let left = spheres::left_of(&f32s, skin, now[3], before[3]);
             let way = [0, 1, 2].map(|i| f32s.sub(now[i], before[i]));
-            vec![u64::from(
-                f32s.gt(f32s.mul(left, left), spheres::square_of(&f32s, way)),
-            )]
+            vec![u64::from(f32s.gt(f32s.mul(left, left), spheres::square_of(&f32s, way)))]
         }
         "cube" => {
             let axes = [0, 1, 2].map(|i| boxes::axis_of(&f32s, x(i), x(i + 3)));
@@ -126,9 +102,7 @@ fn at_f32(name: &str, bits: &[u64]) -> Option<Vec<u64>> {
         }
         "cubes" => {
             let (a, b) = (ball(0), ball(4));
-            let distance = (0..3)
-                .map(|i| f32s.sub(b[i], a[i]).abs())
-                .fold(0.0, f64::max);
+            let distance = (0..3).map(|i| f32s.sub(b[i], a[i]).abs()).fold(0.0, f64::max);
             let reach = f32s.add(a[3], b[3]);
             let less = boxes::less_than_sure(&f32s, &margins, x(8));
             let surely = !f32s.gt(distance, boxes::sure(&f32s, &margins, reach, less));
@@ -144,10 +118,7 @@ fn at_f32(name: &str, bits: &[u64]) -> Option<Vec<u64>> {
             let mut found = last.map(|last| last as u64 + 1).to_vec();
             if (0..3).all(|i| ends[0][i] <= last[i] && ends[1][i] >= 0.0) {
                 let clamped = |i: usize, end: f64| end.max(0.0).min(last[i]) as u64;
-                found.extend(
-                    ends.iter()
-                        .flat_map(|end| [0, 1, 2].map(|i| clamped(i, end[i]))),
-                );
+                found.extend(ends.iter().flat_map(|end| [0, 1, 2].map(|i| clamped(i, end[i]))));
             }
             found
         }
@@ -186,21 +157,12 @@ fn spheres_hold(format: &Format) {
     let lower = [2.0, 0.0][usize::from(format.precision == 3)];
     let factor = 1.0 + lower * format.u();
     assert!(
-        wrong(
-            Inflation {
-                factor,
-                ..inflation
-            },
-            top(format)
-        ) > 0,
+        wrong(Inflation { factor, ..inflation }, top(format)) > 0,
         "{format:?}: a lower factor"
     );
     if format.precision == 6 && format.underflow == UNDERFLOWS[0] {
         let floor = inflation.floor * exp2(-8);
-        assert!(
-            wrong(Inflation { floor, ..inflation }, -4) > 0,
-            "{format:?}: a lower floor"
-        );
+        assert!(wrong(Inflation { floor, ..inflation }, -4) > 0, "{format:?}: a lower floor");
     }
 }
 
@@ -225,19 +187,11 @@ fn touching_balls_pass_in_six_bits() {
 fn stages_find_what_raw_enumeration_finds() {
     let mut found = 0;
     for underflow in UNDERFLOWS {
-        let format = Format {
-            precision: 2,
-            least: 0,
-            underflow,
-        };
+        let format = Format { precision: 2, least: 0, underflow };
         for (factor, floor) in [(1.0, 0.0), (1.0, 0.5), (1.5, 0.0), (3.0, 2.0)] {
             let inflation = Inflation { factor, floor };
             let raw = spheres::wrong_raw(&format, &inflation, 1);
-            assert_eq!(
-                spheres::wrong_spheres(&format, &inflation, 1),
-                raw,
-                "{inflation:?}"
-            );
+            assert_eq!(spheres::wrong_spheres(&format, &inflation, 1), raw, "{inflation:?}");
             found += raw;
         }
     }
@@ -273,21 +227,14 @@ fn no_boxes_parted(format: &Format) {
     let margins = Margins::of(format);
     assert_eq!(boxes::wrong_apart(format, &margins, 2), 0, "{format:?}");
     let wider = 1.0;
-    assert!(
-        boxes::wrong_apart(format, &Margins { wider, ..margins }, 2) > 0,
-        "{format:?}"
-    );
+    assert!(boxes::wrong_apart(format, &Margins { wider, ..margins }, 2) > 0, "{format:?}");
 }
 
 /// No boxes that don't meet are taken to; without the factors some are.
 fn no_boxes_taken_to_meet(format: &Format) {
     let margins = Margins::of(format);
     assert_eq!(boxes::wrong_sure(format, &margins, -1), 0, "{format:?}");
-    let exact = Margins {
-        wider: 1.0,
-        narrower: 1.0,
-        ..margins
-    };
+    let exact = Margins { wider: 1.0, narrower: 1.0, ..margins };
     assert!(boxes::wrong_sure(format, &exact, -1) > 0, "{format:?}");
 }
 
@@ -310,11 +257,7 @@ fn certain_boxes_meet_in_four_bits() {
 
 /// The arithmetic of cells for coordinates of a format.
 fn rule(narrow: Format) -> Rule {
-    let wide = Format {
-        precision: 2 * narrow.precision + 5,
-        least: -400,
-        ..narrow
-    };
+    let wide = Format { precision: 2 * narrow.precision + 5, least: -400, ..narrow };
     Rule::of(narrow, wide)
 }
 
@@ -356,18 +299,10 @@ fn former_cell_count_is_refuted() {
 /// without a margin some are.
 fn slabs_hold(precision: i32, top: i32) {
     for underflow in UNDERFLOWS {
-        let format = Format {
-            precision,
-            least: -2,
-            underflow,
-        };
+        let format = Format { precision, least: -2, underflow };
         let wide = rule(format).wide;
         let wrong = |margin| boxes::wrong_slabs([&format, &wide], margin, top);
-        assert_eq!(
-            wrong([128.0 * format.u(), 16.0 * exp2(format.least)]),
-            0,
-            "{format:?}"
-        );
+        assert_eq!(wrong([128.0 * format.u(), 16.0 * exp2(format.least)]), 0, "{format:?}");
         assert!(wrong([0.0, 0.0]) > 0, "{format:?}");
     }
 }

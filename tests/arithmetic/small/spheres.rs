@@ -20,10 +20,7 @@ impl Inflation {
     /// times the least number.
     pub fn of(format: &Format) -> Self {
         let floor = exp2((format.least - format.precision + 10).div_euclid(2));
-        Self {
-            factor: 1.0 + 8.0 * format.u(),
-            floor,
-        }
+        Self { factor: 1.0 + 8.0 * format.u(), floor }
     }
 
     /// `inflate_radius`
@@ -63,9 +60,7 @@ fn each_distance(format: &Format, differences: &[(f64, f64)], mut see: impl FnMu
 /// Each |fl(b − a)| with the extreme |b − a|.
 fn differences(format: &Format, top: i32, further: fn(f64, f64) -> f64) -> Vec<(f64, f64)> {
     let numbers = format.numbers(top);
-    let pairs = numbers
-        .iter()
-        .flat_map(|&a| numbers.iter().map(move |&b| (a, b)));
+    let pairs = numbers.iter().flat_map(|&a| numbers.iter().map(move |&b| (a, b)));
     let pairs = pairs.filter(|(a, b)| a <= b);
     extremes(pairs.map(|(a, b)| (format.sub(b, a), b - a)), further)
 }
@@ -74,15 +69,9 @@ fn differences(format: &Format, top: i32, further: fn(f64, f64) -> f64) -> Vec<(
 /// some balls that give them touch.
 pub fn wrong_spheres(format: &Format, inflation: &Inflation, top: i32) -> u64 {
     let sizes = format.sizes(top);
-    let radii: Vec<(f64, f64)> = sizes
-        .iter()
-        .map(|&r| (inflation.inflate(format, r), r))
-        .collect();
+    let radii: Vec<(f64, f64)> = sizes.iter().map(|&r| (inflation.inflate(format, r), r)).collect();
     let sums = radii.iter().flat_map(|a| radii.iter().map(move |b| (a, b)));
-    let sums = extremes(
-        sums.map(|(a, b)| (format.add(a.0, b.0), a.1 + b.1)),
-        f64::max,
-    );
+    let sums = extremes(sums.map(|(a, b)| (format.add(a.0, b.0), a.1 + b.1)), f64::max);
     // Squared, and the farthest that balls with no larger sum may be apart and touch.
     let mut most = 0.0f64;
     let squared: Vec<(f64, f64)> = sums
@@ -93,14 +82,10 @@ pub fn wrong_spheres(format: &Format, inflation: &Inflation, top: i32) -> u64 {
         })
         .collect();
     let mut wrong = 0;
-    each_distance(
-        format,
-        &differences(format, top, f64::min),
-        |exact, rounded| {
-            let rejecting = squared.partition_point(|&(square, _)| format.gt(rounded, square));
-            wrong += u64::from(rejecting > 0 && exact <= squared[rejecting - 1].1);
-        },
-    );
+    each_distance(format, &differences(format, top, f64::min), |exact, rounded| {
+        let rejecting = squared.partition_point(|&(square, _)| format.gt(rounded, square));
+        wrong += u64::from(rejecting > 0 && exact <= squared[rejecting - 1].1);
+    });
     wrong
 }
 
@@ -118,13 +103,7 @@ pub fn wrong_raw(format: &Format, inflation: &Inflation, top: i32) -> u64 {
         for &r in &sizes {
             for &s in &sizes {
                 let touch = exact <= (r + s) * (r + s);
-                if touch
-                    && rejects(
-                        format,
-                        inflation,
-                        [a[0], a[1], a[2], r],
-                        [b[0], b[1], b[2], s],
-                    )
+                if touch && rejects(format, inflation, [a[0], a[1], a[2], r], [b[0], b[1], b[2], s])
                 {
                     let [x, y, z] = way;
                     wrong.insert([x.max(y), x.min(y), z].map(f64::to_bits));
@@ -149,11 +128,7 @@ impl Budget {
     pub fn of(format: &Format) -> Self {
         let u = format.u();
         let floor = exp2((format.least - format.precision + 10).div_euclid(2));
-        Self {
-            widening: 1.0 + 16.0 * u,
-            factor: 1.0 + 32.0 * u,
-            floor,
-        }
+        Self { widening: 1.0 + 16.0 * u, factor: 1.0 + 32.0 * u, floor }
     }
 }
 
@@ -173,11 +148,7 @@ pub fn skin_of(format: &Format, share: f64, least: f64, radius: f64) -> f64 {
 /// radius they come from.
 pub fn wrong_skins(format: &Format, budget: &Budget, top: i32) -> u64 {
     let sizes = format.sizes(top);
-    let skins: Vec<f64> = sizes
-        .iter()
-        .copied()
-        .filter(|&skin| skin >= budget.floor)
-        .collect();
+    let skins: Vec<f64> = sizes.iter().copied().filter(|&skin| skin >= budget.floor).collect();
     let mut rests = Vec::new();
     for &skin in &skins {
         let allowed = skin * budget.factor + budget.floor;
@@ -201,14 +172,10 @@ pub fn wrong_skins(format: &Format, budget: &Budget, top: i32) -> u64 {
         .collect();
     allowed.reverse();
     let mut wrong = 0;
-    each_distance(
-        format,
-        &differences(format, top, f64::max),
-        |exact, rounded| {
-            let first = allowed.partition_point(|&(square, _)| !format.gt(square, rounded));
-            let beyond = |rest: f64| rest < 0.0 || exact > rest * rest;
-            wrong += u64::from(first < allowed.len() && beyond(allowed[first].1));
-        },
-    );
+    each_distance(format, &differences(format, top, f64::max), |exact, rounded| {
+        let first = allowed.partition_point(|&(square, _)| !format.gt(square, rounded));
+        let beyond = |rest: f64| rest < 0.0 || exact > rest * rest;
+        wrong += u64::from(first < allowed.len() && beyond(allowed[first].1));
+    });
     wrong
 }

@@ -65,12 +65,7 @@ struct Record {
 
 fn main() -> Result<ExitCode> {
     let cli = Cli::parse();
-    let plan = Plan {
-        scene: cli.scene,
-        kind: cli.kind,
-        bodies: cli.bodies,
-        seed: cli.seed,
-    };
+    let plan = Plan { scene: cli.scene, kind: cli.kind, bodies: cli.bodies, seed: cli.seed };
     let forms = forms(&cli.meshes, cli.detail)?;
     let found = study(plan, &forms, cli.steps, cli.without_margin);
     let record = Record {
@@ -90,9 +85,5 @@ fn main() -> Result<ExitCode> {
     if let Some(path) = &cli.out {
         whole::write(path, &text)?;
     }
-    Ok(if found.judged.dropped == 0 {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    Ok(if found.judged.dropped == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

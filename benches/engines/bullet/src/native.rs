@@ -119,15 +119,9 @@ impl Scene {
     /// A shape, whose pairs are filtered if it is a hull or a mesh. Its margin is taken times
     /// `share`: 1, but for a planted bug.
     pub fn shape(&mut self, kind: Kind, mesh: &TriangleMesh, share: f32) -> ShapeId {
-        self.meshes
-            .push((mesh.vertices.clone(), mesh.triangles.clone()));
+        self.meshes.push((mesh.vertices.clone(), mesh.triangles.clone()));
         let (vertices, triangles) = &self.meshes[self.meshes.len() - 1];
-        let (v, n, t, m) = (
-            vertices.as_ptr(),
-            vertices.len(),
-            triangles.as_ptr(),
-            triangles.len(),
-        );
+        let (v, n, t, m) = (vertices.as_ptr(), vertices.len(), triangles.as_ptr(), triangles.len());
         // SAFETY: the counts are those of the vectors; the vectors' buffers stay where they are
         // until the scene has ended.
         let shape = unsafe { scene_shape(self.scene, kind as u32, v, n, t, m) };
@@ -145,14 +139,7 @@ impl Scene {
         let ShapeId { shape, model } = shape;
         // SAFETY: a shape of this scene; thirteen floats, read during the call.
         unsafe {
-            scene_body(
-                self.scene,
-                shape,
-                model,
-                &raw const motion,
-                restitution,
-                friction,
-            );
+            scene_body(self.scene, shape, model, &raw const motion, restitution, friction);
         }
     }
 

@@ -25,29 +25,18 @@ impl Stage {
     #[must_use]
     pub fn new(plan: Plan, forms: &[TriangleMesh], mode: Mode, share: f32) -> Self {
         let mut scene = Scene::new(mode);
-        let shapes: Vec<_> = forms
-            .iter()
-            .map(|form| scene.shape(plan.kind, form, share))
-            .collect();
+        let shapes: Vec<_> = forms.iter().map(|form| scene.shape(plan.kind, form, share)).collect();
         let (apart, speed, restitution, friction) = match plan.scene {
             SceneKind::Cloud => (2.0, 5.0, 1.0, 0.0),
             SceneKind::Pile | SceneKind::Tumbler => (1.0, 0.0, 0.0, 0.5),
         };
-        let side = (1..)
-            .find(|n| n * n * n >= plan.bodies)
-            .unwrap_or(plan.bodies);
+        let side = (1..).find(|n| n * n * n >= plan.bodies).unwrap_or(plan.bodies);
         let half = side as f32 * SPACING * apart / 2.0 + 0.2;
         let walls = if plan.scene == SceneKind::Pile { 5 } else { 6 };
         for wall in 0..walls {
             // The floor first, the ceiling last.
-            let (axis, sign) = [
-                (1, 1.0),
-                (0, 1.0),
-                (0, -1.0),
-                (2, 1.0),
-                (2, -1.0),
-                (1, -1.0),
-            ][wall];
+            let (axis, sign) =
+                [(1, 1.0), (0, 1.0), (0, -1.0), (2, 1.0), (2, -1.0), (1, -1.0)][wall];
             let mut normal = [0.0; 3];
             normal[axis] = sign;
             scene.wall(normal, -half, restitution);
@@ -66,11 +55,7 @@ impl Stage {
             };
             scene.body(shape, motion, restitution, friction);
         }
-        let mut stage = Self {
-            scene,
-            plan,
-            steps: 0,
-        };
+        let mut stage = Self { scene, plan, steps: 0 };
         stage.turn_gravity();
         stage
     }
@@ -100,8 +85,7 @@ impl Stage {
             SceneKind::Pile | SceneKind::Tumbler => 9.81,
         };
         let (sin, cos) = angle.sin_cos();
-        self.scene
-            .set_gravity([strength * sin, -strength * cos, 0.0]);
+        self.scene.set_gravity([strength * sin, -strength * cos, 0.0]);
     }
 }
 

@@ -55,11 +55,7 @@ pub fn study(plan: Plan, forms: &[TriangleMesh], steps: usize, without_margin: b
         timed.predicted = saved_ms(&judged, clock_ns) / steps as f64 / timed.plain_ms;
         timed
     });
-    Study {
-        judged,
-        clock_ns,
-        timed,
-    }
+    Study { judged, clock_ns, timed }
 }
 
 /// The checks of rejected pairs less the tests of all.
@@ -94,9 +90,8 @@ fn cpu_ms() -> f64 {
 
 /// The median time of an empty measurement.
 fn clock_ns() -> f64 {
-    let mut times: Vec<_> = (0..10_000)
-        .map(|_| std::time::Instant::now().elapsed().as_nanos())
-        .collect();
+    let mut times: Vec<_> =
+        (0..10_000).map(|_| std::time::Instant::now().elapsed().as_nanos()).collect();
     times.sort_unstable();
     times[times.len() / 2] as f64
 }

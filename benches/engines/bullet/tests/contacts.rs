@@ -18,12 +18,7 @@ fn forms() -> Vec<TriangleMesh> {
 
 fn plans() -> impl Iterator<Item = Plan> {
     SceneKind::value_variants().iter().flat_map(|&scene| {
-        Kind::value_variants().iter().map(move |&kind| Plan {
-            scene,
-            kind,
-            bodies: 30,
-            seed: 3,
-        })
+        Kind::value_variants().iter().map(move |&kind| Plan { scene, kind, bodies: 30, seed: 3 })
     })
 }
 
@@ -33,11 +28,7 @@ fn no_scene_loses_a_contact() {
         let counts = judge(plan, &forms(), 120, 1.0);
         assert!(counts.touching > 0, "{plan:?}: nothing touched");
         assert_eq!(counts.dropped, 0, "{plan:?}: {counts:?}");
-        assert_eq!(
-            counts.rejected > 0,
-            is_filtered(plan.kind),
-            "{plan:?}: {counts:?}"
-        );
+        assert_eq!(counts.rejected > 0, is_filtered(plan.kind), "{plan:?}: {counts:?}");
     }
 }
 
@@ -46,9 +37,7 @@ fn no_scene_loses_a_contact() {
 fn missing_margins_are_detected() {
     let dropped = |kind| {
         let plans = plans().filter(move |plan| plan.kind == kind);
-        plans
-            .map(|plan| judge(plan, &forms(), 120, 0.0).dropped)
-            .sum::<u64>()
+        plans.map(|plan| judge(plan, &forms(), 120, 0.0).dropped).sum::<u64>()
     };
     assert!(dropped(Kind::Hull) > 0);
     assert!(dropped(Kind::Mesh) > 0);

@@ -22,36 +22,11 @@ pub fn forms(meshes: &Path, detail: Detail) -> Result<Vec<TriangleMesh>> {
     };
     let mut forms = vec![cow];
     for shape in [
-        ProceduralShape::Torus {
-            radius: 0.7,
-            tube: 0.3,
-            segments: 16 * n,
-            sides: 8 * n,
-        },
-        ProceduralShape::LShape {
-            x: 1.0,
-            y: 1.0,
-            arm: 0.3,
-            thickness: 0.4,
-        },
-        ProceduralShape::Needle {
-            length: 2.0,
-            radius: 0.3,
-            sides: 8 * n,
-        },
-        ProceduralShape::Gear {
-            tip: 1.0,
-            root: 0.8,
-            bore: 0.3,
-            thickness: 0.4,
-            teeth: 10 * n,
-        },
-        ProceduralShape::Knot {
-            radius: 0.8,
-            tube: 0.15,
-            segments: 40 * n,
-            sides: 6 * n,
-        },
+        ProceduralShape::Torus { radius: 0.7, tube: 0.3, segments: 16 * n, sides: 8 * n },
+        ProceduralShape::LShape { x: 1.0, y: 1.0, arm: 0.3, thickness: 0.4 },
+        ProceduralShape::Needle { length: 2.0, radius: 0.3, sides: 8 * n },
+        ProceduralShape::Gear { tip: 1.0, root: 0.8, bore: 0.3, thickness: 0.4, teeth: 10 * n },
+        ProceduralShape::Knot { radius: 0.8, tube: 0.15, segments: 40 * n, sides: 6 * n },
     ] {
         forms.push(shape.build().or_report()?);
     }
@@ -71,10 +46,7 @@ fn sized(mesh: &TriangleMesh) -> TriangleMesh {
         std::array::from_fn(|axis| vertex[axis] - (lo[axis] + hi[axis]) * 0.5)
     };
     let length = |[x, y, z]: [f32; 3]| (x * x + y * y + z * z).sqrt();
-    let reach = mesh
-        .vertices
-        .iter()
-        .fold(0.0, |r: f32, vertex| r.max(length(centred(vertex))));
+    let reach = mesh.vertices.iter().fold(0.0, |r: f32, vertex| r.max(length(centred(vertex))));
     let mut sized = mesh.clone();
     for vertex in &mut sized.vertices {
         *vertex = centred(vertex).map(|x| x * (0.5 / reach));

@@ -41,11 +41,7 @@ enum Command {
         #[command(flatten)]
         run: Run,
         /// The modes.
-        #[arg(
-            long,
-            value_delimiter = ',',
-            default_value = "plain,full,hook,dispatcher"
-        )]
+        #[arg(long, value_delimiter = ',', default_value = "plain,full,hook,dispatcher")]
         modes: Vec<Mode>,
         /// Steps of the run that prices are taken from; it has another seed.
         #[arg(long, default_value_t = 200)]
@@ -86,19 +82,8 @@ struct Run {
 
 impl Run {
     fn plan(&self) -> Plan {
-        let Self {
-            scene,
-            kind,
-            bodies,
-            seed,
-            ..
-        } = *self;
-        Plan {
-            scene,
-            kind,
-            bodies,
-            seed,
-        }
+        let Self { scene, kind, bodies, seed, .. } = *self;
+        Plan { scene, kind, bodies, seed }
     }
 
     /// Prints the record and writes it where it was asked for.
@@ -117,49 +102,24 @@ impl Run {
         };
         let text = serde_json::to_string_pretty(&record).into_diagnostic()? + "\n";
         print!("{text}");
-        self.out
-            .as_ref()
-            .map_or(Ok(()), |path| whole::write(path, &text))
+        self.out.as_ref().map_or(Ok(()), |path| whole::write(path, &text))
     }
 }
 
 fn main() -> Result<ExitCode> {
     match Cli::parse().command {
-        Command::Check {
-            run,
-            mode,
-            without_margin,
-            cases,
-        } => {
-            let check = if run.real == Real::F32 {
-                single::proof::check
-            } else {
-                double::proof::check
-            };
+        Command::Check { run, mode, without_margin, cases } => {
+            let check =
+                if run.real == Real::F32 { single::proof::check } else { double::proof::check };
             let forms = forms(&run.meshes, run.detail)?;
             let check = check(run.plan(), &forms, mode, run.steps, without_margin, &cases)?;
             let fine = check.dropped == 0;
-            run.finish(RecordedFinding::Checked {
-                mode: mode.to_string(),
-                without_margin,
-                check,
-            })?;
-            Ok(if fine {
-                ExitCode::SUCCESS
-            } else {
-                ExitCode::FAILURE
-            })
+            run.finish(RecordedFinding::Checked { mode: mode.to_string(), without_margin, check })?;
+            Ok(if fine { ExitCode::SUCCESS } else { ExitCode::FAILURE })
         }
-        Command::Measure {
-            run,
-            modes,
-            calibrate,
-        } => {
-            let measure = if run.real == Real::F32 {
-                single::proof::measure
-            } else {
-                double::proof::measure
-            };
+        Command::Measure { run, modes, calibrate } => {
+            let measure =
+                if run.real == Real::F32 { single::proof::measure } else { double::proof::measure };
             let forms = forms(&run.meshes, run.detail)?;
             let (shares, prices) = measure(run.plan(), &forms, &modes, run.steps, calibrate);
             run.finish(RecordedFinding::Measured { shares, prices })?;

@@ -11,7 +11,5 @@ use miette::{Context, IntoDiagnostic, Result};
 pub fn write(path: &Path, text: &str) -> Result<()> {
     let beside = path.with_extension("part");
     let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
-    written
-        .into_diagnostic()
-        .wrap_err_with(|| format!("can't write {}", path.display()))
+    written.into_diagnostic().wrap_err_with(|| format!("can't write {}", path.display()))
 }

@@ -16,10 +16,7 @@ fn forms() -> Vec<TriangleMesh> {
     let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../data/meshes");
     let forms = sdop_rapier::forms::forms(&meshes, Detail::Coarse).unwrap();
     // Quick to collide: the cow and the knot have hundreds of triangles.
-    forms
-        .into_iter()
-        .filter(|form| form.triangles.len() < 290)
-        .collect()
+    forms.into_iter().filter(|form| form.triangles.len() < 290).collect()
 }
 
 fn check(plan: Plan, mode: Mode, steps: usize) -> [Check; 2] {
@@ -38,12 +35,7 @@ fn no_scene_loses_a_contact() {
         for mode in FILTERED {
             let (mut checked, mut unfiltered) = (0, 0);
             for &scene in Scene::ALL {
-                let plan = Plan {
-                    scene,
-                    kind,
-                    bodies: 20,
-                    seed: 3,
-                };
+                let plan = Plan { scene, kind, bodies: 20, seed: 3 };
                 for check in check(plan, mode, 40) {
                     assert_eq!(check.dropped, 0, "{plan:?}, {mode}: {check:?}");
                     assert_eq!(check.contacts_that_differ, 0, "{plan:?}, {mode}: {check:?}");
@@ -66,21 +58,13 @@ fn no_scene_loses_a_contact() {
 #[test]
 fn check_detects_missing_margins() {
     let forms = forms();
-    let plan = Plan {
-        scene: Scene::Pile,
-        kind: Kind::Hull,
-        bodies: 40,
-        seed: 5,
-    };
+    let plan = Plan { scene: Scene::Pile, kind: Kind::Hull, bodies: 40, seed: 5 };
     for mode in [Mode::Hook, Mode::DispatcherFull] {
         let cases = tempfile::tempdir().unwrap();
         let found = single::proof::check(plan, &forms, mode, 120, true, cases.path()).unwrap();
         assert!(found.dropped > 0, "{mode}: {found:?}");
         let scene = cases.path().join("dropped-pair.toml");
-        let scene = sdop_bench::scene::SceneFile::read(&scene)
-            .unwrap()
-            .build()
-            .unwrap();
+        let scene = sdop_bench::scene::SceneFile::read(&scene).unwrap().build().unwrap();
         assert_eq!(scene.bodies.len(), 2);
     }
 }

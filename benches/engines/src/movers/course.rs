@@ -206,10 +206,7 @@ mod tests {
             }
             let mean = all / WAVE_FRAMES;
             let expected = if motion == Motion::Waking { 25 } else { 100 };
-            assert!(
-                mean == expected && most == 100,
-                "{motion:?}: {mean}, {most}"
-            );
+            assert!(mean == expected && most == 100, "{motion:?}: {mean}, {most}");
         }
     }
 

@@ -14,10 +14,7 @@ pub struct Follower {
 impl Follower {
     /// An engine whose first boxes have been read.
     pub fn new(engine: Box<dyn Incremental>) -> Self {
-        let mut follower = Self {
-            engine,
-            log: Changes::default(),
-        };
+        let mut follower = Self { engine, log: Changes::default() };
         follower.settle();
         follower
     }

@@ -30,11 +30,7 @@ impl<'a> Truth<'a> {
             pairs.sort_unstable();
             Ok::<_, miette::Report>(pairs)
         });
-        Ok(Self {
-            boxes,
-            touching: oracle::pairs(boxes),
-            culled: culled.transpose()?,
-        })
+        Ok(Self { boxes, touching: oracle::pairs(boxes), culled: culled.transpose()? })
     }
 
     /// Compares an engine's pairs, which may come in any order and either way round. Returns how
@@ -61,10 +57,7 @@ impl<'a> Truth<'a> {
             (refused, "no pair"),
             (twice.map(|two| &two[0]), "reported twice"),
         ];
-        match fault
-            .into_iter()
-            .find_map(|(pair, fault)| Some((pair?, fault)))
-        {
+        match fault.into_iter().find_map(|(pair, fault)| Some((pair?, fault))) {
             None => Ok((pairs.len(), additional.len())),
             Some((pair, fault)) => Err(miette!(
                 help = "nothing is timed while answers differ",
@@ -147,11 +140,7 @@ mod tests {
             (Extras::None, &near[..], " the pair [1, 2] is no pair"),
             (Extras::Within(0.09), &near, " the pair [1, 2] is no pair"),
             (Extras::Late, &[[1, 2]], " the pair [0, 1] is missing"),
-            (
-                Extras::None,
-                &[[0, 1], [1, 0]],
-                " the pair [0, 1] is reported twice",
-            ),
+            (Extras::None, &[[0, 1], [1, 0]], " the pair [0, 1] is reported twice"),
         ] {
             assert_eq!(judge(extras, pairs), Err(fault.to_owned()));
         }

@@ -96,10 +96,8 @@ pub fn run(case: MoverCase, entries: &[MoverEntry], limit_ms: f64) -> miette::Re
                 too_slow.is_none()
             });
         } else {
-            let (mut followers, mut times): (Vec<_>, Vec<_>) = all
-                .iter_mut()
-                .map(|timed| (&mut timed.follower, &mut timed.us))
-                .unzip();
+            let (mut followers, mut times): (Vec<_>, Vec<_>) =
+                all.iter_mut().map(|timed| (&mut timed.follower, &mut timed.us)).unzip();
             turns.round(&mut followers, &frames, |frame| {
                 if done >= case.warm_up {
                     times[frame.number].push(1e6 * frame.seconds);
@@ -113,10 +111,7 @@ pub fn run(case: MoverCase, entries: &[MoverEntry], limit_ms: f64) -> miette::Re
     }
     let ours = all.first().map(|timed| timed.turns(case.turn));
     let rows = all.iter().map(|timed| timed.row(case, ours.as_deref()));
-    Ok(Timings {
-        rows: rows.collect(),
-        left_out,
-    })
+    Ok(Timings { rows: rows.collect(), left_out })
 }
 
 fn judge(case: MoverCase, course: &MoverCourse, all: &mut [Timed<'_>]) -> miette::Result<()> {
@@ -160,12 +155,7 @@ impl<'a> Timed<'a> {
     /// Why it takes no part any more, if its last frame took more than `most` times the limit.
     fn left_out(&self, case: MoverCase, limit_ms: f64, most: f64) -> Option<LeftOut<MoverCase>> {
         let is_slow = self.ms > most * limit_ms && !self.entry.is_ours();
-        is_slow.then_some(LeftOut {
-            case,
-            engine: self.entry.name,
-            ms: self.ms,
-            limit_ms,
-        })
+        is_slow.then_some(LeftOut { case, engine: self.entry.name, ms: self.ms, limit_ms })
     }
 
     /// The mean of each turn of so many frames.

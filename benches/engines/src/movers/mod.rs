@@ -71,9 +71,5 @@ pub fn run(args: &Args) -> miette::Result<()> {
 
 /// What an engine is built for, with as many threads as it may use here.
 fn alone<'a>(course: &'a crate::scenes::Course, first: &'a crate::boxes::Frame) -> Setup<'a> {
-    Setup {
-        scene: &course.scene,
-        first,
-        threads: 1,
-    }
+    Setup { scene: &course.scene, first, threads: 1 }
 }

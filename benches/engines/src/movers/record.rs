@@ -20,23 +20,12 @@ impl Record {
     }
 
     fn csv(&self) -> miette::Result<String> {
-        let mut out = csv::WriterBuilder::new()
-            .has_headers(false)
-            .from_writer(Vec::new());
+        let mut out = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
         let header = "bodies movers motion of warm_up timed engine version margin events \
             pairs extra us_low us us_high us_p50 us_p99 us_most ratio bytes_a_body";
-        out.write_record(header.split(' ').filter(|word| !word.is_empty()))
-            .into_diagnostic()?;
+        out.write_record(header.split(' ').filter(|word| !word.is_empty())).into_diagnostic()?;
         for row in &self.timings.rows {
-            let MoverCase {
-                bodies,
-                movers,
-                motion,
-                meshes,
-                warm_up,
-                timed,
-                turn: _,
-            } = row.case;
+            let MoverCase { bodies, movers, motion, meshes, warm_up, timed, turn: _ } = row.case;
             let of = if meshes { "meshes" } else { "boxes" };
             out.serialize((
                 (bodies, movers, motion, of, warm_up, timed),
@@ -95,12 +84,7 @@ impl Record {
                 row.bytes_a_body
             );
         }
-        for left in self
-            .timings
-            .left_out
-            .iter()
-            .filter(|left| left.case == case)
-        {
+        for left in self.timings.left_out.iter().filter(|left| left.case == case) {
             let _ = write!(
                 out,
                 "\nLeft out: {}, {:.0} ms in one of its first frames, limit {:.0}.\n",

@@ -67,11 +67,7 @@ impl MoverCase {
         let mut turns = vec![1, 1];
         let mut left = self.warm_up + self.timed - 2;
         while left > 0 {
-            let next = if left > self.timed {
-                left - self.timed
-            } else {
-                self.turn.min(left)
-            };
+            let next = if left > self.timed { left - self.timed } else { self.turn.min(left) };
             turns.push(next);
             left -= next;
         }

@@ -27,12 +27,7 @@ pub const ENTRIES: [Entry; 3] = [
         work: Work::Spheres,
         threads: usize::MAX,
         ages: true,
-        new: |setup| {
-            Ok(Box::new(culler::StrategyCuller::new(
-                setup,
-                Strategy::Sphere,
-            )?))
-        },
+        new: |setup| Ok(Box::new(culler::StrategyCuller::new(setup, Strategy::Sphere)?)),
     },
     Entry {
         name: "sdop s-dop",
@@ -40,11 +35,6 @@ pub const ENTRIES: [Entry; 3] = [
         work: Work::SDop,
         threads: usize::MAX,
         ages: true,
-        new: |setup| {
-            Ok(Box::new(culler::StrategyCuller::new(
-                setup,
-                Strategy::SDopSequential,
-            )?))
-        },
+        new: |setup| Ok(Box::new(culler::StrategyCuller::new(setup, Strategy::SDopSequential)?)),
     },
 ];

@@ -157,10 +157,7 @@ impl AllBoxes {
         if let Ok(culler) = &mut culler {
             culler.cull(&setup.first.corners).or_report()?;
         }
-        Ok(Self {
-            culler: culler.or_report()?,
-            boxes: setup.first.corners.clone(),
-        })
+        Ok(Self { culler: culler.or_report()?, boxes: setup.first.corners.clone() })
     }
 }
 

@@ -179,11 +179,7 @@ impl Parry {
             boxes,
             halves: questions.halves().map(half),
             probes: questions.probes.iter().map(aabb).collect(),
-            centres: questions
-                .centres
-                .iter()
-                .map(|&centre| Vector::from_array(centre))
-                .collect(),
+            centres: questions.centres.iter().map(|&centre| Vector::from_array(centre)).collect(),
             rays: questions.segments.iter().map(ray).collect(),
             threads: Threads::new(threads)?,
             found: Vec::new(),
@@ -213,9 +209,9 @@ impl Asked for Parry {
         let threads = &self.threads;
         self.pairs.clear();
         self.found = match question {
-            Question::Box => each(threads, &self.probes, |probe| {
-                self.tree.intersect_aabb(probe).collect()
-            }),
+            Question::Box => {
+                each(threads, &self.probes, |probe| self.tree.intersect_aabb(probe).collect())
+            }
             Question::Ball => each(threads, &self.centres, |&centre| self.meets_ball(centre)),
             Question::Along => each(threads, &self.rays, |ray| self.along(ray)),
             Question::First => each(threads, &self.rays, |ray| self.first(ray)),
@@ -223,9 +219,7 @@ impl Asked for Parry {
                 let [_, odd] = &self.halves;
                 let even: Vec<&Aabb> = self.boxes.iter().step_by(2).collect();
                 each(threads, &even, |aabb| {
-                    odd.intersect_aabb(aabb)
-                        .map(|place| 2 * place + 1)
-                        .collect()
+                    odd.intersect_aabb(aabb).map(|place| 2 * place + 1).collect()
                 })
             }
             Question::Sets => {

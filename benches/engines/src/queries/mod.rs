@@ -30,11 +30,7 @@ pub struct Args {
     #[arg(long, value_delimiter = ',', default_value = "1000,10000,100000")]
     sizes: Vec<usize>,
     /// Kinds of questions
-    #[arg(
-        long,
-        value_delimiter = ',',
-        default_value = "box,ball,along,first,sets"
-    )]
+    #[arg(long, value_delimiter = ',', default_value = "box,ball,along,first,sets")]
     kinds: Vec<Question>,
     /// Questions of each kind
     #[arg(long, default_value_t = 1000)]

@@ -59,12 +59,7 @@ impl Questions {
             let from = [0, 1, 2].map(|axis| 0.5 * (one[axis] + other[axis]));
             segments.push([from, drawn()]);
         }
-        Self {
-            boxes,
-            probes,
-            centres,
-            segments,
-        }
+        Self { boxes, probes, centres, segments }
     }
 
     /// How many questions of a kind there are.
@@ -179,10 +174,7 @@ fn corners(slabs: &Slabs) -> [[f64; 3]; 2] {
 pub fn judge(question: Question, truth: &[Vec<u32>], answers: &[Vec<u32>]) -> [usize; 2] {
     let (mut missed, mut extra) = (0, 0);
     for (truth, answer) in truth.iter().zip(answers) {
-        let wrong = answer
-            .iter()
-            .filter(|body| truth.binary_search(body).is_err())
-            .count();
+        let wrong = answer.iter().filter(|body| truth.binary_search(body).is_err()).count();
         extra += wrong;
         missed += match question {
             Question::First => usize::from(!truth.is_empty() && answer.len() == wrong),
@@ -203,10 +195,7 @@ mod tests {
             [[x, x + 1.0], [0.0, 1.0], [0.0, 1.0]]
         });
         Questions {
-            segments: vec![
-                [[1.5, 0.5, 0.5], [6.0, 0.5, 0.5]],
-                [[1.5, 2.0, 0.5], [9.0, 2.0, 0.5]],
-            ],
+            segments: vec![[[1.5, 0.5, 0.5], [6.0, 0.5, 0.5]], [[1.5, 2.0, 0.5], [9.0, 2.0, 0.5]]],
             ..Questions::new(boxes.collect(), 3)
         }
     }

@@ -29,10 +29,8 @@ pub struct Rapier {
 
 impl Rapier {
     pub fn new(questions: &Questions, threads: usize) -> miette::Result<Self> {
-        let parameters = IntegrationParameters {
-            length_unit: NO_SKIN,
-            ..IntegrationParameters::default()
-        };
+        let parameters =
+            IntegrationParameters { length_unit: NO_SKIN, ..IntegrationParameters::default() };
         let (mut broad_phase, mut colliders) = (BroadPhaseBvh::new(), ColliderSet::new());
         for slabs in &questions.boxes {
             let handle = colliders.insert(cuboid(slabs));
@@ -88,10 +86,7 @@ impl Asked for Rapier {
             }),
             Question::First => each(threads, &self.rays, |ray| {
                 let first = self.pipeline().cast_ray(ray, 1.0, true);
-                first
-                    .into_iter()
-                    .map(|(handle, _)| number(handle))
-                    .collect()
+                first.into_iter().map(|(handle, _)| number(handle)).collect()
             }),
             Question::Sets => Vec::new(),
         };

@@ -66,11 +66,7 @@ impl Parts {
                 }
             }
         }
-        Ok(Self {
-            world,
-            ids,
-            parts: robots.parts.clone(),
-        })
+        Ok(Self { world, ids, parts: robots.parts.clone() })
     }
 }
 
@@ -109,26 +105,12 @@ impl PartBoxes {
         frame.set_boxes(first.map(|part| slabs(&part)).collect());
         for part in posed(&parts, &robots.frames[0]) {
             let translation = part.translation.map(|x| x as f32);
-            Bodies::push(
-                &mut frame.bodies,
-                part.shape,
-                true,
-                part.rotation,
-                translation,
-            );
+            Bodies::push(&mut frame.bodies, part.shape, true, part.rotation, translation);
         }
         // The engines take boxes alone; no scene has robots.
         let course = Course::new(Spread::Uniform, 500, Order::Random, 0)?;
-        let setup = Setup {
-            scene: &course.scene,
-            first: &frame,
-            threads: 1,
-        };
-        Ok(Self {
-            engine: (entry.new)(&setup)?,
-            parts,
-            frame,
-        })
+        let setup = Setup { scene: &course.scene, first: &frame, threads: 1 };
+        Ok(Self { engine: (entry.new)(&setup)?, parts, frame })
     }
 }
 

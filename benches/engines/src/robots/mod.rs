@@ -54,12 +54,7 @@ struct RobotTiming {
 }
 
 /// An engine with its name, its version and the milliseconds of its frames.
-type TimedContender = (
-    &'static str,
-    &'static str,
-    Box<dyn Contestant<Vec<Body>>>,
-    Vec<f64>,
-);
+type TimedContender = (&'static str, &'static str, Box<dyn Contestant<Vec<Body>>>, Vec<f64>);
 
 /// Checks, measures, prints the table, and writes it if asked to.
 pub fn run(args: &Args) -> miette::Result<()> {
@@ -100,9 +95,7 @@ fn measure(robots: &Robots) -> miette::Result<Vec<RobotTiming>> {
         let mut pairs = found.pairs();
         pairs.iter_mut().for_each(|pair| pair.sort_unstable());
         pairs.sort_unstable();
-        let missed = truth
-            .iter()
-            .filter(|pair| pairs.binary_search(pair).is_err());
+        let missed = truth.iter().filter(|pair| pairs.binary_search(pair).is_err());
         let ratio = median_ratio(&ms, &base);
         let spread = Quartiles::of(ms);
         RobotTiming {

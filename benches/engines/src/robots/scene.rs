@@ -102,9 +102,7 @@ pub fn slabs(part: &Body) -> Slabs {
     let half_sides = HALF_SIDES[part.shape as usize];
     let rows = rotation(part.rotation);
     [0, 1, 2].map(|axis| {
-        let half: f32 = (0..3)
-            .map(|i| rows[axis][i].abs() as f32 * half_sides[i])
-            .sum();
+        let half: f32 = (0..3).map(|i| rows[axis][i].abs() as f32 * half_sides[i]).sum();
         let middle = part.translation[axis] as f32;
         [middle - half, middle + half]
     })

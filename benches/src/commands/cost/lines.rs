@@ -49,11 +49,9 @@ pub fn of_cost(cost: &Cost) -> Vec<Line<'_>> {
     // Earlier records have no intervals of terms.
     let widths = cost.widths.iter().map(Some).chain(std::iter::repeat(None));
     for (terms, widths) in cost.terms.iter().zip(widths) {
-        for (term, value) in [
-            ("queried", terms.queried),
-            ("thawed", terms.thawed),
-            ("kept", terms.kept),
-        ] {
+        for (term, value) in
+            [("queried", terms.queried), ("thawed", terms.thawed), ("kept", terms.kept)]
+        {
             // Cullers without a world count no such bodies.
             if value > 0.0 {
                 line(terms.volume.name(), term, "per frame", value, f64::INFINITY);
@@ -66,22 +64,10 @@ pub fn of_cost(cost: &Cost) -> Vec<Line<'_>> {
     }
     for (names, unit, compared) in [
         (["sum", "measured", "residual"], "s per frame", &cost.frame),
-        (
-            ["Co predicted", "Co measured", "Co residual"],
-            "s",
-            &cost.construct,
-        ),
-        (
-            ["T predicted", "T measured", "T residual"],
-            "s",
-            &cost.total,
-        ),
+        (["Co predicted", "Co measured", "Co residual"], "s", &cost.construct),
+        (["T predicted", "T measured", "T residual"], "s", &cost.total),
     ] {
-        let CheckedPrediction {
-            predicted,
-            measured,
-            residual,
-        } = compared;
+        let CheckedPrediction { predicted, measured, residual } = compared;
         line("", names[0], unit, predicted.mean, predicted.half_width);
         line("", names[1], unit, measured.mean, measured.half_width);
         line("", names[2], "1", residual.mean, residual.half_width);
@@ -90,12 +76,7 @@ pub fn of_cost(cost: &Cost) -> Vec<Line<'_>> {
 }
 
 /// A term's name and unit, and where its value and its interval are.
-type Term = (
-    &'static str,
-    &'static str,
-    fn(&Terms) -> f64,
-    fn(&TermWidths) -> f64,
-);
+type Term = (&'static str, &'static str, fn(&Terms) -> f64, fn(&TermWidths) -> f64);
 
 const TERMS: [Term; 7] = [
     ("Nu", "per frame", |t| t.updates, |w| w.updates),

@@ -120,10 +120,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         time: args.time.map(Duration::from_secs),
         fail_fast: args.fail_fast,
         extra_limit: args.extra_limit,
-        known: args
-            .known
-            .as_deref()
-            .map_or_else(|| Ok(BTreeSet::new()), known)?,
+        known: args.known.as_deref().map_or_else(|| Ok(BTreeSet::new()), known)?,
         ..Options::default()
     };
     let verdict = match &args.replay {
@@ -154,9 +151,7 @@ impl Args {
         if self.no_fresh || self.replay.is_some() {
             return None;
         }
-        let clock = SystemTime::now()
-            .duration_since(UNIX_EPOCH)
-            .map_or(0, |since| since.as_secs());
+        let clock = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
         Some(self.fresh.unwrap_or(clock))
     }
 }
@@ -167,10 +162,7 @@ impl Args {
 /// # Errors
 /// A file that can't be read or is not a case.
 pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::StoredCase> {
-    if path
-        .extension()
-        .is_some_and(|extension| extension == "aabbs")
-    {
+    if path.extension().is_some_and(|extension| extension == "aabbs") {
         let bytes = sdop::files::read(path, most)
             .into_diagnostic()
             .wrap_err_with(|| format!("cannot read {}", path.display()))?;
@@ -198,11 +190,7 @@ fn known(path: &Path) -> miette::Result<BTreeSet<String>> {
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))?;
     let name = |line: &str| line.split('#').next().unwrap_or("").trim().to_owned();
-    Ok(text
-        .lines()
-        .map(name)
-        .filter(|name| !name.is_empty())
-        .collect())
+    Ok(text.lines().map(name).filter(|name| !name.is_empty()).collect())
 }
 
 /// Writes the counter-example and says how to see the failure again.
@@ -223,10 +211,7 @@ fn save(args: &Args, command: &str, verdict: &Verdict) -> miette::Result<()> {
         }
         let stem = out.join(STEM);
         let scene = if written.iter().any(|(name, _)| name.ends_with(".toml")) {
-            format!(
-                " and the scene {0}.toml (sdop run {0}.toml)",
-                stem.display()
-            )
+            format!(" and the scene {0}.toml (sdop run {0}.toml)", stem.display())
         } else {
             String::new()
         };
@@ -240,21 +225,14 @@ fn save(args: &Args, command: &str, verdict: &Verdict) -> miette::Result<()> {
             files::write(&path, &test)?;
             lines.push(format!("as a unit test: {}\n{test}", path.display()));
         }
-        lines.push(format!(
-            "again:   {base} --replay {}.ndjson",
-            stem.display()
-        ));
+        lines.push(format!("again:   {base} --replay {}.ndjson", stem.display()));
     }
-    let first = verdict
-        .cases
-        .iter()
-        .find(|case| verdict.counts_against(case));
+    let first = verdict.cases.iter().find(|case| verdict.counts_against(case));
     let found = verdict.smallest.as_ref().map(|smallest| &smallest.from);
     if let (Some(name), None) = (found.or(first.map(|case| &case.name)), &args.replay) {
-        let seed = name.rsplit_once('@').map_or_else(
-            || " --no-fresh".to_owned(),
-            |(_, seed)| format!(" --fresh {seed}"),
-        );
+        let seed = name
+            .rsplit_once('@')
+            .map_or_else(|| " --no-fresh".to_owned(), |(_, seed)| format!(" --fresh {seed}"));
         lines.push(format!("as found: {base} --case '{name}'{seed}"));
     }
     match args.format {

@@ -57,10 +57,7 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
         ReportFormat::Junit => print(junit(verdict).trim_end()),
         ReportFormat::Csv => output::emit(Format::Csv, &verdict.groups(), |_| String::new()),
         ReportFormat::Json => {
-            let witness = verdict
-                .smallest
-                .as_ref()
-                .and_then(|smallest| smallest.witness.as_ref());
+            let witness = verdict.smallest.as_ref().and_then(|smallest| smallest.witness.as_ref());
             let whole = WholeVerdict {
                 passed: verdict.passed(),
                 conclusion: verdict.conclusion(),
@@ -79,9 +76,8 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
 
 /// The groups that did not simply pass, failed ones first; one line counts the others.
 fn table(verdict: &Verdict) -> String {
-    let header = [
-        "cases", "passed", "failed", "errors", "skipped", "judged", "required", "missed", "extra",
-    ];
+    let header =
+        ["cases", "passed", "failed", "errors", "skipped", "judged", "required", "missed", "extra"];
     let row = |group: &GroupVerdict| {
         let pairs = &group.pairs;
         let cases = [group.passed, group.failed, group.errors, group.skipped].map(u64::from);

@@ -97,10 +97,9 @@ pub(super) fn merge(args: &Args, experiment: &Experiment, directory: &Path) -> m
     let mut machine = None;
     for path in &shards {
         let header = Units::read(path)?.header;
-        for (what, there, here) in [
-            ("command", &header.line, &line),
-            ("code", &header.code, &code()),
-        ] {
+        for (what, there, here) in
+            [("command", &header.line, &line), ("code", &header.code, &code())]
+        {
             miette::ensure!(
                 there == here,
                 help = "merge with the arguments and the program that made the shards, or make them anew",
@@ -110,19 +109,12 @@ pub(super) fn merge(args: &Args, experiment: &Experiment, directory: &Path) -> m
         }
         machine = header.settings.get("machine").cloned();
     }
-    let machine: Option<Machine> = machine
-        .map(serde_json::from_value)
-        .transpose()
-        .into_diagnostic()?;
+    let machine: Option<Machine> =
+        machine.map(serde_json::from_value).transpose().into_diagnostic()?;
     let part = prepare(directory)?;
     let program = std::env::current_exe().into_diagnostic()?;
     let mut command = Command::new(program);
-    command
-        .arg("merge")
-        .args(&shards)
-        .arg("--out")
-        .arg(&part)
-        .args(["--format", "json"]);
+    command.arg("merge").args(&shards).arg("--out").arg(&part).args(["--format", "json"]);
     for step in experiment.steps {
         let said = steps::output(experiment, step, &mut command)?;
         if let ExperimentStep::SdopPrints(file, _) = step {

@@ -54,11 +54,7 @@ pub(super) fn command(
         ExperimentStep::Peers(arguments) => {
             let mut command = cargo(&PEERS);
             // Engines in C++ are built as their packages are.
-            command
-                .env("CXX", "g++")
-                .args(words(arguments))
-                .arg("--out")
-                .arg(out);
+            command.env("CXX", "g++").args(words(arguments)).arg("--out").arg(out);
             (command, None)
         }
         ExperimentStep::Rapier(file, arguments) => {
@@ -87,11 +83,7 @@ pub(super) fn command(
             (command, Some(file))
         }
     };
-    command.stdout(if file.is_some() {
-        Stdio::piped()
-    } else {
-        Stdio::null()
-    });
+    command.stdout(if file.is_some() { Stdio::piped() } else { Stdio::null() });
     Ok((command, file))
 }
 
@@ -108,36 +100,18 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-const PEERS: [&str; 8] = [
-    "run",
-    "--release",
-    "--quiet",
-    "-p",
-    "sdop-peers",
-    "--features",
-    "physx,debian,box3d",
-    "--",
-];
+const PEERS: [&str; 8] =
+    ["run", "--release", "--quiet", "-p", "sdop-peers", "--features", "physx,debian,box3d", "--"];
 
 const RAPIER: [&str; 6] = ["run", "--release", "--quiet", "-p", "sdop-rapier", "--"];
 
-const BULLET: [&str; 8] = [
-    "run",
-    "--release",
-    "--quiet",
-    "-p",
-    "sdop-bullet",
-    "--features",
-    "debian",
-    "--",
-];
+const BULLET: [&str; 8] =
+    ["run", "--release", "--quiet", "-p", "sdop-bullet", "--features", "debian", "--"];
 
 /// Runs benches into a directory of their own; the command that gathers criterion's estimates from
 /// it.
 fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
-    let home = std::env::current_dir()
-        .into_diagnostic()?
-        .join("target/criterion-record");
+    let home = std::env::current_dir().into_diagnostic()?.join("target/criterion-record");
     if home.exists() {
         std::fs::remove_dir_all(&home).into_diagnostic()?;
     }
@@ -154,15 +128,7 @@ fn estimates(benches: &[&str], file: &Path) -> miette::Result<Command> {
         }
     }
     let mut command = Command::new("cargo");
-    command.args([
-        "run",
-        "--release",
-        "--quiet",
-        "-p",
-        "sdop-peers",
-        "--",
-        "kernels",
-    ]);
+    command.args(["run", "--release", "--quiet", "-p", "sdop-peers", "--", "kernels"]);
     command.arg("--from").arg(home).arg("--out").arg(file);
     Ok(command)
 }
@@ -173,14 +139,8 @@ mod tests {
 
     #[test]
     fn values_may_have_spaces() {
-        assert_eq!(
-            words("narrow a.toml --frames 5"),
-            ["narrow", "a.toml", "--frames", "5"]
-        );
+        assert_eq!(words("narrow a.toml --frames 5"), ["narrow", "a.toml", "--frames", "5"]);
         let peers = "--peers sdop,parry3d refit,Embree --quick";
-        assert_eq!(
-            words(peers),
-            ["--peers", "sdop,parry3d refit,Embree", "--quick"]
-        );
+        assert_eq!(words(peers), ["--peers", "sdop,parry3d refit,Embree", "--quick"]);
     }
 }

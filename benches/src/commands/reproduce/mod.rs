@@ -70,22 +70,8 @@ struct RunSize {
     effort: Effort,
 }
 
-const QUICK: RunSize = RunSize {
-    seeds: 5,
-    frames: 100,
-    effort: Effort {
-        turns: 1,
-        builds: 3,
-    },
-};
-const FULL: RunSize = RunSize {
-    seeds: 64,
-    frames: 400,
-    effort: Effort {
-        turns: 2,
-        builds: 5,
-    },
-};
+const QUICK: RunSize = RunSize { seeds: 5, frames: 100, effort: Effort { turns: 1, builds: 3 } };
+const FULL: RunSize = RunSize { seeds: 64, frames: 400, effort: Effort { turns: 2, builds: 5 } };
 
 /// Runs the command.
 ///
@@ -103,11 +89,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let machine = experiments.settings().machine;
     let paper = args.paper.as_ref().unwrap_or(&args.out);
     let tables = Tables::new(&results, &machine, command(), before);
-    let written = OutputPlace {
-        numbers: &args.out,
-        paper,
-        seconds,
-    };
+    let written = OutputPlace { numbers: &args.out, paper, seconds };
     let why = disagreement(&results);
     written.write(&tables, args.format, why.as_deref())?;
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
@@ -126,11 +108,7 @@ pub fn merged(merged: &MergedUnits, out: &Path, format: Format) -> miette::Resul
     let unknown = Conditions::default();
     let line = merged.header.line.clone();
     let tables = Tables::new(&results, &settings.machine, line, unknown);
-    let written = OutputPlace {
-        numbers: out,
-        paper: out,
-        seconds: merged.seconds,
-    };
+    let written = OutputPlace { numbers: out, paper: out, seconds: merged.seconds };
     let why = disagreement(&results);
     written.write(&tables, format, why.as_deref())?;
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
@@ -170,22 +148,13 @@ fn plan(args: &Args) -> miette::Result<ExperimentPlan> {
         ));
     }
     let tier = args.machine.tier();
-    Ok(ExperimentPlan::new(
-        &args.scenes,
-        seeds,
-        frames,
-        size.effort,
-        tier,
-    ))
+    Ok(ExperimentPlan::new(&args.scenes, seeds, frames, size.effort, tier))
 }
 
 /// Says so if sequential and listed S-DOP did not report the same pairs in every run.
 fn disagreement(results: &Results) -> Option<String> {
     let hashes = |strategy| {
-        let of = results
-            .runs
-            .iter()
-            .filter(move |run| run.strategy == strategy);
+        let of = results.runs.iter().filter(move |run| run.strategy == strategy);
         of.map(|run| &run.pairs_sha256)
     };
     let agree = hashes(Strategy::SDopSequential).eq(hashes(Strategy::SDopBatch));
@@ -204,10 +173,7 @@ fn write_tables(directory: &Path, tables: &Tables) -> miette::Result<()> {
     let json = serde_json::to_string_pretty(tables).into_diagnostic()?;
     write(&directory.join("results.json"), &(json + "\n"))?;
     for (name, rows) in tables.files()? {
-        write(
-            &directory.join(name).with_extension("csv"),
-            &csv_text(rows)?,
-        )?;
+        write(&directory.join(name).with_extension("csv"), &csv_text(rows)?)?;
     }
     Ok(())
 }

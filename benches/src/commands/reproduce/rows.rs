@@ -307,10 +307,7 @@ fn hidden(results: &Results) -> Vec<HiddenRow> {
     ];
     let mut rows = Vec::new();
     for &scene in &results.plan.names {
-        if results
-            .example(scene.name())
-            .is_some_and(|run| run.bodies == 500)
-        {
+        if results.example(scene.name()).is_some_and(|run| run.bodies == 500) {
             rows.extend(compared.map(|of| HiddenRow {
                 scene: scene.name(),
                 of,
@@ -328,10 +325,7 @@ fn prices(results: &Results) -> Vec<ScenePrice> {
         let passes = results.priced_as(scene);
         for &regime in Regime::ALL {
             let rows = table::prices(&passes, regime).into_iter();
-            prices.extend(rows.map(|price| ScenePrice {
-                scene: scene.name(),
-                price,
-            }));
+            prices.extend(rows.map(|price| ScenePrice { scene: scene.name(), price }));
         }
     }
     prices

@@ -33,9 +33,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
         let reading = Reading::shown(strategy);
         let of = |cell: &&Table1Cell| cell.reading == reading && cell.strategy == strategy;
         let cell = |cell: &Table1Cell| {
-            let paper = cell
-                .paper
-                .map_or(String::new(), |paper| format!(" ({paper:.2})"));
+            let paper = cell.paper.map_or(String::new(), |paper| format!(" ({paper:.2})"));
             format!("{}{paper}", interval(&cell.measured))
         };
         let cells = tables.table_1.iter().filter(of).map(cell);

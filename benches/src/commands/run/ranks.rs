@@ -78,19 +78,9 @@ fn tell(
     network: &MpiNetwork,
     (about, summary): &(Scene, DomainSummary),
 ) -> miette::Result<()> {
-    let DomainSummary {
-        whole,
-        border,
-        ranks,
-    } = summary;
+    let DomainSummary { whole, border, ranks } = summary;
     match network.rank() {
-        0 => print(
-            args,
-            about,
-            whole,
-            Conditions::default(),
-            Some((*border, ranks)),
-        ),
+        0 => print(args, about, whole, Conditions::default(), Some((*border, ranks))),
         _ => Ok(()),
     }
 }
@@ -109,11 +99,7 @@ fn agreed<T>(network: &MpiNetwork, outcome: Result<T, Option<miette::Report>>) -
         && rank == network.rank()
     {
         let alike = troubles.iter().all(|[_, own]| *own == 1);
-        complain(&if alike {
-            report
-        } else {
-            report.wrap_err(format!("rank {rank}"))
-        });
+        complain(&if alike { report } else { report.wrap_err(format!("rank {rank}")) });
     }
     None
 }

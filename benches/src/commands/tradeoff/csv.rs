@@ -57,11 +57,7 @@ pub struct SeedLine<'a> {
 /// What every variant reported, seed by seed: equal on every machine.
 pub fn seeds(result: &Tradeoff) -> Vec<SeedLine<'_>> {
     fn of<'a>(result: &Tradeoff, row: &'a VariantResult) -> Vec<SeedLine<'a>> {
-        let found = result
-            .seeds
-            .iter()
-            .zip(&row.precisions)
-            .zip(&row.pairs_sha256);
+        let found = result.seeds.iter().zip(&row.precisions).zip(&row.pairs_sha256);
         let line = |((&seed, &precision), pairs_sha256): ((&u64, &f64), &'a String)| SeedLine {
             variant: &row.name,
             seed,

@@ -62,10 +62,8 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             .draw_series(LineSeries::new(steps, line))?
             .label("front")
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], line));
-        let points: Vec<(i32, i32)> = labelled
-            .iter()
-            .map(|row| chart.backend_coord(&at(row)))
-            .collect();
+        let points: Vec<(i32, i32)> =
+            labelled.iter().map(|row| chart.backend_coord(&at(row))).collect();
         for (place, (row, offset)) in labelled.iter().zip(label_offsets(&points)).enumerate() {
             let colour = if place < front.len() { BLACK } else { GREY };
             let (time, precision) = at(row);
@@ -113,9 +111,8 @@ fn front(result: &Tradeoff) -> Vec<&VariantResult> {
         others.any(|other| other.0 <= time && other.1 >= precision && other != (time, precision))
     };
     let rows = result.rows.iter();
-    let mut front: Vec<&VariantResult> = rows
-        .filter(|row| row.standing == Standing::Front && !is_beaten(row))
-        .collect();
+    let mut front: Vec<&VariantResult> =
+        rows.filter(|row| row.standing == Standing::Front && !is_beaten(row)).collect();
     front.sort_by(|a, b| at(a).0.total_cmp(&at(b).0));
     front
 }
@@ -166,10 +163,7 @@ pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
     let legend_room = 6.0;
     let chart = Chart {
         caption: &format!("{}: when an or-DOP pays", result.scene),
-        titles: [
-            "sphere overlaps per body (log)",
-            "Cp, ns per surviving pair (log)",
-        ],
+        titles: ["sphere overlaps per body (log)", "Cp, ns per surviving pair (log)"],
         x: (densities.start..densities.end * legend_room).log_scale(),
         y: (prices.start / 1.5..prices.end * 1.5).log_scale(),
         ticks: &plain,
@@ -182,11 +176,7 @@ pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
 fn of_variant(row: &VariantResult) -> Option<Stroke> {
     let known = [6, 14, 18, 26].iter().position(|k| row.k == Some(*k))?;
     let is_dashed = row.overlap? == Overlap::TwoSided;
-    Some(Stroke {
-        colour: BY_K[known],
-        is_dashed,
-        has_rings: is_dashed,
-    })
+    Some(Stroke { colour: BY_K[known], is_dashed, has_rings: is_dashed })
 }
 
 /// Precision against the budget of tests, a curve per order.
@@ -199,10 +189,7 @@ pub fn budget(result: &Tradeoff) -> miette::Result<String> {
     let most = result.budgets.iter().map(|row| row.tests).max();
     let chart = Chart {
         caption: &format!("{}: time-critical culling", result.scene),
-        titles: [
-            "or-DOP tests per frame",
-            "precision: true pairs / reported pairs",
-        ],
+        titles: ["or-DOP tests per frame", "precision: true pairs / reported pairs"],
         x: 0.0..1.4 * most.unwrap_or(1).max(1) as f64,
         y: 0.0..1.0_f64,
         ticks: &plain,
@@ -215,9 +202,7 @@ pub fn budget(result: &Tradeoff) -> miette::Result<String> {
 /// From the least to the greatest positive value; one decade about 1 when there is none.
 fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
     let positive = values.filter(|value| *value > 0.0 && value.is_finite());
-    let (lo, hi) = positive.fold((f64::INFINITY, 0.0_f64), |(lo, hi), v| {
-        (lo.min(v), hi.max(v))
-    });
+    let (lo, hi) = positive.fold((f64::INFINITY, 0.0_f64), |(lo, hi), v| (lo.min(v), hi.max(v)));
     if lo < hi { lo..hi } else { 0.3..3.0 }
 }
 
@@ -271,17 +256,13 @@ mod tests {
         assert_eq!(names, ["fast", "middle", "tight"]);
         let drawn = precision(&result).unwrap();
         let words: Vec<&str> = drawn.lines().map(str::trim).collect();
-        for name in [
-            "fast", "middle", "tight", "aabb", "10", "100", "1000", "0.5", "1",
-        ] {
+        for name in ["fast", "middle", "tight", "aabb", "10", "100", "1000", "0.5", "1"] {
             assert!(words.contains(&name), "{name}: {drawn}");
         }
         for name in ["level", "other", "100.0", "1000.0", "1.0"] {
             assert!(!words.contains(&name), "{name}: {drawn}");
         }
-        let black = drawn
-            .lines()
-            .filter(|it| it.starts_with("<circle") && it.contains("#000000"));
+        let black = drawn.lines().filter(|it| it.starts_with("<circle") && it.contains("#000000"));
         assert_eq!(black.count(), 3, "a dot for each on the front");
     }
 

@@ -14,21 +14,12 @@ use crate::commands::output::{rows, table};
 /// For people: the recommendation, then a short table.
 pub fn brief(result: &Tradeoff) -> String {
     let front: Vec<VariantResult> = {
-        let shown = result
-            .rows
-            .iter()
-            .filter(|row| row.standing != Standing::Beaten);
+        let shown = result.rows.iter().filter(|row| row.standing != Standing::Beaten);
         let mut shown: Vec<VariantResult> = shown.cloned().collect();
         shown.sort_by(|a, b| a.seconds().mean.total_cmp(&b.seconds().mean));
         shown
     };
-    let header = [
-        "variant",
-        "standing",
-        "precision",
-        "µs per warm frame",
-        "false pairs",
-    ];
+    let header = ["variant", "standing", "precision", "µs per warm frame", "false pairs"];
     let short = rows(&header, &front, |row| {
         vec![
             row.name.clone(),
@@ -104,15 +95,11 @@ pub fn decisions(result: &Tradeoff) -> Table {
     ]
     .concat();
     let mut rows = table(&header);
-    for decisions in result
-        .decisions
-        .chunk_by(|a, b| (a.partners, a.class) == (b.partners, b.class))
+    for decisions in
+        result.decisions.chunk_by(|a, b| (a.partners, a.class) == (b.partners, b.class))
     {
         let cell = |decision: &Decision| with_ties(&decision.best, &decision.tied);
-        let first = [
-            format!("{:.2}", decisions[0].partners),
-            decisions[0].class.to_string(),
-        ];
+        let first = [format!("{:.2}", decisions[0].partners), decisions[0].class.to_string()];
         rows.add_row(first.into_iter().chain(decisions.iter().map(cell)));
     }
     rows
@@ -144,11 +131,7 @@ pub fn variations(result: &Tradeoff) -> Table {
     let header = [&header[..], &checks.each_ref().map(String::as_str)].concat();
     rows(&header, &result.variations, |varied| {
         let construct = |line: &Line| line.ordop.map(|_| line.construct);
-        let construct = varied
-            .lines
-            .iter()
-            .filter_map(construct)
-            .fold(0.0, f64::max);
+        let construct = varied.lines.iter().filter_map(construct).fold(0.0, f64::max);
         let changed = match varied.mix {
             Some(mix) => format!("{}: {mix}", varied.aspect),
             None => varied.aspect.to_string(),
@@ -165,16 +148,13 @@ pub fn variations(result: &Tradeoff) -> Table {
         let best = varied.best.iter().find(|best| best.check == 1e-6);
         let best = best.and_then(|best| varied.lines.iter().find(|line| line.name == best.name));
         for line in [varied.lines.first(), best] {
-            cells.push(line.map_or("–".into(), |line| {
-                plus_minus(&Estimate::in_order(&line.times), 1e6, 1)
-            }));
+            cells.push(
+                line.map_or("–".into(), |line| {
+                    plus_minus(&Estimate::in_order(&line.times), 1e6, 1)
+                }),
+            );
         }
-        cells.extend(
-            varied
-                .best
-                .iter()
-                .map(|best| with_ties(&best.name, &best.tied)),
-        );
+        cells.extend(varied.best.iter().map(|best| with_ties(&best.name, &best.tied)));
         cells
     })
 }
@@ -252,13 +232,8 @@ fn variant(row: &VariantResult) -> Vec<String> {
         row.standing.to_string(),
         plus_minus(&row.precision, 1.0, 3),
         plus_minus(&row.per_true, 1.0, 2),
-        if row.recall == 1.0 {
-            "1".into()
-        } else {
-            format!("{:.6}", row.recall)
-        },
-        row.volume_over_hull
-            .map_or("–".into(), |ratio| format!("{ratio:.2}")),
+        if row.recall == 1.0 { "1".into() } else { format!("{:.6}", row.recall) },
+        row.volume_over_hull.map_or("–".into(), |ratio| format!("{ratio:.2}")),
         joined(|t| t.updates),
         joined(|t| t.tests),
         sum(|t| t.update),
@@ -274,15 +249,7 @@ fn variant(row: &VariantResult) -> Vec<String> {
 
 /// A line an order and budget.
 pub fn budgets(result: &Tradeoff) -> Table {
-    let header = [
-        "order",
-        "tests / frame",
-        "refined",
-        "precision",
-        "recall",
-        "mean age",
-        "oldest",
-    ];
+    let header = ["order", "tests / frame", "refined", "precision", "recall", "mean age", "oldest"];
     rows(&header, &result.budgets, |row| {
         vec![
             row.order.to_string(),
@@ -335,9 +302,10 @@ pub fn interest(result: &Tradeoff) -> Table {
 
 /// One line per density, one column per S-DOP.
 pub fn break_even(result: &Tradeoff) -> Table {
-    let names = result.densities.first().map_or(Vec::new(), |density| {
-        density.break_even.iter().map(|b| b.name.as_str()).collect()
-    });
+    let names = result
+        .densities
+        .first()
+        .map_or(Vec::new(), |density| density.break_even.iter().map(|b| b.name.as_str()).collect());
     let mut header = vec!["partners", "sphere hits"];
     header.extend(&names);
     let mut rows = table(&header);
@@ -395,16 +363,8 @@ fn short(estimate: &Estimate) -> String {
 
 /// A line an arithmetic and tier.
 pub fn safety(result: &Tradeoff) -> Table {
-    let header = [
-        "strategy",
-        "arithmetic",
-        "simd",
-        "reported",
-        "extra",
-        "lost",
-        "warm µs",
-        "quartiles",
-    ];
+    let header =
+        ["strategy", "arithmetic", "simd", "reported", "extra", "lost", "warm µs", "quartiles"];
     rows(&header, &result.safety, |row| {
         vec![
             row.strategy.to_string(),
@@ -414,11 +374,7 @@ pub fn safety(result: &Tradeoff) -> Table {
             row.extra.to_string(),
             row.lost.to_string(),
             format!("{:.1}", 1e6 * row.seconds.median),
-            format!(
-                "{:.1} to {:.1}",
-                1e6 * row.seconds.low,
-                1e6 * row.seconds.high
-            ),
+            format!("{:.1} to {:.1}", 1e6 * row.seconds.low, 1e6 * row.seconds.high),
         ]
     })
 }

@@ -155,13 +155,7 @@ impl Report {
     /// Why it is not [`Conclusion::Pass`]: a pair is missed, a finder disagrees with all-pairs,
     /// units were not run, or a cell of the matrix is empty.
     pub fn why(&self) -> Option<String> {
-        let &Self {
-            missed,
-            differ,
-            asked,
-            judged,
-            ..
-        } = self;
+        let &Self { missed, differ, asked, judged, .. } = self;
         match self.conclusion {
             Conclusion::Pass => None,
             Conclusion::Incomplete => Some(format!(
@@ -180,28 +174,12 @@ impl Report {
     pub fn tables(&self) -> String {
         let mut text = String::new();
         for source in &self.sources {
-            let header = [
-                "exact answers",
-                "pairs",
-                "overlap",
-                "filter",
-                "interval",
-                "integers",
-            ];
+            let header = ["exact answers", "pairs", "overlap", "filter", "interval", "integers"];
             let mut answers = table(&header);
             for a in &source.answers {
-                let counts = [
-                    a.judged,
-                    a.overlapping,
-                    a.by_filter,
-                    a.by_interval,
-                    a.exactly,
-                ];
-                answers.add_row(
-                    [a.name.to_owned()]
-                        .into_iter()
-                        .chain(counts.map(|n| n.to_string())),
-                );
+                let counts = [a.judged, a.overlapping, a.by_filter, a.by_interval, a.exactly];
+                answers
+                    .add_row([a.name.to_owned()].into_iter().chain(counts.map(|n| n.to_string())));
             }
             let header = [
                 "strategy", "judged", "required", "reported", "missed", "differ", "margin/M",
@@ -211,12 +189,8 @@ impl Report {
             for s in &source.strategies {
                 let counts = [s.judged, s.required, s.reported, s.missed, s.differ];
                 let counts = counts.map(|n| n.to_string());
-                let rates = [
-                    s.margin_per_million,
-                    s.bound_per_million,
-                    s.looseness_per_million,
-                ]
-                .map(|rate| rate.map_or("–".to_owned(), |x| format!("{x:.1}")));
+                let rates = [s.margin_per_million, s.bound_per_million, s.looseness_per_million]
+                    .map(|rate| rate.map_or("–".to_owned(), |x| format!("{x:.1}")));
                 lists.add_row([s.name.clone()].into_iter().chain(counts).chain(rates));
             }
             text += &format!("{}\n{answers}\n{lists}\n\n", source.name);

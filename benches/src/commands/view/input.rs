@@ -56,10 +56,7 @@ pub fn read(
         ));
     }
     if is_case(path, most) {
-        return Ok(ViewInput::Run(
-            Box::new(case(args, run.unwrap_or(0), tier)?),
-            None,
-        ));
+        return Ok(ViewInput::Run(Box::new(case(args, run.unwrap_or(0), tier)?), None));
     }
     if run.is_some() {
         return Err(miette!(
@@ -76,26 +73,21 @@ pub fn read(
 }
 
 fn is_record(path: &Path) -> miette::Result<bool> {
-    if path
-        .extension()
-        .is_some_and(|ending| ending == "ndjson" || ending == "jsonl")
-    {
+    if path.extension().is_some_and(|ending| ending == "ndjson" || ending == "jsonl") {
         return Ok(true);
     }
     let mut start = [0; 64];
     let read = File::open(path).and_then(|mut file| file.read(&mut start));
-    let read = read
-        .into_diagnostic()
-        .wrap_err_with(|| format!("{}: cannot be read", path.display()))?;
+    let read =
+        read.into_diagnostic().wrap_err_with(|| format!("{}: cannot be read", path.display()))?;
     Ok(start[..read].trim_ascii_start().starts_with(b"{"))
 }
 
 /// Whether a TOML file has a recipe. What is no TOML, or can't be read, is left to the scene's
 /// reader, which says so.
 fn is_case(path: &Path, most: u64) -> bool {
-    let table = sdop::files::read_text(path, most)
-        .ok()
-        .and_then(|text| text.parse::<toml::Table>().ok());
+    let table =
+        sdop::files::read_text(path, most).ok().and_then(|text| text.parse::<toml::Table>().ok());
     table.is_some_and(|table| table.contains_key("recipe"))
 }
 
@@ -158,11 +150,9 @@ fn answered(case: &Case, file: &Path, most: u64) -> miette::Result<Vec<Answer>> 
     let (name, frames) = (file.display(), case.frames.len());
     match said(wire, &text, frames) {
         Ok(answers) if answers.len() == frames => Ok(answers),
-        Ok(answers) => Err(miette!(
-            help = hint,
-            "{name}: {} answers to {frames} frames",
-            answers.len()
-        )),
+        Ok(answers) => {
+            Err(miette!(help = hint, "{name}: {} answers to {frames} frames", answers.len()))
+        }
         Err(StopReason::Skipped { why, .. }) => Err(miette!("{name}: the case was skipped: {why}")),
         Err(StopReason::Trouble(trouble)) => Err(miette!(help = hint, "{name}: {trouble}")),
     }
@@ -211,36 +201,17 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<ShownRun> {
         .into_diagnostic()
         .wrap_err_with(|| format!("{name}: can't be made"))?;
     let frames = cases.runs.get(run).ok_or_else(|| {
-        miette!(
-            help = "runs are counted from 0",
-            "{name}: run {run} of {}",
-            cases.runs.len()
-        )
+        miette!(help = "runs are counted from 0", "{name}: run {run} of {}", cases.runs.len())
     })?;
-    let most = args
-        .frames()
-        .map_or(frames.len(), |most| frames.len().min(most as usize));
-    let stem = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let mut show = ShownRun::poses(
-        &stem,
-        path,
-        cases.shapes.built.clone(),
-        &frames[..most],
-        &settings,
-        tier,
-    )
-    .or_report()?;
+    let most = args.frames().map_or(frames.len(), |most| frames.len().min(most as usize));
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let mut show =
+        ShownRun::poses(&stem, path, cases.shapes.built.clone(), &frames[..most], &settings, tier)
+            .or_report()?;
     show.header.seed = group.seed;
     show.messages.push(group.why.clone());
     if cases.runs.len() > 1 {
-        show.messages.push(format!(
-            "Run {run} of {}; --run N shows another.",
-            cases.runs.len()
-        ));
+        show.messages.push(format!("Run {run} of {}; --run N shows another.", cases.runs.len()));
     }
     Ok(show)
 }

@@ -25,22 +25,11 @@ fn a_record_equals_itself() {
 
 #[test]
 fn a_count_that_differs_is_named() {
-    let (a, b) = (
-        record(COUNTS, TIMES),
-        record(&COUNTS.replace("20", "21"), TIMES),
-    );
+    let (a, b) = (record(COUNTS, TIMES), record(&COUNTS.replace("20", "21"), TIMES));
     let differences = compare(a.path(), b.path()).unwrap().differences;
     assert_eq!(differences.len(), 1);
-    let CountDifference {
-        row,
-        column,
-        second,
-        ..
-    } = &differences[0];
-    assert_eq!(
-        (row.as_str(), column.as_deref(), second.as_str()),
-        ("b", Some("hits"), "21")
-    );
+    let CountDifference { row, column, second, .. } = &differences[0];
+    assert_eq!((row.as_str(), column.as_deref(), second.as_str()), ("b", Some("hits"), "21"));
     let c = record(COUNTS, &TIMES.replace(",9,", ",8,"));
     let differences = compare(a.path(), c.path()).unwrap().differences;
     assert_eq!(differences[0].column.as_deref(), Some("pairs"));
@@ -90,11 +79,7 @@ fn missing_rows_are_one_line() {
     };
     let (a, b) = (record(&rows(0, 3000), TIMES), record(&rows(0, 30), TIMES));
     let comparison = compare(a.path(), b.path()).unwrap();
-    assert!(
-        comparison.differences.is_empty(),
-        "{:?}",
-        comparison.differences
-    );
+    assert!(comparison.differences.is_empty(), "{:?}", comparison.differences);
     assert_eq!(
         comparison.notes,
         ["counts.csv: 30 rows compared; 2970 rows only in the first, 0 only in the second"]
@@ -104,10 +89,7 @@ fn missing_rows_are_one_line() {
     assert_eq!(comparison.differences.len(), 1);
     // Nothing compared is nothing shown.
     let others = record(&rows(4000, 4003), TIMES);
-    assert_eq!(
-        compare(a.path(), others.path()).unwrap().differences.len(),
-        1
-    );
+    assert_eq!(compare(a.path(), others.path()).unwrap().differences.len(), 1);
 }
 
 #[test]
@@ -144,10 +126,7 @@ fn the_control_is_ranked_last() {
 
 #[test]
 fn a_loaded_machine_is_warned_of() {
-    let load = |one_minute: f64| Load {
-        one_minute,
-        five_minutes: 0.0,
-    };
+    let load = |one_minute: f64| Load { one_minute, five_minutes: 0.0 };
     let directory = record(COUNTS, TIMES);
     let mut manifest = Manifest::describe(directory.path(), "test", String::new(), &[]).unwrap();
     manifest.load = Some([load(0.1), load(1.2)]);
@@ -160,13 +139,9 @@ fn a_loaded_machine_is_warned_of() {
 /// Times are ratios and same only where intervals meet.
 #[test]
 fn times_compare_by_intervals() {
-    let slower = TIMES
-        .replace("1.0,0.9,1.1", "1.1,1.0,1.2")
-        .replace("2.5,2.4,2.6", "5.0,4.8,5.2");
+    let slower = TIMES.replace("1.0,0.9,1.1", "1.1,1.0,1.2").replace("2.5,2.4,2.6", "5.0,4.8,5.2");
     let comparison = compare(record(COUNTS, TIMES).path(), record(COUNTS, &slower).path()).unwrap();
-    let [b, a] = &comparison.changes[..] else {
-        panic!("two changes")
-    };
+    let [b, a] = &comparison.changes[..] else { panic!("two changes") };
     assert_eq!((b.ratio, b.same), (2.0, Some(false)));
     assert_eq!(a.same, Some(true));
     assert_eq!(comparison.slowest(), 1.0);

@@ -9,11 +9,8 @@ fn sources() -> (tempfile::TempDir, PageSources) {
     let root = tempfile::tempdir().unwrap();
     let record = root.path().join("box/kernels");
     std::fs::create_dir_all(&record).unwrap();
-    std::fs::write(
-        record.join("t.csv"),
-        "tier,k,us.mean\nscalar,18,300.94\navx2,18,62.13\n",
-    )
-    .unwrap();
+    std::fs::write(record.join("t.csv"), "tier,k,us.mean\nscalar,18,300.94\navx2,18,62.13\n")
+        .unwrap();
     let manifest = Manifest::describe(&record, "kernels", "sdop bench".to_owned(), &[]).unwrap();
     std::fs::write(record.join(FILE), manifest.text()).unwrap();
     let sources = PageSources {
@@ -65,10 +62,7 @@ fn blocks_are_rendered_from_templates() {
         assert_eq!(blocks("page.md", &page(between), &sources).unwrap(), whole);
     }
     for (text, problem) in [
-        (
-            "x\n<!-- BEGIN nothing -->\n<!-- END nothing -->",
-            "no template",
-        ),
+        ("x\n<!-- BEGIN nothing -->\n<!-- END nothing -->", "no template"),
         ("x\n<!-- BEGIN times -->\n", "without `END times`"),
         (
             "x\n<!-- BEGIN times -->\n<!-- BEGIN times -->\n<!-- END times -->",
@@ -76,10 +70,7 @@ fn blocks_are_rendered_from_templates() {
         ),
     ] {
         let error = blocks("page.md", text, &sources).unwrap_err().to_string();
-        assert!(
-            error.starts_with("page.md:2: ") && error.contains(problem),
-            "{error}"
-        );
+        assert!(error.starts_with("page.md:2: ") && error.contains(problem), "{error}");
     }
 }
 
@@ -87,21 +78,13 @@ fn blocks_are_rendered_from_templates() {
 fn a_missing_value_names_its_line() {
     let (_root, sources) = sources();
     for (expression, problem) in [
-        (
-            "(csv(\"box/kernels/t.csv\") | one(tier=\"neon\")).k",
-            "no row",
-        ),
+        ("(csv(\"box/kernels/t.csv\") | one(tier=\"neon\")).k", "no row"),
         ("csv(\"box/none/t.csv\")", "record.json"),
         ("nothing", "undefined"),
         ("none", "no value"),
     ] {
         let template = format!("x\n\n{{{{ {expression} }}}}");
-        let error = whole("page.md", &template, &sources)
-            .unwrap_err()
-            .to_string();
-        assert!(
-            error.starts_with("pages/page.md:3: ") && error.contains(problem),
-            "{error}"
-        );
+        let error = whole("page.md", &template, &sources).unwrap_err().to_string();
+        assert!(error.starts_with("pages/page.md:3: ") && error.contains(problem), "{error}");
     }
 }

@@ -54,11 +54,7 @@ pub fn approach(
             };
             // A static body doesn't come: the other goes the whole way.
             let is_static = kind != ApproachKind::Both && row % 3 == 0;
-            let [first, second] = if is_static {
-                [first + second, 0.0]
-            } else {
-                [first, second]
-            };
+            let [first, second] = if is_static { [first + second, 0.0] } else { [first, second] };
             let side = if row % 2 == 0 { 1.0 } else { -1.0 };
             for (dynamic, along) in [(true, first), (!is_static, 2.0 * half + gap - second)] {
                 let mut t = [0.0; 3];

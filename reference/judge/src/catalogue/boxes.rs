@@ -54,10 +54,7 @@ pub fn boxes(kind: BoxKind, count: usize, rng: &mut impl Rng) -> Result<DrawnCas
     let fixed = |i: usize| i % 5 == 4;
     let dynamic = (0..boxes.len()).map(|i| !fixed(i)).collect();
     let (shape, frame) = of_boxes(boxes, dynamic)?;
-    Ok(DrawnCase {
-        shapes: vec![shape],
-        frames: vec![frame],
-    })
+    Ok(DrawnCase { shapes: vec![shape], frames: vec![frame] })
 }
 
 fn from_ends(mut ends: impl FnMut(usize) -> [f32; 2]) -> WorldBox {
@@ -85,20 +82,13 @@ pub fn of_boxes(
 ) -> Result<(Shape, Frame), CatalogueError> {
     // Nothing is drawn: the point has no size.
     let mut rng = <rand_chacha::ChaCha8Rng as rand::SeedableRng>::seed_from_u64(0);
-    let point = Form {
-        radius: None,
-        ..Form::of("point", [0.0; 2])
-    };
+    let point = Form { radius: None, ..Form::of("point", [0.0; 2]) };
     let point = point.shape(DirectionSet::K18, Axes::Model, &mut rng)?;
     let mut bodies = Bodies::default();
     for (ends, dynamic) in boxes.iter().zip(dynamic) {
         let centre = [0, 1, 2].map(|axis| ends[axis] / 2.0 + ends[axis + 3] / 2.0);
         bodies.push(0, dynamic, [0.0, 0.0, 0.0, 1.0], centre);
     }
-    let frame = Frame {
-        bodies,
-        boxes,
-        ..Frame::default()
-    };
+    let frame = Frame { bodies, boxes, ..Frame::default() };
     Ok((point, frame))
 }

@@ -39,11 +39,7 @@ pub fn along_an_axis(
     let axis = number as usize % 3;
     let early = [0, 1].map(|side| 2 * rng.random_range(0..ROWS / 2) + side);
     let places = places(axis, ROWS, rng);
-    let rows = Rows {
-        axis,
-        places,
-        early,
-    };
+    let rows = Rows { axis, places, early };
     let frames = (0..FRAMES).map(|n| match kind {
         CrowdKind::InsertRemove => rows.with_another_set(n, &shapes),
         _ => Frame::fitted(rows.changed(kind, n), &shapes),
@@ -64,10 +60,7 @@ pub(super) fn places(axis: usize, rows: usize, rng: &mut impl Rng) -> Vec<[f32; 
 
 /// A cube whose sides are a little shorter than 2.
 pub(super) fn cube(rng: &mut impl Rng) -> Result<Shape, CatalogueError> {
-    let form = Form {
-        radius: Some([0.7, 0.75]),
-        ..Form::of("box", [0.0, 0.0])
-    };
+    let form = Form { radius: Some([0.7, 0.75]), ..Form::of("box", [0.0, 0.0]) };
     Ok(form.shape(DirectionSet::K18, Axes::Model, rng)?)
 }
 
@@ -86,10 +79,7 @@ pub(super) fn needle() -> Result<Shape, CatalogueError> {
         directions: DirectionSet::K18,
         axes: Axes::Model,
     };
-    Ok(Shape::build(
-        &TriangleMesh::new("needle", vertices, sides)?,
-        &spec,
-    )?)
+    Ok(Shape::build(&TriangleMesh::new("needle", vertices, sides)?, &spec)?)
 }
 
 /// Rows of two or three bodies; the first of each is static and stays.
@@ -105,11 +95,7 @@ impl Rows {
     /// At a distance from a row's static body along the axis of the changes, on the row's side.
     fn beside(&self, row: usize, distance: f32) -> [f32; 3] {
         let mut place = self.places[row];
-        place[self.axis] += if row.is_multiple_of(2) {
-            distance
-        } else {
-            -distance
-        };
+        place[self.axis] += if row.is_multiple_of(2) { distance } else { -distance };
         place
     }
 
@@ -140,15 +126,7 @@ impl Rows {
                 CrowdKind::Teleport => {
                     push(0, UNTURNED, if after { MEETING_DISTANCE } else { 1e6 })
                 }
-                _ => push(
-                    0,
-                    UNTURNED,
-                    if after {
-                        MEETING_DISTANCE
-                    } else {
-                        PARTED_DISTANCE
-                    },
-                ),
+                _ => push(0, UNTURNED, if after { MEETING_DISTANCE } else { PARTED_DISTANCE }),
             }
         }
         bodies
@@ -165,14 +143,7 @@ impl Rows {
             bodies.push(0, false, UNTURNED, place);
             let (shape, distance) = match row / 2 % 3 {
                 1 => (u32::from(after), TIP_DISTANCE),
-                _ => (
-                    0,
-                    if after {
-                        MEETING_DISTANCE
-                    } else {
-                        PARTED_DISTANCE
-                    },
-                ),
+                _ => (0, if after { MEETING_DISTANCE } else { PARTED_DISTANCE }),
             };
             let place = self.beside(row, distance);
             bodies.push(shape, true, QUARTER_TURNS[self.axis], place);
@@ -190,10 +161,7 @@ impl Rows {
             let former = |body: usize| number(&body).filter(|_| stays[body]);
             order(frame).into_iter().map(former).collect()
         });
-        Frame {
-            was,
-            ..Frame::fitted(picked(&bodies, &order(frame)), shapes)
-        }
+        Frame { was, ..Frame::fitted(picked(&bodies, &order(frame)), shapes) }
     }
 }
 

@@ -45,10 +45,7 @@ pub fn with_input(
         }
         ClaimInputKind::Groups | ClaimInputKind::Excluded | ClaimInputKind::AtRest => {
             let DrawnCase { shapes, frames } = boxes::boxes(BoxKind::Grid, COUNT, rng)?;
-            let (first, count) = (
-                &frames[0],
-                if kind == ClaimInputKind::AtRest { 5 } else { 1 },
-            );
+            let (first, count) = (&frames[0], if kind == ClaimInputKind::AtRest { 5 } else { 1 });
             let frame = |n: usize| Frame {
                 filter: Some(match (kind, n) {
                     (ClaimInputKind::Groups, _) | (ClaimInputKind::AtRest, 0 | 1 | 4) => {
@@ -79,17 +76,11 @@ fn groups(rng: &mut impl Rng) -> Filter {
         };
         [own, mask]
     };
-    Filter {
-        groups: (0..COUNT).map(group).collect(),
-        excluded: Vec::new(),
-    }
+    Filter { groups: (0..COUNT).map(group).collect(), excluded: Vec::new() }
 }
 
 fn admits(excluded: Vec<[u32; 2]>) -> Filter {
-    Filter {
-        groups: vec![[1, u32::MAX]; COUNT],
-        excluded,
-    }
+    Filter { groups: vec![[1, u32::MAX]; COUNT], excluded }
 }
 
 /// A third of the pairs that meet, and a few of the others, sorted.
@@ -134,14 +125,8 @@ fn margins(kind: ClaimInputKind, rng: &mut impl Rng) -> Result<DrawnCase, Catalo
     }
     let dynamic = (0..COUNT).map(|i| i % 5 != 4).collect();
     let (shape, frame) = of_boxes(boxes, dynamic)?;
-    let frames = vec![Frame {
-        margins: Some(margins),
-        ..frame
-    }];
-    Ok(DrawnCase {
-        shapes: vec![shape],
-        frames,
-    })
+    let frames = vec![Frame { margins: Some(margins), ..frame }];
+    Ok(DrawnCase { shapes: vec![shape], frames })
 }
 
 /// Steps 0 and 1, after which the state is saved; 2 to 4; back, and the same steps again; back, and
@@ -163,11 +148,8 @@ fn restored(rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
         }
         steps.push(next);
     }
-    let frame = |(n, save, restore): (usize, bool, bool)| Frame {
-        save,
-        restore,
-        ..steps[n].clone()
-    };
+    let frame =
+        |(n, save, restore): (usize, bool, bool)| Frame { save, restore, ..steps[n].clone() };
     let run = [
         (0, false, false),
         (1, true, false),
@@ -179,8 +161,5 @@ fn restored(rng: &mut impl Rng) -> Result<DrawnCase, CatalogueError> {
         (4, false, false),
         (4, false, true),
     ];
-    Ok(DrawnCase {
-        shapes,
-        frames: run.map(frame).to_vec(),
-    })
+    Ok(DrawnCase { shapes, frames: run.map(frame).to_vec() })
 }

@@ -27,24 +27,13 @@ pub fn forms(rng: &mut impl Rng, count: usize) -> Vec<Form> {
         sized("icosphere", "subdivisions", 0.0),
         sized("needle", "sides", 4.0),
     ];
-    (0..count)
-        .map(|_| pool[rng.random_range(0..pool.len())].clone())
-        .collect()
+    (0..count).map(|_| pool[rng.random_range(0..pool.len())].clone()).collect()
 }
 
 /// The or-DOP of a case: every set of directions has its turn, along both kinds of axes.
 pub fn volumes(number: u32) -> (DirectionSet, Axes) {
-    let k = [
-        DirectionSet::K18,
-        DirectionSet::K14,
-        DirectionSet::K26,
-        DirectionSet::K6,
-    ];
-    let axes = if (number / 4).is_multiple_of(2) {
-        Axes::Principal
-    } else {
-        Axes::Model
-    };
+    let k = [DirectionSet::K18, DirectionSet::K14, DirectionSet::K26, DirectionSet::K6];
+    let axes = if (number / 4).is_multiple_of(2) { Axes::Principal } else { Axes::Model };
     (k[number as usize % k.len()], axes)
 }
 
@@ -77,8 +66,5 @@ pub fn around_a_probe(
     let shape = rng.random_range(0..shapes.built.len());
     let bodies = probe(&shapes, &spec, shape, partners, rng);
     let frames = vec![Frame::fitted(bodies, &shapes.built)];
-    Ok(DrawnCase {
-        shapes: shapes.built,
-        frames,
-    })
+    Ok(DrawnCase { shapes: shapes.built, frames })
 }

@@ -57,35 +57,22 @@ pub fn crowd(kind: CrowdKind, number: u32, rng: &mut impl Rng) -> Result<DrawnCa
     };
     let (bodies, was): (Vec<Bodies>, Vec<_>) = match kind {
         CrowdKind::InsertRemove => changing(bodies, rng),
-        _ => frames(kind, number, bodies, rng)
-            .into_iter()
-            .map(|frame| (frame, None))
-            .unzip(),
+        _ => frames(kind, number, bodies, rng).into_iter().map(|frame| (frame, None)).unzip(),
     };
-    let frame = |(bodies, was)| Frame {
-        was,
-        ..Frame::fitted(bodies, &shapes.built)
-    };
+    let frame = |(bodies, was)| Frame { was, ..Frame::fitted(bodies, &shapes.built) };
     let frames = bodies.into_iter().zip(was).map(frame).collect();
-    Ok(DrawnCase {
-        shapes: shapes.built,
-        frames,
-    })
+    Ok(DrawnCase { shapes: shapes.built, frames })
 }
 
 fn shapes(kind: CrowdKind, rng: &mut impl Rng) -> Result<Shapes, FormError> {
     let forms = match kind {
         CrowdKind::Growth | CrowdKind::NewPairs => vec![Form::of("tetrahedron", [0.0, 0.0])],
-        CrowdKind::Hub | CrowdKind::Partners => vec![
-            Form::of("tetrahedron", [-6.0, -6.0]),
-            Form::of("box", [4.0, 4.0]),
-        ],
+        CrowdKind::Hub | CrowdKind::Partners => {
+            vec![Form::of("tetrahedron", [-6.0, -6.0]), Form::of("box", [4.0, 4.0])]
+        }
         CrowdKind::Sizes => forms(rng, 5)
             .into_iter()
-            .map(|form| Form {
-                radius: Some([-6.0, 2.0]),
-                ..form
-            })
+            .map(|form| Form { radius: Some([-6.0, 2.0]), ..form })
             .collect(),
         _ => forms(rng, 3),
     };
@@ -237,10 +224,8 @@ fn changing(all: Bodies, rng: &mut impl Rng) -> (Vec<Bodies>, Vec<FormerNumbers>
     frames.push(picked(&all, &before));
     changes.push(None);
     for _ in 0..5 {
-        let now: Vec<usize> = permutation(all.len(), rng)
-            .into_iter()
-            .filter(|i| i % 7 != frames.len() % 7)
-            .collect();
+        let now: Vec<usize> =
+            permutation(all.len(), rng).into_iter().filter(|i| i % 7 != frames.len() % 7).collect();
         let former = |body: &usize| before.iter().position(|i| i == body).map(|i| i as u32);
         changes.push(Some(now.iter().map(former).collect()));
         frames.push(picked(&all, &now));

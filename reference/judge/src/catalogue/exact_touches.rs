@@ -28,16 +28,8 @@ pub enum Touch {
 /// A cube with corners (±s, ±s, ±s) and an octahedron with tips at ±s on the axes.
 pub fn solids(size: f32) -> Result<[Shape; 2], CatalogueError> {
     let tips = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z].map(|tip| tip * size);
-    let sides = [
-        [0, 2, 4],
-        [2, 1, 4],
-        [1, 3, 4],
-        [3, 0, 4],
-        [2, 0, 5],
-        [1, 2, 5],
-        [3, 1, 5],
-        [0, 3, 5],
-    ];
+    let sides =
+        [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
     let octahedron = TriangleMesh::new("octahedron", tips, sides.to_vec())?;
     Ok([cuboid("cube", [size; 3])?, built(&octahedron)?])
 }
@@ -46,14 +38,8 @@ pub fn solids(size: f32) -> Result<[Shape; 2], CatalogueError> {
 pub fn cuboid(name: &str, half: [f32; 3]) -> Result<Shape, CatalogueError> {
     let end = |n: u32, i: usize| if n >> i & 1 == 1 { half[i] } else { -half[i] };
     let corner = |n: u32| Vec3::from([0, 1, 2].map(|i| end(n, i)));
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
     let triangles = quads.into_iter().flat_map(halves).collect();
     built(&TriangleMesh::new(name, (0..8).map(corner), triangles)?)
@@ -104,11 +90,8 @@ pub fn touching(
         let (offset, axis) = offset(touch, rng);
         let mut t: [f32; 3] = std::array::from_fn(|i| (at[i] + offset[i]) * size);
         if (n + number as usize) % 3 == 2 {
-            t[axis] = if rng.random_range(0..2) == 0 {
-                t[axis].next_up()
-            } else {
-                t[axis].next_down()
-            };
+            t[axis] =
+                if rng.random_range(0..2) == 0 { t[axis].next_up() } else { t[axis].next_down() };
         }
         bodies.push(second, false, turn(rng), t);
     }
@@ -120,11 +103,7 @@ pub fn touching(
 fn offset(touch: Touch, rng: &mut impl Rng) -> ([f32; 3], usize) {
     let axis = rng.random_range(0..3);
     let sign = |rng: &mut _| {
-        if RngExt::random_range(rng, 0..2) == 0 {
-            2.0
-        } else {
-            -2.0
-        }
+        if RngExt::random_range(rng, 0..2) == 0 { 2.0 } else { -2.0 }
     };
     let beside = |rng: &mut _| RngExt::random_range(rng, -8..=8) as f32 / 8.0;
     let mut offset: [f32; 3] = match touch {

@@ -78,11 +78,7 @@ impl CellGrid {
         // Exact in f64: both are of similar size.
         let most = f64::from(first) + f64::from(reach);
         let second = most as f32;
-        if f64::from(second) > most {
-            [first, second.next_down()]
-        } else {
-            [first, second]
-        }
+        if f64::from(second) > most { [first, second.next_down()] } else { [first, second] }
     }
 }
 

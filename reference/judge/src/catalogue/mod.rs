@@ -269,10 +269,7 @@ impl CaseGroup {
     }
 
     fn sets_radii(&self) -> bool {
-        matches!(
-            self.source,
-            "touch-by-quadruples" | "touch-within-an-ulp" | "cell-boundaries"
-        )
+        matches!(self.source, "touch-by-quadruples" | "touch-within-an-ulp" | "cell-boundaries")
     }
 
     /// The name of a case, of the published ones or of a seed's.
@@ -333,14 +330,12 @@ impl CaseGroup {
         rng: &mut ChaCha8Rng,
     ) -> Result<DrawnCase, CatalogueError> {
         match self.draw {
-            CaseDraw::Contact(kind, turn) => Ok(contacts::around_a_probe(
-                kind, turn, None, number, near, rng,
-            )?),
+            CaseDraw::Contact(kind, turn) => {
+                Ok(contacts::around_a_probe(kind, turn, None, number, near, rng)?)
+            }
             CaseDraw::Far(kind) => {
                 let (turn, origin) = (TurnKind::Any, Some([8.0, 20.0]));
-                Ok(contacts::around_a_probe(
-                    kind, turn, origin, number, near, rng,
-                )?)
+                Ok(contacts::around_a_probe(kind, turn, origin, number, near, rng)?)
             }
             CaseDraw::Exact(touch) => exact_touches::touching(touch, number, exact, rng),
             CaseDraw::CellBorder => grid::tips_across_borders(number, rng),
@@ -366,13 +361,8 @@ fn hard_case(text: &str, number: u32, seed: Option<u64>) -> Result<DrawnCase, Ca
     group.seed ^= seed.unwrap_or(0);
     let mut cases = group.cases(DirectionSet::K18, Axes::Principal)?;
     let shapes = cases.shapes.built;
-    let run = cases
-        .runs
-        .swap_remove(number as usize % cases.runs.len().max(1));
-    let frames = run
-        .into_iter()
-        .map(|bodies| Frame::fitted(bodies, &shapes))
-        .collect();
+    let run = cases.runs.swap_remove(number as usize % cases.runs.len().max(1));
+    let frames = run.into_iter().map(|bodies| Frame::fitted(bodies, &shapes)).collect();
     Ok(DrawnCase { shapes, frames })
 }
 
@@ -430,12 +420,7 @@ pub fn select(
     let most = groups.iter().map(|group| group.cases).max().unwrap_or(0);
     let turn = |number| {
         let has = groups.iter().filter(move |group| number < group.cases);
-        has.map(move |&group| CaseId {
-            group,
-            number,
-            seed,
-            claim,
-        })
+        has.map(move |&group| CaseId { group, number, seed, claim })
     };
     let all = (0..most).flat_map(turn);
     Ok(all.filter(|id| matches(pattern, &id.name())).collect())

@@ -82,12 +82,7 @@ pub fn touching(
             for body in shown {
                 let translation = body.translation.map(|x| x * size);
                 bodies.push(0, body.dynamic, body.rotation, translation);
-                parts.push(
-                    body.parts
-                        .into_iter()
-                        .map(|part| scaled(part, size))
-                        .collect(),
-                );
+                parts.push(body.parts.into_iter().map(|part| scaled(part, size)).collect());
             }
         }
         let was = (0..bodies.len() as u32).map(Some).collect();
@@ -119,11 +114,7 @@ fn row_parts(count: usize, is_far: bool, rng: &mut impl Rng) -> Vec<BodyPart> {
         .map(|n| {
             let at: [f32; 3] = std::array::from_fn(|_| rng.random_range(-6..=6) as f32);
             // The last part touches, and its rotation has to matter.
-            let shape = if n + 1 == count {
-                0
-            } else {
-                rng.random_range(0..2)
-            };
+            let shape = if n + 1 == count { 0 } else { rng.random_range(0..2) };
             part(shape, turn(rng), at)
         })
         .collect();
@@ -164,11 +155,7 @@ fn move_row(
     if kind == PartsKind::Moving && n % 2 == row / 2 % 2 {
         *t += side * GAP;
     } else if row % 3 == 2 {
-        *t = if side > 0.0 {
-            t.next_up()
-        } else {
-            t.next_down()
-        };
+        *t = if side > 0.0 { t.next_up() } else { t.next_down() };
     }
     Ok(())
 }
@@ -180,11 +167,7 @@ fn reframe(body: &mut RowBody, rng: &mut impl Rng) -> Result<(), CatalogueError>
     }
     let by: [f32; 3] = std::array::from_fn(|_| rng.random_range(-24..=24) as f32);
     let parts = vec![part(0, [0.0, 0.0, 0.0, 1.0], by)];
-    body.translation = last_part(&RowBody {
-        parts,
-        ..body.clone()
-    })?
-    .centre;
+    body.translation = last_part(&RowBody { parts, ..body.clone() })?.centre;
     for part in &mut body.parts {
         for (at, by) in part.pose[4..].iter_mut().zip(by) {
             *at -= by;

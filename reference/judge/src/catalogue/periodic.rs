@@ -60,9 +60,8 @@ pub fn touching(
     // If periods change, half of the rows touch by the first ones and half by the second ones.
     let across =
         |row: usize| [0, 1, 2].map(|axis| periods[row % 2][axis].filter(|_| crossed[axis]));
-    let rows: Vec<[WorldBox; 2]> = (0..ROWS)
-        .map(|row| row_boxes(kind, row, across(row), rng))
-        .collect();
+    let rows: Vec<[WorldBox; 2]> =
+        (0..ROWS).map(|row| row_boxes(kind, row, across(row), rng)).collect();
     let count = match kind {
         PeriodicKind::Changed | PeriodicKind::Crossing => FRAMES,
         _ => 1,
@@ -146,11 +145,7 @@ fn across_border(kind: PeriodicKind, row: usize, period: f64, rng: &mut impl Rng
             let ends: [f32; 64] = std::array::from_fn(|_| far_end(period, rng));
             // The nearer to zero the image is, the finer is the f32 there.
             let end = ends.into_iter().fold(ends[0], |best, end| {
-                if rest(end).abs() < rest(best).abs() {
-                    end
-                } else {
-                    best
-                }
+                if rest(end).abs() < rest(best).abs() { end } else { best }
             });
             (end, near(floor_f32(rest(end))))
         }
@@ -170,22 +165,14 @@ fn across_border(kind: PeriodicKind, row: usize, period: f64, rng: &mut impl Rng
 
 /// A position some hundreds to many millions of periods away, half of the time as far as may be.
 fn far_end(period: f64, rng: &mut impl Rng) -> f32 {
-    let exponent = if rng.random() {
-        26
-    } else {
-        rng.random_range(8..=26)
-    };
+    let exponent = if rng.random() { 26 } else { rng.random_range(8..=26) };
     let side = if rng.random() { 1.0 } else { -1.0 };
     (side * rng.random_range(1.0..2.0) * 2_f64.powi(exponent) * period) as f32
 }
 
 /// In half of the rows, the first box has the higher number.
 fn in_order<T>(row: usize, [first, second]: [T; 2]) -> [T; 2] {
-    if (row / 2).is_multiple_of(2) {
-        [first, second]
-    } else {
-        [second, first]
-    }
+    if (row / 2).is_multiple_of(2) { [first, second] } else { [second, first] }
 }
 
 /// The frame in which the boxes of a row touch.
@@ -203,11 +190,7 @@ fn moved(mut first: WorldBox, row: usize, n: usize, across: Periods) -> WorldBox
     let way = STEP * (n as f32 - touch_frame(row) as f32); // few frames
     for axis in 0..3 {
         if let Some(period) = across[axis] {
-            let jump = if jumps(row) && n > touch_frame(row) {
-                period as f32
-            } else {
-                0.0
-            };
+            let jump = if jumps(row) && n > touch_frame(row) { period as f32 } else { 0.0 };
             first[axis] += way - jump;
             first[axis + 3] += way - jump;
         }
@@ -222,9 +205,7 @@ fn former(n: usize) -> Vec<Option<u32>> {
         in_order(row, [is_new, false])
     });
     let numbers = rows.zip(0..);
-    numbers
-        .map(|(is_new, number)| (!is_new).then_some(number))
-        .collect()
+    numbers.map(|(is_new, number)| (!is_new).then_some(number)).collect()
 }
 
 #[cfg(test)]
@@ -241,11 +222,9 @@ mod tests {
     /// borders as the kind is about, and not if an end moves by an ulp. The last ones are apart.
     #[test]
     fn rows_touch_across_borders() {
-        for (kind, borders) in [
-            (PeriodicKind::Face, 1),
-            (PeriodicKind::Edge, 2),
-            (PeriodicKind::Corner, 3),
-        ] {
+        for (kind, borders) in
+            [(PeriodicKind::Face, 1), (PeriodicKind::Edge, 2), (PeriodicKind::Corner, 3)]
+        {
             for number in 0..3 {
                 let case = touching(kind, number, &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
                 let frame = &case.frames[0];

@@ -46,10 +46,7 @@ pub fn touching(number: u32, rng: &mut impl Rng) -> Result<DrawnCase, CatalogueE
             }
         }
         let boxes = bodies.translation.iter().map(|&t| about(t, size));
-        Frame {
-            boxes: boxes.collect(),
-            ..Frame::fitted(bodies, &shapes)
-        }
+        Frame { boxes: boxes.collect(), ..Frame::fitted(bodies, &shapes) }
     };
     let frames = (0..FRAMES).map(frame).collect();
     Ok(DrawnCase { shapes, frames })
@@ -77,11 +74,7 @@ impl Cube {
     fn scaled(&self, size: f32) -> [f32; 3] {
         let mut t = self.centre.map(|x| x * size);
         if let Some((axis, is_up)) = self.away {
-            t[axis] = if is_up {
-                t[axis].next_up()
-            } else {
-                t[axis].next_down()
-            };
+            t[axis] = if is_up { t[axis].next_up() } else { t[axis].next_down() };
         }
         t
     }
@@ -92,11 +85,7 @@ impl Cube {
 /// slides, and the first goes an ulp away later.
 fn cubes(pair: usize, n: usize, mut at: [f32; 3], axis: usize) -> [Cube; 2] {
     at[(axis + 1) % 3] += SPACING * pair as f32; // few pairs
-    let side = if (pair / 2).is_multiple_of(2) {
-        1.0
-    } else {
-        -1.0
-    };
+    let side = if (pair / 2).is_multiple_of(2) { 1.0 } else { -1.0 };
     let mut other = at;
     other[axis] += side * REACH;
     let moves = pair < MOVING;

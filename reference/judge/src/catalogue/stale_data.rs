@@ -55,9 +55,8 @@ pub fn changing(
     let mut frames: Vec<Frame> = Vec::new();
     let mut before: Vec<usize> = Vec::new();
     for n in 0..FRAMES {
-        let mut all: Vec<RowBody> = (0..ROWS)
-            .flat_map(|row| placed(kind, axis, &places, row, n))
-            .collect();
+        let mut all: Vec<RowBody> =
+            (0..ROWS).flat_map(|row| placed(kind, axis, &places, row, n)).collect();
         if matches!(kind, StaleKind::Reorder | StaleKind::AllAtOnce) {
             let by = 7 * n % all.len();
             all.rotate_left(by);
@@ -70,10 +69,7 @@ pub fn changing(
             bodies.push(body.shape, body.dynamic, body.rotation, body.translation);
         }
         before = all.iter().map(|body| body.id).collect();
-        frames.push(Frame {
-            was,
-            ..Frame::fitted(bodies, &shapes)
-        });
+        frames.push(Frame { was, ..Frame::fitted(bodies, &shapes) });
     }
     Ok(DrawnCase { shapes, frames })
 }
@@ -118,15 +114,7 @@ fn placed(kind: StaleKind, axis: usize, places: &[[f32; 3]], row: usize, n: usiz
         // A new body each time, which is gone in the next frame.
         2 if after => all.push(moving(id + 2 * ROWS * (n + 1), 0, MEETING_DISTANCE)),
         2 => {}
-        _ => all.push(moving(
-            id,
-            0,
-            if after {
-                MEETING_DISTANCE
-            } else {
-                PARTED_DISTANCE
-            },
-        )),
+        _ => all.push(moving(id, 0, if after { MEETING_DISTANCE } else { PARTED_DISTANCE })),
     }
     all
 }

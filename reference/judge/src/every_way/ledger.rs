@@ -70,11 +70,7 @@ impl Ledger {
     pub fn count(&mut self, settings: &CullSettings, count: &ListCount) {
         let row = LedgerKey {
             strategy: settings.strategy,
-            overlap: settings
-                .strategy
-                .scheme()
-                .has_overlap_test()
-                .then_some(settings.overlap),
+            overlap: settings.strategy.scheme().has_overlap_test().then_some(settings.overlap),
         };
         self.rows.entry(row).or_default().add(count);
     }

@@ -12,10 +12,7 @@ use sdop::world::{Body, World};
 
 /// The pairs of bodies with parts that may touch, frame by frame, sorted.
 pub(super) fn lists(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists, HistoryError> {
-    let way = CullSettings {
-        budget: Some(Budget::Tests(3)),
-        ..way.clone()
-    };
+    let way = CullSettings { budget: Some(Budget::Tests(3)), ..way.clone() };
     let mut known: Vec<&[BodyPart]> = Vec::new();
     for parts in case.frames.iter().flat_map(|frame| &frame.parts).flatten() {
         if !parts.is_empty() && !known.contains(&parts.as_slice()) {
@@ -35,10 +32,7 @@ pub(super) fn lists(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists
         let at = known.iter().position(|known| Some(*known) == list);
         at.map_or(frame.bodies.shape[i], |at| (case.shapes.len() + at) as u32)
     };
-    let mut world = CompoundWorld {
-        world: World::with(shapes, &culler(&way, mode))?,
-        parts,
-    };
+    let mut world = CompoundWorld { world: World::with(shapes, &culler(&way, mode))?, parts };
     let body = |frame: &Frame, i: usize| {
         let translation = frame.bodies.translation[i].map(f64::from);
         let mut body = Body::at(number(frame, i), frame.bodies.rotation[i], translation);
@@ -50,9 +44,5 @@ pub(super) fn lists(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists
 
 fn part(part: &BodyPart) -> Part {
     let (rotation, translation) = part.rotation_and_translation();
-    Part {
-        shape: part.shape,
-        rotation,
-        translation,
-    }
+    Part { shape: part.shape, rotation, translation }
 }

@@ -39,11 +39,7 @@ pub fn judge_and_check(
         let judge = |frame| Answers::judge(shapes, frame, variant.0, predicates);
         let answers: Vec<Answers> = frames.iter().map(judge).collect::<Result<_, _>>()?;
         answers.iter().for_each(|frame| ledger.note(frame));
-        let run = Run {
-            shapes,
-            frames,
-            answers: &answers,
-        };
+        let run = Run { shapes, frames, answers: &answers };
         run.check(variant, &rotation.turn(n), &mut ledger)?;
     }
     Ok(ledger)
@@ -73,10 +69,7 @@ pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(BOXES);
     let frames = boxes::draw(&mut |n| rng.random_range(0..n));
-    Ok(Ledger {
-        boxes: boxes::judge(&frames, rotation)?,
-        ..Ledger::default()
-    })
+    Ok(Ledger { boxes: boxes::judge(&frames, rotation)?, ..Ledger::default() })
 }
 
 /// Long-lived worlds of a seed for one or-DOP, number `number` of all that a seed has: one history
@@ -112,19 +105,11 @@ pub fn histories(
     let boxes = Repeated::boxes(&boxes, &mut below);
     judged.add(judge_periodic_boxes(&boxes, &modes(0))?);
     let meshes = Repeated::meshes(&meshes, &mut below);
-    judged.add(judge_periodic_meshes(
-        &shapes,
-        &meshes,
-        (k, axes),
-        &modes(0),
-    )?);
+    judged.add(judge_periodic_meshes(&shapes, &meshes, (k, axes), &modes(0))?);
     let robots = Robots::draw(shapes, &mut below)?;
     let history = robots.history(&mut below);
     judged.add(judge_compounds(&robots, &history, (k, axes), modes)?);
-    Ok(Ledger {
-        histories: judged,
-        ..Ledger::default()
-    })
+    Ok(Ledger { histories: judged, ..Ledger::default() })
 }
 
 /// Partners of a near round's probe.
@@ -158,28 +143,16 @@ pub fn round(
     let volumes = &Predicate::ALL[..7];
     // Both sources of one seed take modes that are far apart.
     let turn = seed.wrapping_add(source as u64 * rotation.modes().len() as u64 / 2);
-    judge_and_check(
-        &shapes,
-        &[vec![frame]],
-        (k, axes),
-        volumes,
-        (rotation, turn),
-    )
+    judge_and_check(&shapes, &[vec![frame]], (k, axes), volumes, (rotation, turn))
 }
 
 /// Every procedural shape, each with its own size, and two whose origins are not their balls'
 /// centres.
 fn pool() -> Vec<Form> {
-    let mut forms: Vec<Form> = ProceduralShape::NAMES
-        .iter()
-        .map(|name| Form::of(name, [-1.0, 1.0]))
-        .collect();
+    let mut forms: Vec<Form> =
+        ProceduralShape::NAMES.iter().map(|name| Form::of(name, [-1.0, 1.0])).collect();
     for (name, offset) in [("l-shape", [0.7, -0.3, 0.4]), ("box", [13.1, 7.7, -5.3])] {
-        forms.push(Form {
-            radius: None,
-            offset: Some(offset),
-            ..Form::of(name, [0.0; 2])
-        });
+        forms.push(Form { radius: None, offset: Some(offset), ..Form::of(name, [0.0; 2]) });
     }
     forms
 }
@@ -235,10 +208,7 @@ mod tests {
         let judged = all.histories;
         assert_eq!(judged.failure, None);
         assert_eq!((judged.missed, judged.differ), (0, 0));
-        assert!(
-            judged.required > 20 * judged.lists,
-            "pairs are near each other"
-        );
+        assert!(judged.required > 20 * judged.lists, "pairs are near each other");
         for cell in HistoryCell::all(&rotation) {
             assert!(judged.lists_in(&cell) > 0, "{cell:?}");
         }

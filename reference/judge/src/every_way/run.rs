@@ -90,11 +90,7 @@ impl Run<'_> {
         let mut expected = ExpectedLists::new(self, &row);
         for (finder, &pairs) in Finder::ALL.iter().enumerate() {
             let mode = modes[(n * Finder::ALL.len() + finder) % modes.len()];
-            let way = CullSettings {
-                pairs,
-                updates: mode.updates,
-                ..row.clone()
-            };
+            let way = CullSettings { pairs, updates: mode.updates, ..row.clone() };
             self.check_way(&way, mode, &mut expected, ledger)?;
         }
         Ok(())
@@ -168,16 +164,8 @@ struct ExpectedLists<'a> {
 
 impl<'a> ExpectedLists<'a> {
     fn new(run: &'a Run<'a>, way: &CullSettings) -> Self {
-        let row = CullSettings {
-            pairs: Finder::AllPairs,
-            ..way.clone()
-        };
-        Self {
-            run,
-            row,
-            all_pairs: BTreeMap::new(),
-            explained: BTreeMap::new(),
-        }
+        let row = CullSettings { pairs: Finder::AllPairs, ..way.clone() };
+        Self { run, row, all_pairs: BTreeMap::new(), explained: BTreeMap::new() }
     }
 
     /// The list of all-pairs in a frame.
@@ -226,22 +214,14 @@ impl Failure {
         let k = self.settings.k;
         let judge = |frame| Answers::judge(&shapes, frame, k, &Predicate::ALL);
         let answers: Vec<Answers> = frames.iter().map(judge).collect::<Result<_, _>>()?;
-        let run = Run {
-            shapes: &shapes,
-            frames: &frames,
-            answers: &answers,
-        };
+        let run = Run { shapes: &shapes, frames: &frames, answers: &answers };
         let Some(first) = frames.first() else {
             return Ok(None);
         };
         let way = settings(self.settings.strategy, &self.settings, first.len());
         let mut ledger = Ledger::default();
-        let lists = run.check_way(
-            &way,
-            self.mode,
-            &mut ExpectedLists::new(&run, &way),
-            &mut ledger,
-        )?;
+        let lists =
+            run.check_way(&way, self.mode, &mut ExpectedLists::new(&run, &way), &mut ledger)?;
         Ok(ledger.failures.first().map(|failure| {
             let (frame, pair) = (failure.case.frames.len() - 1, failure.pair);
             (Miss { frame, pair }, lists)

@@ -93,13 +93,9 @@ impl Answers {
         predicates: &[Predicate],
     ) -> Result<Self, InvalidInput> {
         let judged = shapes.bodies(bodies)?;
-        let pairs: Vec<[u32; 2]> = reference::broad_phase::all_pairs(&bodies.dynamic)
-            .map(|(i, j)| [i, j])
-            .collect();
-        let mut all = Self {
-            pairs,
-            ..Self::default()
-        };
+        let pairs: Vec<[u32; 2]> =
+            reference::broad_phase::all_pairs(&bodies.dynamic).map(|(i, j)| [i, j]).collect();
+        let mut all = Self { pairs, ..Self::default() };
         for &predicate in predicates {
             all.ask(&judged, k, predicate);
         }
@@ -109,10 +105,7 @@ impl Answers {
     fn ask(&mut self, bodies: &[reference::Body<'_>], k: DirectionSet, predicate: Predicate) {
         let extents = |directions| -> Vec<Extents<'_>> {
             let directions = reference_shapes::directions(directions);
-            bodies
-                .iter()
-                .map(|body| Extents::new(body, directions))
-                .collect()
+            bodies.iter().map(|body| Extents::new(body, directions)).collect()
         };
         let fitted = match predicate {
             Predicate::Aabb => extents(DirectionSet::K6),
@@ -163,9 +156,7 @@ impl Answers {
         n: usize,
     ) -> bool {
         let looked_at = self.pairs[n].iter().any(|body| interest.contains(body));
-        reports(strategy, overlap, looked_at, |predicate| {
-            self.of(predicate)[n]
-        })
+        reports(strategy, overlap, looked_at, |predicate| self.of(predicate)[n])
     }
 }
 
@@ -180,28 +171,20 @@ pub fn explained_by_margins(
     settings: &CullSettings,
     [i, j]: [u32; 2],
 ) -> Result<bool, InvalidInput> {
-    let (a, b) = (
-        shapes.widened_body(bodies, i)?,
-        shapes.widened_body(bodies, j)?,
-    );
+    let (a, b) = (shapes.widened_body(bodies, i)?, shapes.widened_body(bodies, j)?);
     let looked_at = match &settings.interest {
         Some(Interest::Bodies(list)) => list.contains(&i) || list.contains(&j),
         _ => false,
     };
-    Ok(reports(
-        settings.strategy,
-        settings.overlap,
-        looked_at,
-        |predicate| match predicate {
-            Predicate::Sphere => {
-                let (ball_a, ball_b) = (world_ball(&a), world_ball(&b));
-                sphere::overlap_balls((&ball_a, &a.pose), (&ball_b, &b.pose)).value
-            }
-            Predicate::OrDop(test) => ordop::overlap(&a, &b, reference_shapes::overlap(test)).value,
-            Predicate::Obb => ordop::overlap_obb(&a, &b).value,
-            Predicate::Aabb | Predicate::KDop | Predicate::Mesh => true,
-        },
-    ))
+    Ok(reports(settings.strategy, settings.overlap, looked_at, |predicate| match predicate {
+        Predicate::Sphere => {
+            let (ball_a, ball_b) = (world_ball(&a), world_ball(&b));
+            sphere::overlap_balls((&ball_a, &a.pose), (&ball_b, &b.pose)).value
+        }
+        Predicate::OrDop(test) => ordop::overlap(&a, &b, reference_shapes::overlap(test)).value,
+        Predicate::Obb => ordop::overlap_obb(&a, &b).value,
+        Predicate::Aabb | Predicate::KDop | Predicate::Mesh => true,
+    }))
 }
 
 /// The widened ball; a centre off the body's origin is rounded in world coordinates, which adds up
@@ -213,10 +196,7 @@ fn world_ball(body: &reference::Body<'_>) -> reference::Ball {
     }
     let size = |v: [f64; 3]| v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let world = size(body.pose.translation()) + 2.0 * size(ball.centre.map(f64::from));
-    reference::Ball {
-        radius: up(f64::from(ball.radius) + 4.0 * U * world),
-        ..ball
-    }
+    reference::Ball { radius: up(f64::from(ball.radius) + 4.0 * U * world), ..ball }
 }
 
 /// The strategies as predicates: which volumes must overlap.
@@ -245,8 +225,5 @@ fn reports(
 /// Whether two meshes meet.
 fn mesh(a: &reference::Body<'_>, b: &reference::Body<'_>) -> Decision<bool> {
     let meeting = meeting::overlap(a, b);
-    Decision {
-        value: meeting.meets,
-        path: meeting.path,
-    }
+    Decision { value: meeting.meets, path: meeting.path }
 }

@@ -14,9 +14,8 @@ pub fn rotation() -> impl Strategy<Value = [f32; 4]> {
     let integers = prop::array::uniform4(-2_i8..=2).prop_map(|q| q.map(f32::from));
     let scaled = (prop::array::uniform4(-1.0_f32..1.0), -60_i32..60)
         .prop_map(|(q, e)| q.map(|x| x * 2_f32.powi(e)));
-    prop_oneof![3 => integers, 6 => any, 1 => scaled].prop_filter("a rotation has a norm", |q| {
-        q.iter().any(|x| x.abs() > 1e-20)
-    })
+    prop_oneof![3 => integers, 6 => any, 1 => scaled]
+        .prop_filter("a rotation has a norm", |q| q.iter().any(|x| x.abs() > 1e-20))
 }
 
 /// A translation: at the origin, nearby, or up to 2⁴⁰ away.
@@ -31,18 +30,8 @@ pub fn contact() -> impl Strategy<Value = Contact> {
     let direction = prop::array::uniform3(-1.0_f64..1.0)
         .prop_filter("a direction", |d| d.iter().any(|x| x.abs() > 1e-3));
     let gap = prop_oneof![Just(0.0), -8.0..8.0];
-    (
-        prop::sample::select(&ContactKind::ALL[..]),
-        [0_u32..64, 0..64],
-        direction,
-        gap,
-    )
-        .prop_map(|(kind, pick, direction, gap)| Contact {
-            kind,
-            pick,
-            direction,
-            gap,
-        })
+    (prop::sample::select(&ContactKind::ALL[..]), [0_u32..64, 0..64], direction, gap)
+        .prop_map(|(kind, pick, direction, gap)| Contact { kind, pick, direction, gap })
 }
 
 /// A body in one of `shapes` shapes.

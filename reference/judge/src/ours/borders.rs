@@ -50,9 +50,7 @@ pub struct FinderDifference {
 /// # Errors
 /// A radius beyond 2⁶⁰.
 pub fn bar(radius: f32) -> Result<Shape, VolumeError> {
-    let ShapeSpec {
-        directions, axes, ..
-    } = ShapeSpec::default();
+    let ShapeSpec { directions, axes, .. } = ShapeSpec::default();
     bar_within(radius, directions, axes)
 }
 
@@ -63,24 +61,14 @@ pub fn bar(radius: f32) -> Result<Shape, VolumeError> {
 pub fn bar_within(radius: f32, directions: DirectionSet, axes: Axes) -> Result<Shape, VolumeError> {
     // The ball of its farthest vertices is rounded up by one step.
     let (reach, half) = (radius.next_down(), radius / 2.0);
-    let vertices = [
-        [reach, 0.0, 0.0],
-        [-reach, 0.0, 0.0],
-        [0.0, half, 0.0],
-        [0.0, 0.0, half],
-    ];
+    let vertices = [[reach, 0.0, 0.0], [-reach, 0.0, 0.0], [0.0, half, 0.0], [0.0, 0.0, half]];
     let mesh = TriangleMesh {
         name: "bar".to_owned(),
         vertices: vertices.map(Into::into).to_vec(),
         triangles: vec![[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]],
         ..TriangleMesh::default()
     };
-    let spec = ShapeSpec {
-        origin: Origin::File,
-        directions,
-        axes,
-        ..ShapeSpec::default()
-    };
+    let spec = ShapeSpec { origin: Origin::File, directions, axes, ..ShapeSpec::default() };
     Shape::build(&mesh, &spec)
 }
 
@@ -98,14 +86,8 @@ impl Borders {
         frames: usize,
     ) -> Result<(usize, Option<FinderDifference>), CullError> {
         let culler = |pairs: Finder| {
-            let settings = CullSettings {
-                pairs,
-                ..settings.clone()
-            };
-            Culler::builder()
-                .settings(&settings)
-                .tier(tier)
-                .build(shapes, &self.bodies)
+            let settings = CullSettings { pairs, ..settings.clone() };
+            Culler::builder().settings(&settings).tier(tier).build(shapes, &self.bodies)
         };
         let wanted = culler(Finder::AllPairs)?.cull(&self.bodies)?.sorted();
         for &finder in Finder::ALL {
@@ -116,12 +98,7 @@ impl Borders {
                     let lost: Vec<_> = wanted.iter().filter(|pair| !found.contains(pair)).collect();
                     let surplus = found.len() + lost.len() - wanted.len();
                     let lost = lost.into_iter().copied().collect();
-                    let difference = FinderDifference {
-                        finder,
-                        frame,
-                        lost,
-                        surplus,
-                    };
+                    let difference = FinderDifference { finder, frame, lost, surplus };
                     return Ok((wanted.len(), Some(difference)));
                 }
             }
@@ -132,10 +109,7 @@ impl Borders {
     /// The settings that the scenes are made for.
     #[must_use]
     pub fn settings() -> CullSettings {
-        CullSettings {
-            strategy: Strategy::Sphere,
-            ..CullSettings::default()
-        }
+        CullSettings { strategy: Strategy::Sphere, ..CullSettings::default() }
     }
 
     /// A scene.
@@ -255,18 +229,8 @@ impl BorderDraw<'_> {
             layout: self.pick(&[TableLayout::Box, TableLayout::Box, TableLayout::Wrapped]),
         };
         let (axes, size, divides) = self.axes(&plan);
-        let mut scene = Borders {
-            radii,
-            bodies: Bodies::default(),
-            divides,
-        };
-        self.fill(
-            &mut scene.bodies,
-            &plan,
-            &axes,
-            (fill, size),
-            [target_moves, seeker_moves],
-        );
+        let mut scene = Borders { radii, bodies: Bodies::default(), divides };
+        self.fill(&mut scene.bodies, &plan, &axes, (fill, size), [target_moves, seeker_moves]);
         scene
     }
 
@@ -294,10 +258,8 @@ impl BorderDraw<'_> {
             // Far clusters, within the contract.
             _ => f64::from(self.below(28)).exp2() * (1.0 + self.unit()),
         });
-        let rough = cells.map(|n| Axis {
-            hi: (n * least).min((1u64 << 58) as f64) as f32,
-            ..Axis::default()
-        });
+        let rough = cells
+            .map(|n| Axis { hi: (n * least).min((1u64 << 58) as f64) as f32, ..Axis::default() });
         let size = plan.cells(&rough).size();
         let axes = std::array::from_fn(|k| {
             let number = (f64::from(rough[k].hi) / size).floor();

@@ -16,11 +16,7 @@ use sdop::settings::{Finder, Updates};
 const SIDES: [&[[f32; 3]]; 4] = [
     &[[2.0, 2.0, 2.0]],
     &[[0.25, 2.0, 16.0], [16.0, 0.25, 2.0], [2.0, 16.0, 0.25]],
-    &[
-        [0.002, 0.002, 0.002],
-        [1.0, 1.5, 1.25],
-        [900.0, 700.0, 900.0],
-    ],
+    &[[0.002, 0.002, 0.002], [1.0, 1.5, 1.25], [900.0, 700.0, 900.0]],
     &[[0.0, 3.0, 3.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
 ];
 
@@ -59,11 +55,8 @@ impl BoxCell {
         let modes = rotation.modes().iter();
         let modes = modes.filter(|mode| mode.updates == Updates::Eager);
         modes.flat_map(|&mode| {
-            let cell = move |&finder| Self {
-                finder,
-                tier: mode.tier.name(),
-                threads: mode.threads,
-            };
+            let cell =
+                move |&finder| Self { finder, tier: mode.tier.name(), threads: mode.threads };
             Finder::ALL.iter().map(move |finder| (cell(finder), mode))
         })
     }
@@ -155,11 +148,7 @@ pub(super) fn beside(other: &Aabb, sides: [f32; 3], below: &mut impl FnMut(u32) 
     let (mut min, at) = (other.min, below(3) as usize);
     let off = below(7) as i32 - 3;
     let shifted = |end: f32| {
-        let step = if off < 0 {
-            f32::next_down
-        } else {
-            f32::next_up
-        };
+        let step = if off < 0 { f32::next_down } else { f32::next_up };
         (0..off.abs()).fold(end, |end, _| step(end))
     };
     let is_behind = below(2) == 0;

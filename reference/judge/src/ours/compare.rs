@@ -170,20 +170,11 @@ mod tests {
     /// A list with a pair twice, or with a pair that cannot exist, does not pass.
     #[test]
     fn invalid_lists_do_not_pass() {
-        let answers = Answers {
-            pairs: vec![[0, 1], [0, 2]],
-            ..Answers::default()
-        };
-        let none = CullSettings {
-            strategy: Strategy::None,
-            ..CullSettings::all_pairs()
-        };
-        for (list, missed) in [
-            (vec![], 0),
-            (vec![[0, 1]], 0),
-            (vec![[0, 1], [0, 1]], 1),
-            (vec![[0, 2], [2, 0]], 1),
-        ] {
+        let answers = Answers { pairs: vec![[0, 1], [0, 2]], ..Answers::default() };
+        let none = CullSettings { strategy: Strategy::None, ..CullSettings::all_pairs() };
+        for (list, missed) in
+            [(vec![], 0), (vec![[0, 1]], 0), (vec![[0, 1], [0, 1]], 1), (vec![[0, 2], [2, 0]], 1)]
+        {
             assert_eq!(compare(&answers, &none, &list).0.missed, missed, "{list:?}");
         }
     }

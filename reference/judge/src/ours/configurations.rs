@@ -32,11 +32,8 @@ pub fn rows((k, axes): (DirectionSet, Axes)) -> Vec<CullSettings> {
         ..CullSettings::all_pairs()
     };
     let rows = Strategy::ALL.iter().flat_map(|&strategy| {
-        let overlaps = if strategy.scheme().has_overlap_test() {
-            Overlap::ALL
-        } else {
-            &[Overlap::TwoSided]
-        };
+        let overlaps =
+            if strategy.scheme().has_overlap_test() { Overlap::ALL } else { &[Overlap::TwoSided] };
         overlaps.iter().map(move |&overlap| row(strategy, overlap))
     });
     rows.collect()
@@ -46,10 +43,7 @@ pub fn rows((k, axes): (DirectionSet, Axes)) -> Vec<CullSettings> {
 #[must_use]
 pub fn ways(k: DirectionSet, axes: Axes) -> Vec<CullSettings> {
     let finders = |row: CullSettings| {
-        Finder::ALL.iter().map(move |&pairs| CullSettings {
-            pairs,
-            ..row.clone()
-        })
+        Finder::ALL.iter().map(move |&pairs| CullSettings { pairs, ..row.clone() })
     };
     rows((k, axes)).into_iter().flat_map(finders).collect()
 }
@@ -73,11 +67,7 @@ impl Mode {
     /// The plainest mode on a tier: eager, on the caller's thread.
     #[must_use]
     pub fn plain(tier: Tier) -> Self {
-        Self {
-            updates: Updates::Eager,
-            tier,
-            threads: 1,
-        }
+        Self { updates: Updates::Eager, tier, threads: 1 }
     }
 }
 
@@ -94,11 +84,7 @@ impl Rotation {
         let mut modes = Vec::new();
         for &tier in tiers {
             for &updates in Updates::ALL {
-                modes.extend(THREADS.map(|threads| Mode {
-                    updates,
-                    tier,
-                    threads,
-                }));
+                modes.extend(THREADS.map(|threads| Mode { updates, tier, threads }));
             }
         }
         Self { modes }
@@ -137,10 +123,7 @@ mod tests {
     fn each_way_has_each_mode_once() {
         let rotation = Rotation::new(&Tier::available());
         let all = rotation.modes().len();
-        assert_eq!(
-            all,
-            Tier::available().len() * Updates::ALL.len() * THREADS.len()
-        );
+        assert_eq!(all, Tier::available().len() * Updates::ALL.len() * THREADS.len());
         for round in [0, 1, 7] {
             for way in 0..all + 3 {
                 let turns = (0..all).map(|n| rotation.turn((round * all + n) as u64)[way % all]);

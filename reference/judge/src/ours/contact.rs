@@ -95,9 +95,7 @@ impl Contact {
         let from = DVec3::from(first.translation.map(f64::from));
         let t = from + delta + n * (self.gap * U * reach);
         let t = t.as_vec3().to_array();
-        t.iter()
-            .all(|x| x.abs() <= sdop::rounding::LIMIT)
-            .then_some(t)
+        t.iter().all(|x| x.abs() <= sdop::rounding::LIMIT).then_some(t)
     }
 
     /// The separating axis, a unit vector, and Δ at which the features share a point.
@@ -140,10 +138,9 @@ impl Contact {
                 (n, [a.vertices(), b.vertices()])
             }
             ContactKind::Mesh => (any, [a.vertices(), b.vertices()]),
-            ContactKind::Triangle => (
-                a.triangle_normal(self.pick[0]).unwrap_or(any),
-                [a.vertices(), b.vertices()],
-            ),
+            ContactKind::Triangle => {
+                (a.triangle_normal(self.pick[0]).unwrap_or(any), [a.vertices(), b.vertices()])
+            }
         };
         let n = toward(n);
         Some((n, support(&pa, n)? - support(&pb, -n)?))
@@ -158,10 +155,7 @@ fn crossed(a: DVec3, b: DVec3, otherwise: DVec3) -> DVec3 {
 /// The point farthest along `n`.
 fn support(points: &[[f64; 3]], n: DVec3) -> Option<DVec3> {
     let along = |p: &&[f64; 3]| DVec3::from(**p).dot(n);
-    points
-        .iter()
-        .max_by(|p, q| along(p).total_cmp(&along(q)))
-        .map(|p| DVec3::from(*p))
+    points.iter().max_by(|p, q| along(p).total_cmp(&along(q))).map(|p| DVec3::from(*p))
 }
 
 /// One body about its own origin, turned.

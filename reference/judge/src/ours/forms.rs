@@ -37,10 +37,7 @@ pub struct FormError {
 impl FormError {
     /// The problem with a form of that name.
     pub(super) fn of(form: &str, problem: impl ToString) -> Self {
-        Self {
-            form: form.to_owned(),
-            problem: problem.to_string(),
-        }
+        Self { form: form.to_owned(), problem: problem.to_string() }
     }
 }
 
@@ -48,12 +45,7 @@ impl Form {
     /// A procedural shape by name, of radius 2ᵃ to 2ᵇ.
     #[must_use]
     pub fn of(form: &str, radius: [f64; 2]) -> Self {
-        Self {
-            form: form.to_owned(),
-            sizes: BTreeMap::new(),
-            radius: Some(radius),
-            offset: None,
-        }
+        Self { form: form.to_owned(), sizes: BTreeMap::new(), radius: Some(radius), offset: None }
     }
 
     fn mesh(&self) -> Result<TriangleMesh, FormError> {
@@ -67,30 +59,21 @@ impl Form {
         Ok(match self.form.as_str() {
             "point" => flat(&[[0.0; 3]], &[[0, 0, 0]]),
             "segment" => flat(&[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], &[[0, 1, 1]]),
-            "triangle" => flat(
-                &[[-1.0, -0.5, 0.0], [1.0, -0.5, 0.0], [0.0, 1.0, 0.0]],
-                &[[0, 1, 2]],
-            ),
-            "sliver" => flat(
-                &[[-1.0, -0.5, 0.25], [0.0, 0.0, 0.0], [1.0, 0.5, -0.25]],
-                &[[0, 1, 2]],
-            ),
+            "triangle" => {
+                flat(&[[-1.0, -0.5, 0.0], [1.0, -0.5, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])
+            }
+            "sliver" => {
+                flat(&[[-1.0, -0.5, 0.25], [0.0, 0.0, 0.0], [1.0, 0.5, -0.25]], &[[0, 1, 2]])
+            }
             "tetrahedron" => flat(
-                &[
-                    [1.0, 1.0, 1.0],
-                    [1.0, -1.0, -1.0],
-                    [-1.0, 1.0, -1.0],
-                    [-1.0, -1.0, 1.0],
-                ],
+                &[[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
                 &[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
             ),
             name => {
                 let sizes: Vec<(&str, f64)> =
                     self.sizes.iter().map(|(k, v)| (k.as_str(), *v)).collect();
                 let shape = ProceduralShape::from_name(name, &sizes);
-                shape
-                    .and_then(|shape| shape.build())
-                    .map_err(|e| error(e.to_string()))?
+                shape.and_then(|shape| shape.build()).map_err(|e| error(e.to_string()))?
             }
         })
     }
@@ -107,11 +90,7 @@ impl Form {
     ) -> Result<Shape, FormError> {
         let mut mesh = self.mesh()?;
         let radius = self.radius.map(|[least, most]| {
-            let e = if most > least {
-                rng.random_range(least..most)
-            } else {
-                least
-            };
+            let e = if most > least { rng.random_range(least..most) } else { least };
             2_f64.powf(e) as f32
         });
         if let Some(offset) = self.offset {
@@ -120,11 +99,7 @@ impl Form {
                 .for_each(|v| *v = (Vec3::from(*v) + Vec3::from(offset)).to_array());
         }
         let spec = ShapeSpec {
-            origin: if self.offset.is_some() {
-                Origin::File
-            } else {
-                Origin::Ball
-            },
+            origin: if self.offset.is_some() { Origin::File } else { Origin::Ball },
             radius,
             directions,
             axes,

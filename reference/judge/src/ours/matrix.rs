@@ -35,11 +35,7 @@ impl Cell {
     pub fn of(way: &CullSettings, mode: Mode) -> Self {
         Self {
             strategy: way.strategy,
-            overlap: way
-                .strategy
-                .scheme()
-                .has_overlap_test()
-                .then_some(way.overlap),
+            overlap: way.strategy.scheme().has_overlap_test().then_some(way.overlap),
             finder: way.pairs,
             k: way.k,
             axes: way.axes,
@@ -116,11 +112,7 @@ impl Matrix {
                 filled.filled += u64::from(lists > 0);
                 filled.fewest = filled.fewest.min(lists);
             } else {
-                let filled = MatrixPart {
-                    cells: 1,
-                    filled: u64::from(lists > 0),
-                    fewest: lists,
-                };
+                let filled = MatrixPart { cells: 1, filled: u64::from(lists > 0), fewest: lists };
                 folded.push((name, filled));
             }
         }

@@ -121,9 +121,7 @@ impl PosedVolumes {
         };
         let vertices: Vec<Vector> = shape.vertices.iter().map(|&v| place(v)).collect();
         let fold = |pick: fn(f32, f32) -> f32, start: f32| {
-            vertices
-                .iter()
-                .fold([start; 3], |m, v| [0, 1, 2].map(|i| pick(m[i], v[i])))
+            vertices.iter().fold([start; 3], |m, v| [0, 1, 2].map(|i| pick(m[i], v[i])))
         };
         let ordop = &shape.ordop;
         let corners = polytope.rounded.iter().map(|xi| polytope.position(xi));
@@ -163,9 +161,8 @@ fn ordops(a: &PosedVolumes, b: &PosedVolumes) -> bool {
 fn slabs_meet(a: &PosedVolumes, b: &PosedVolumes) -> bool {
     a.slabs.iter().all(|&(normal, lo, hi)| {
         let along = b.corners.iter().map(|&v| dot(normal, v));
-        let (min, max) = along.fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), x| {
-            (lo.min(x), hi.max(x))
-        });
+        let (min, max) =
+            along.fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
         min <= hi && lo <= max
     })
 }

@@ -34,11 +34,7 @@ impl Shapes {
         let all = |margins: f64| -> Result<Vec<_>, _> {
             built.iter().map(|s| shape(s, margins)).collect()
         };
-        Ok(Self {
-            judged: all(0.0)?,
-            widened: all(1.0)?,
-            built,
-        })
+        Ok(Self { judged: all(0.0)?, widened: all(1.0)?, built })
     }
 
     /// The bodies as the reference takes them.
@@ -97,11 +93,7 @@ fn shape(shape: &Shape, margins: f64) -> Result<reference::Shape, InvalidInput> 
     let wider = radius + margins * (15.0 * U * radius + exp2(-69));
     let ball = reference::Ball {
         centre: shape.ball.centre,
-        radius: if margins > 0.0 {
-            up(wider)
-        } else {
-            shape.ball.radius
-        },
+        radius: if margins > 0.0 { up(wider) } else { shape.ball.radius },
     };
     let reach = f64::from(shape.reach) + norm(shape.ball.centre);
     let by = margins * 2.0 * (SLAB_MARGIN * reach + SLAB_FLOOR);

@@ -70,11 +70,8 @@ impl TurnKind {
             Self::Ulp => {
                 let mut q = first;
                 let at = rng.random_range(0..4);
-                q[at] = if rng.random_range(0..2) == 0 {
-                    q[at].next_up()
-                } else {
-                    q[at].next_down()
-                };
+                q[at] =
+                    if rng.random_range(0..2) == 0 { q[at].next_up() } else { q[at].next_down() };
                 q
             }
             Self::NearlyParallel => {
@@ -145,14 +142,9 @@ impl ContactSpec {
     pub fn contact(&self, rng: &mut impl Rng) -> Contact {
         let drawn = direction(rng);
         let spanned = self.span.iter().zip(drawn);
-        let spanned = spanned.fold([0.0; 3], |sum: [f64; 3], (v, c)| {
-            std::array::from_fn(|i| sum[i] + c * v[i])
-        });
-        let gap = if self.gap > 0.0 {
-            rng.random_range(-self.gap..self.gap)
-        } else {
-            0.0
-        };
+        let spanned = spanned
+            .fold([0.0; 3], |sum: [f64; 3], (v, c)| std::array::from_fn(|i| sum[i] + c * v[i]));
+        let gap = if self.gap > 0.0 { rng.random_range(-self.gap..self.gap) } else { 0.0 };
         Contact {
             kind: self.kinds[rng.random_range(0..self.kinds.len())],
             pick: std::array::from_fn(|_| rng.random_range(0..1 << 20)),
@@ -167,21 +159,14 @@ impl ContactSpec {
         let translation = match self.origin {
             None => [0.0; 3],
             Some([least, most]) => {
-                let distance = 2_f64.powf(if most > least {
-                    rng.random_range(least..most)
-                } else {
-                    least
-                });
+                let distance =
+                    2_f64.powf(if most > least { rng.random_range(least..most) } else { least });
                 let d = direction(rng);
                 let size = d.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
                 d.map(|x| (x / size * distance) as f32)
             }
         };
-        PlacedShape {
-            shape,
-            rotation,
-            translation,
-        }
+        PlacedShape { shape, rotation, translation }
     }
 
     /// A body of `shape` in contact with `first`; next to it where the contact lies outside the
@@ -195,14 +180,9 @@ impl ContactSpec {
     ) -> PlacedShape {
         let rotation = self.turn.second(first.rotation, rng);
         let contact = self.contact(rng);
-        let translation = contact
-            .place(shapes, first, shape, rotation)
-            .unwrap_or(first.translation);
-        PlacedShape {
-            shape,
-            rotation,
-            translation,
-        }
+        let translation =
+            contact.place(shapes, first, shape, rotation).unwrap_or(first.translation);
+        PlacedShape { shape, rotation, translation }
     }
 }
 

@@ -75,9 +75,6 @@ impl RecordError {
     }
 
     pub(super) fn unwritable(path: &Path, cause: std::io::Error) -> Self {
-        Self::Unwritable {
-            file: path.display().to_string(),
-            cause,
-        }
+        Self::Unwritable { file: path.display().to_string(), cause }
     }
 }

@@ -199,10 +199,7 @@ impl ShapeLine {
             pose_offset: [0.0; 3],
             rounding: 0.0,
             reach: Ball::about([0.0; 3], &vertices).radius,
-            ball: Ball {
-                centre: [x, y, z],
-                radius,
-            },
+            ball: Ball { centre: [x, y, z], radius },
             ordop: OrDop {
                 directions: *sets.find(|set| set.k() == self.ordop.k)?,
                 basis: Basis { columns },
@@ -220,9 +217,7 @@ impl FrameLine {
     #[must_use]
     pub fn poses(bodies: &Bodies) -> Vec<[f32; 7]> {
         let poses = bodies.rotation.iter().zip(&bodies.translation);
-        poses
-            .map(|(&[qx, qy, qz, qw], &[tx, ty, tz])| [qx, qy, qz, qw, tx, ty, tz])
-            .collect()
+        poses.map(|(&[qx, qy, qz, qw], &[tx, ty, tz])| [qx, qy, qz, qw, tx, ty, tz]).collect()
     }
 
     /// Moves the bodies to this frame's poses.

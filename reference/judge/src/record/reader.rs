@@ -56,10 +56,7 @@ impl<R: BufRead> Reader<R> {
     pub fn new(mut source: R, name: &str) -> Result<Self, RecordError> {
         let mut text = Vec::new();
         let read = read_line(&mut source, MAX_BYTES, &mut text);
-        read.map_err(|cause| RecordError::Unreadable {
-            file: name.to_owned(),
-            cause,
-        })?;
+        read.map_err(|cause| RecordError::Unreadable { file: name.to_owned(), cause })?;
         let header = parse_header(&text, name)?;
         let wrong = |problem: String, hint: &str| line_error(name, 1, problem, hint);
         let shapes = header.shapes.iter().map(|line| {
@@ -71,15 +68,7 @@ impl<R: BufRead> Reader<R> {
         let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
         let bodies = bodies_of(&header.bodies);
         check_bodies(&bodies, &shapes).map_err(|error| wrong(error.to_string(), error.hint))?;
-        Ok(Self {
-            name: name.to_owned(),
-            source,
-            header,
-            shapes,
-            bodies,
-            line: 1,
-            frame: None,
-        })
+        Ok(Self { name: name.to_owned(), source, header, shapes, bodies, line: 1, frame: None })
     }
 
     /// The first line.
@@ -110,10 +99,8 @@ impl<R: BufRead> Reader<R> {
         let mut text = Vec::new();
         loop {
             let read = read_line(&mut self.source, MAX_BYTES, &mut text);
-            let read = read.map_err(|cause| RecordError::Unreadable {
-                file: self.name.clone(),
-                cause,
-            })?;
+            let read =
+                read.map_err(|cause| RecordError::Unreadable { file: self.name.clone(), cause })?;
             if read == 0 {
                 return Ok(None);
             }
@@ -148,14 +135,10 @@ impl<R: BufRead> Reader<R> {
         }
         if frame.poses.len() != self.bodies.len() {
             let (poses, bodies) = (frame.poses.len(), self.bodies.len());
-            let problem = format!(
-                "frame {} has {poses} poses for {bodies} bodies",
-                frame.frame
+            let problem = format!("frame {} has {poses} poses for {bodies} bodies", frame.frame);
+            return Err(
+                self.wrong(problem, "give every body of the first line a pose, in its order")
             );
-            return Err(self.wrong(
-                problem,
-                "give every body of the first line a pose, in its order",
-            ));
         }
         frame.pose(&mut self.bodies);
         let posed = check_poses(&self.bodies, 0..self.bodies.len());
@@ -163,10 +146,7 @@ impl<R: BufRead> Reader<R> {
         if let Some(translations) = &frame.translations {
             self.check_translations(frame, translations)?;
         }
-        for (name, pairs) in [
-            ("pairs", Some(&frame.pairs)),
-            ("meets", frame.meets.as_ref()),
-        ] {
+        for (name, pairs) in [("pairs", Some(&frame.pairs)), ("meets", frame.meets.as_ref())] {
             if let Some(problem) = pairs.and_then(|pairs| self.flaw(pairs)) {
                 let problem = format!("frame {}, {name}: {problem}", frame.frame);
                 let hint = "list each pair of bodies, not both static, once, the smaller number first, in ascending order";
@@ -178,18 +158,12 @@ impl<R: BufRead> Reader<R> {
 
     /// Checks a frame's f64 translations, of which its poses have the nearest f32.
     fn check_translations(&self, frame: &FrameLine, all: &[[f64; 3]]) -> Result<(), RecordError> {
-        let Bodies {
-            rotation,
-            translation,
-            ..
-        } = &self.bodies;
+        let Bodies { rotation, translation, .. } = &self.bodies;
         let hint = "give every body its f64 translation, and its pose the nearest f32";
         if all.len() != translation.len() {
             let (given, bodies) = (all.len(), translation.len());
-            let problem = format!(
-                "frame {} has {given} translations for {bodies} bodies",
-                frame.frame
-            );
+            let problem =
+                format!("frame {} has {given} translations for {bodies} bodies", frame.frame);
             return Err(self.wrong(problem, hint));
         }
         for (body, t) in all.iter().enumerate() {
@@ -238,12 +212,7 @@ impl<R: BufRead> Reader<R> {
 }
 
 fn line_error(name: &str, line: u64, problem: String, hint: &str) -> RecordError {
-    RecordError::Line {
-        file: name.to_owned(),
-        line,
-        problem,
-        hint: hint.to_owned(),
-    }
+    RecordError::Line { file: name.to_owned(), line, problem, hint: hint.to_owned() }
 }
 
 /// The parser's message without its line number: it parses each line separately.
@@ -255,10 +224,7 @@ fn said(error: &serde_json::Error) -> String {
 }
 
 fn parse_header(text: &[u8], name: &str) -> Result<Header, RecordError> {
-    let stranger = |problem: String| RecordError::Stranger {
-        file: name.to_owned(),
-        problem,
-    };
+    let stranger = |problem: String| RecordError::Stranger { file: name.to_owned(), problem };
     if text.trim_ascii().is_empty() {
         return Err(stranger("the first line is empty".to_owned()));
     }
@@ -267,10 +233,7 @@ fn parse_header(text: &[u8], name: &str) -> Result<Header, RecordError> {
         return Err(stranger(format!("its format is {:?}", mark.format)));
     }
     if mark.version != u64::from(VERSION) {
-        return Err(RecordError::Version {
-            file: name.to_owned(),
-            found: mark.version,
-        });
+        return Err(RecordError::Version { file: name.to_owned(), found: mark.version });
     }
     serde_json::from_slice(text).map_err(|error| {
         let hint = "compare the line with the format's description: `sdop run SCENE --record FILE` writes one like it";
@@ -303,9 +266,7 @@ impl ShapeLine {
         if !finite(&ordop.basis) || !finite(&ordop.lo) || !finite(&ordop.hi) {
             return Err("its or-DOP is not finite".to_owned());
         }
-        let shape = line
-            .shape()
-            .ok_or_else(|| format!("no or-DOP has k = {}", ordop.k))?;
+        let shape = line.shape().ok_or_else(|| format!("no or-DOP has k = {}", ordop.k))?;
         let slabs = shape.ordop.directions.slabs();
         if (ordop.lo.len(), ordop.hi.len()) != (slabs, slabs) {
             let (lo, hi, k) = (ordop.lo.len(), ordop.hi.len(), ordop.k);

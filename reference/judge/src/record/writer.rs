@@ -37,10 +37,7 @@ impl BodyLine {
     /// A line for each body.
     #[must_use]
     pub fn all(bodies: &Bodies) -> Vec<Self> {
-        let line = |(&shape, &dynamic): (&u32, &bool)| Self {
-            shape,
-            fixed: !dynamic,
-        };
+        let line = |(&shape, &dynamic): (&u32, &bool)| Self { shape, fixed: !dynamic };
         bodies.shape.iter().zip(&bodies.dynamic).map(line).collect()
     }
 }

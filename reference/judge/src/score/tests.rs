@@ -16,11 +16,7 @@ fn cubes(frames: &[[f32; 5]]) -> Case {
             bodies.push(0, number < 3, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
         }
         let boxes = places.map(|x| [x, 0.0, 0.0, x + 1.0, 1.0, 1.0]).to_vec();
-        Frame {
-            bodies,
-            boxes,
-            ..Frame::default()
-        }
+        Frame { bodies, boxes, ..Frame::default() }
     };
     Case {
         name: "own/cubes/0000".to_owned(),
@@ -34,10 +30,7 @@ fn cubes(frames: &[[f32; 5]]) -> Case {
 }
 
 fn answers(pairs: &[&[[u32; 2]]]) -> Vec<Answer> {
-    let answer = |pairs: &&[[u32; 2]]| Answer {
-        pairs: pairs.to_vec(),
-        ns: None,
-    };
+    let answer = |pairs: &&[[u32; 2]]| Answer { pairs: pairs.to_vec(), ns: None };
     pairs.iter().map(answer).collect()
 }
 

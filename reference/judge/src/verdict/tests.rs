@@ -8,13 +8,7 @@ fn case(name: &str, outcome: Outcome, pairs: [u64; 4]) -> CaseVerdict {
         name: name.to_owned(),
         flag: "a bug".to_owned(),
         outcome,
-        pairs: PairCounts {
-            judged,
-            required,
-            missed,
-            extra,
-            ..PairCounts::default()
-        },
+        pairs: PairCounts { judged, required, missed, extra, ..PairCounts::default() },
         miss: None,
         known: false,
     }
@@ -40,10 +34,7 @@ fn erred(name: &str) -> CaseVerdict {
 }
 
 fn known(case: CaseVerdict) -> CaseVerdict {
-    CaseVerdict {
-        known: true,
-        ..case
-    }
+    CaseVerdict { known: true, ..case }
 }
 
 fn verdict(cases: Vec<CaseVerdict>) -> Verdict {
@@ -147,10 +138,8 @@ fn groups_add_up() {
             )
         })
         .collect();
-    let expected = [
-        ("touch/b", [2, 0, 1, 0], [20, 8, 0, 4]),
-        ("touch/a", [0, 2, 0, 1], [40, 10, 6, 2]),
-    ];
+    let expected =
+        [("touch/b", [2, 0, 1, 0], [20, 8, 0, 4]), ("touch/a", [0, 2, 0, 1], [40, 10, 6, 2])];
     assert_eq!(rows, expected);
     assert_eq!(verdict.pairs().missed, 6);
     let text = verdict.to_string();

@@ -80,18 +80,10 @@ pub fn book(answers: &mut Vec<Answer>, said: ProgramAnswer, line: &[u8]) -> Resu
 pub(super) fn beginning(line: &[u8]) -> String {
     let text = String::from_utf8_lossy(&line[..line.len().min(240)]);
     let short: String = text.trim_end().chars().take(80).collect();
-    if short.len() < line.trim_ascii_end().len() {
-        format!("{short}…")
-    } else {
-        short
-    }
+    if short.len() < line.trim_ascii_end().len() { format!("{short}…") } else { short }
 }
 
 /// A line that is no answer.
 pub(super) fn malformed(frame: usize, line: &[u8], why: impl Into<String>) -> AnswerError {
-    AnswerError::Malformed {
-        frame,
-        why: why.into(),
-        line: beginning(line),
-    }
+    AnswerError::Malformed { frame, why: why.into(), line: beginning(line) }
 }

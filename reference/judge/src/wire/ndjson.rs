@@ -62,10 +62,7 @@ impl CaseBody {
     /// The bodies of a frame, each with its former number if the set changes.
     fn all(frame: &Frame) -> Vec<Self> {
         let body = |i: usize| {
-            let parts = frame
-                .parts
-                .as_ref()
-                .map_or(Vec::new(), |parts| parts[i].clone());
+            let parts = frame.parts.as_ref().map_or(Vec::new(), |parts| parts[i].clone());
             Self {
                 shape: parts.is_empty().then_some(frame.bodies.shape[i]),
                 fixed: !frame.bodies.dynamic[i],
@@ -187,20 +184,13 @@ mod tests {
     /// the next one.
     #[test]
     fn old_cases_are_rounded_once() {
-        let group = groups()
-            .unwrap()
-            .into_iter()
-            .find(|g| g.name == "exact/tip-to-tip");
+        let group = groups().unwrap().into_iter().find(|g| g.name == "exact/tip-to-tip");
         let case = group.unwrap().case(0, None).unwrap();
         let new = String::from_utf8(encode(&case, &[]).unwrap()).unwrap();
         let x = f64::from(case.shapes[0].ball.radius);
         let old = new.replacen(&format!("{x:?}]"), "7.038531e-26]", 1);
         assert_ne!(old, new);
-        let read = |text: &str| {
-            read(text.as_bytes(), 1 << 30)
-                .map(|read| read.case)
-                .unwrap()
-        };
+        let read = |text: &str| read(text.as_bytes(), 1 << 30).map(|read| read.case).unwrap();
         assert_eq!(read(&old).shapes[0].ball.radius.to_bits(), 0x15ae_43fd);
         assert_eq!(read(&new).frames, case.frames);
         let lines = |case: &Case| case.shapes.iter().map(ShapeLine::of).collect::<Vec<_>>();

@@ -73,11 +73,7 @@ fn words(text: &mut String, bits: impl Iterator<Item = u32>) {
 /// A body, with its former number in a changed set, and its parts for the claim that is about them.
 fn write_body(text: &mut String, claim: Claim, frame: &Frame, i: usize, was: Option<i64>) {
     let parts = frame.parts.as_ref().map_or(&[][..], |parts| &parts[i]);
-    let shape = if parts.is_empty() {
-        i64::from(frame.bodies.shape[i])
-    } else {
-        -1
-    };
+    let shape = if parts.is_empty() { i64::from(frame.bodies.shape[i]) } else { -1 };
     let _ = write!(text, "{shape} {}", u32::from(!frame.bodies.dynamic[i]));
     if let Some(was) = was {
         let _ = write!(text, " {was}");
@@ -132,11 +128,7 @@ fn write_frame(text: &mut String, claim: Claim, number: usize, frame: &Frame) {
 /// A name as one word.
 fn word(name: &str) -> String {
     let fill = |c: char| if c.is_whitespace() { '_' } else { c };
-    if name.is_empty() {
-        "_".to_owned()
-    } else {
-        name.chars().map(fill).collect()
-    }
+    if name.is_empty() { "_".to_owned() } else { name.chars().map(fill).collect() }
 }
 
 /// `frame N COUNT I J …`, with `ns TIME` at the end if it likes, or `skip REASON`.
@@ -148,17 +140,12 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Answ
         Some("skip") => return Ok(ProgramAnswer::Skipped(words.collect::<Vec<_>>().join(" "))),
         Some("frame" | "same") => {}
         _ => {
-            return Err(wrong(format!(
-                "no answer; one is `frame {expected} COUNT I J …`"
-            )));
+            return Err(wrong(format!("no answer; one is `frame {expected} COUNT I J …`")));
         }
     }
     let mut number = |what: &str| -> Result<u64, AnswerError> {
-        let word = words
-            .next()
-            .ok_or_else(|| wrong(format!("ends before {what}")))?;
-        word.parse()
-            .map_err(|_| wrong(format!("`{word}` is no {what}")))
+        let word = words.next().ok_or_else(|| wrong(format!("ends before {what}")))?;
+        word.parse().map_err(|_| wrong(format!("`{word}` is no {what}")))
     };
     let found = number("frame number")?;
     if found != expected as u64 {
@@ -193,37 +180,19 @@ mod tests {
     fn invalid_answers_are_refused() {
         let pairs = |line: &str| decode(3, line.as_bytes());
         let answer = |pairs: &[[u32; 2]], ns| {
-            Ok(ProgramAnswer::Answer(Answer {
-                pairs: pairs.to_vec(),
-                ns,
-            }))
+            Ok(ProgramAnswer::Answer(Answer { pairs: pairs.to_vec(), ns }))
         };
         assert_eq!(pairs("frame 3 0"), answer(&[], None));
-        assert_eq!(
-            pairs("frame 3 2 0 1 4 5 ns 77\n"),
-            answer(&[[0, 1], [4, 5]], Some(77))
-        );
+        assert_eq!(pairs("frame 3 2 0 1 4 5 ns 77\n"), answer(&[[0, 1], [4, 5]], Some(77)));
         assert_eq!(
             [pairs("same 3"), pairs("same 2")],
-            [
-                Ok(ProgramAnswer::Same),
-                Err(AnswerError::OutOfTurn {
-                    expected: 3,
-                    found: 2
-                })
-            ]
+            [Ok(ProgramAnswer::Same), Err(AnswerError::OutOfTurn { expected: 3, found: 2 })]
         );
         assert_eq!(
             pairs("skip no such thing"),
             Ok(ProgramAnswer::Skipped("no such thing".to_owned()))
         );
-        assert_eq!(
-            pairs("frame 2 0"),
-            Err(AnswerError::OutOfTurn {
-                expected: 3,
-                found: 2
-            })
-        );
+        assert_eq!(pairs("frame 2 0"), Err(AnswerError::OutOfTurn { expected: 3, found: 2 }));
         for line in [
             "",
             "frame",
@@ -235,10 +204,7 @@ mod tests {
             "pairs 3 0",
             "frame 3 1 0 99999999999",
         ] {
-            assert!(
-                matches!(pairs(line), Err(AnswerError::Malformed { frame: 3, .. })),
-                "{line}"
-            );
+            assert!(matches!(pairs(line), Err(AnswerError::Malformed { frame: 3, .. })), "{line}");
         }
     }
 }

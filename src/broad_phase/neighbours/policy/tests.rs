@@ -33,11 +33,7 @@ fn frames(speeds: [f64; 2]) -> (u32, u32, Policy) {
             *since += 1;
             let drifts = speeds.map(|speed| speed * f64::from(*since));
             let [own, typical] = drifts;
-            let drift = if policy.radii == RadiusKind::Own {
-                own
-            } else {
-                typical
-            };
+            let drift = if policy.radii == RadiusKind::Own { own } else { typical };
             if drift < SKINS[policy.skin] {
                 policy.followed();
                 served += 1;
@@ -61,10 +57,7 @@ fn only_slow_bodies_are_followed() {
     for speed in [0.0, 0.001, 0.01, 0.03, 0.1] {
         let (made, served, _) = frames([speed; 2]);
         assert!(served >= 1990, "{speed}: {served}");
-        assert!(
-            f64::from(made) <= 2000.0 * speed / 0.06 + 2.0,
-            "{speed}: {made}"
-        );
+        assert!(f64::from(made) <= 2000.0 * speed / 0.06 + 2.0, "{speed}: {made}");
         assert!(made >= before, "{speed}: {made}, and {before} when slower");
         before = made;
     }
@@ -122,11 +115,7 @@ fn jumping_body_is_ignored() {
         (RadiusKind::Own, 1, [9.0, 0.1], [9.0, 0.1]),
         (RadiusKind::Typical, 1, [0.1, 9.0], [0.1, 9.0]),
     ] {
-        let policy = Policy {
-            radii,
-            served,
-            ..Policy::default()
-        };
+        let policy = Policy { radii, served, ..Policy::default() };
         let [own, typical] = drifts;
         assert_eq!(policy.speeds(LargestDrift { own, typical }), speeds);
     }
@@ -156,87 +145,17 @@ fn next_skin_is_the_cheapest() {
     let own = |skin| Some((RadiusKind::Own, skin));
     let typical = |skin| Some((RadiusKind::Typical, skin));
     for (at, served, drifts, candidates, pairs, next) in [
-        (
-            own(3),
-            2,
-            [0.3, INFINITE_DRIFT],
-            6,
-            3_837_626,
-            [own(4), None],
-        ),
-        (
-            own(3),
-            3,
-            [0.26, INFINITE_DRIFT],
-            4,
-            6_009_424,
-            [own(5), own(2)],
-        ),
-        (
-            own(0),
-            2,
-            [0.1, INFINITE_DRIFT],
-            5,
-            18_812_129,
-            [own(3), None],
-        ),
-        (
-            own(3),
-            10,
-            [0.27, INFINITE_DRIFT],
-            6,
-            2_195_551,
-            [own(4), own(3)],
-        ),
-        (
-            own(2),
-            5,
-            [0.2, INFINITE_DRIFT],
-            0,
-            7_728_640,
-            [own(1), None],
-        ),
-        (
-            own(3),
-            2,
-            [0.4, INFINITE_DRIFT],
-            3,
-            1_434_156,
-            [own(3), None],
-        ),
-        (
-            own(4),
-            2,
-            [0.33, INFINITE_DRIFT],
-            1,
-            4_149_165,
-            [own(5), None],
-        ),
+        (own(3), 2, [0.3, INFINITE_DRIFT], 6, 3_837_626, [own(4), None]),
+        (own(3), 3, [0.26, INFINITE_DRIFT], 4, 6_009_424, [own(5), own(2)]),
+        (own(0), 2, [0.1, INFINITE_DRIFT], 5, 18_812_129, [own(3), None]),
+        (own(3), 10, [0.27, INFINITE_DRIFT], 6, 2_195_551, [own(4), own(3)]),
+        (own(2), 5, [0.2, INFINITE_DRIFT], 0, 7_728_640, [own(1), None]),
+        (own(3), 2, [0.4, INFINITE_DRIFT], 3, 1_434_156, [own(3), None]),
+        (own(4), 2, [0.33, INFINITE_DRIFT], 1, 4_149_165, [own(5), None]),
         (own(3), 3, [9.0, 0.1], 6, 7_692_074, [own(4), None]),
-        (
-            typical(5),
-            100,
-            [INFINITE_DRIFT, 0.376],
-            10,
-            2_458_240,
-            [typical(2), typical(1)],
-        ),
-        (
-            typical(1),
-            2,
-            [0.02, 0.251],
-            6,
-            1_661_698,
-            [typical(5), typical(3)],
-        ),
-        (
-            own(3),
-            1,
-            [0.4, 0.05],
-            6,
-            1_862_170,
-            [typical(5), typical(4)],
-        ),
+        (typical(5), 100, [INFINITE_DRIFT, 0.376], 10, 2_458_240, [typical(2), typical(1)]),
+        (typical(1), 2, [0.02, 0.251], 6, 1_661_698, [typical(5), typical(3)]),
+        (own(3), 1, [0.4, 0.05], 6, 1_862_170, [typical(5), typical(4)]),
         (own(3), 3, [0.3, 0.25], 8, 658_971, [typical(5), own(4)]),
         (own(3), 3, [0.3, 0.25], 8, 6_635_479, [own(4), typical(3)]),
     ] {
@@ -268,36 +187,21 @@ fn long_boxes_use_length_skins() {
     let mut policy = Policy::default();
     policy.turn_to(false, || unreachable!("they are balls as before"));
     policy.turn_to(true, || long);
-    assert_eq!(
-        (policy.skin(), policy.skins().len()),
-        (Skin::length(0.75), 8)
-    );
+    assert_eq!((policy.skin(), policy.skins().len()), (Skin::length(0.75), 8));
     assert!((policy.more_candidates() - (1.0f64 + 0.25 / 8.0).powi(3)).abs() < 1e-12);
     policy.turn_to(true, || unreachable!("they are boxes as before"));
     // Slow ones with many candidates, of which the longest sides would make more.
     (policy.served, policy.wait) = (2, 0);
     let slow = list(3_000_000, 200_000_000, [0.01, 0.26]);
-    policy.ended(&EndedList {
-        sizes: long,
-        ..slow
-    });
-    assert_eq!(
-        (policy.radii, SKINS[policy.skin]),
-        (RadiusKind::Typical, 0.75)
-    );
+    policy.ended(&EndedList { sizes: long, ..slow });
+    assert_eq!((policy.radii, SKINS[policy.skin]), (RadiusKind::Typical, 0.75));
     policy.overflowed();
     assert_eq!((policy.radii, policy.skin), (RadiusKind::Typical, 0));
     policy.skin = 7;
     policy.turn_to(false, || cubes);
-    assert_eq!(
-        (policy.radii, SKINS[policy.skin]),
-        (RadiusKind::Typical, 0.375)
-    );
+    assert_eq!((policy.radii, SKINS[policy.skin]), (RadiusKind::Typical, 0.375));
     assert_eq!(policy.more_candidates(), policy.wider());
     let mut policy = Policy::default();
     policy.turn_to(true, || giant);
-    assert_eq!(
-        (policy.skin(), policy.skins().len()),
-        (Skin::share(0.25), 6)
-    );
+    assert_eq!((policy.skin(), policy.skins().len()), (Skin::share(0.25), 6));
 }

@@ -47,11 +47,7 @@ impl Needles {
         let boxes: Vec<Aabb> = (0..620).map(around).collect();
         let mut bodies = TrackedBodies::new(500, vec![[0.0; 4]; 620]);
         bodies.finder = Neighbours::new(Volume::Cube);
-        Self {
-            bodies,
-            boxes,
-            are_long: true,
-        }
+        Self { bodies, boxes, are_long: true }
     }
 
     fn step(&mut self) {
@@ -120,11 +116,7 @@ fn bytes_count_grown_boxes_too() {
 /// One of the ends of a box.
 fn end(aabb: &mut Aabb, axis: usize, is_upper: bool) -> &mut f32 {
     let Aabb { min, max } = aabb;
-    if is_upper {
-        &mut max[axis]
-    } else {
-        &mut min[axis]
-    }
+    if is_upper { &mut max[axis] } else { &mut min[axis] }
 }
 
 /// The cube about a box stays as it is when a short side grows.
@@ -140,11 +132,7 @@ fn long_list_lasts_until_end_leaves() {
             needles.step();
         }
         let to = *end(&mut needles.grown()[body], axis, is_upper);
-        let beyond = if is_upper {
-            to.next_up()
-        } else {
-            to.next_down()
-        };
+        let beyond = if is_upper { to.next_up() } else { to.next_down() };
         for (to, state) in [(to, ListState::Followed), (beyond, ListState::Made)] {
             needles.step();
             *end(&mut needles.boxes[body], axis, is_upper) = to;
@@ -176,10 +164,6 @@ fn only_long_boxes_make_box_lists() {
         }
         let finder = &needles.bodies.finder;
         let found = (finder.state, finder.policy.is_by_boxes());
-        assert_eq!(
-            found,
-            (ListState::Followed, by_boxes),
-            "{are_long}, {jumps}"
-        );
+        assert_eq!(found, (ListState::Followed, by_boxes), "{are_long}, {jumps}");
     }
 }

@@ -136,15 +136,9 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for CountingDis
         let calls = &self.calls;
         let mut rejected = false;
         if !calls.is(Filtering::Off) {
-            let told = if calls.without_margin.load(Ordering::Relaxed) {
-                0.0
-            } else {
-                prediction
-            };
+            let told = if calls.without_margin.load(Ordering::Relaxed) { 0.0 } else { prediction };
             let start = calls.start();
-            let answer = self
-                .culling
-                .contact_manifolds(pos12, g1, g2, told, manifolds, workspace);
+            let answer = self.culling.contact_manifolds(pos12, g1, g2, told, manifolds, workspace);
             calls.asked.add(since(start));
             rejected = answer.is_ok();
             if rejected && calls.is(Filtering::On) {

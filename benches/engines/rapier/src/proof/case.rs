@@ -7,17 +7,12 @@ use crate::case::CaseBody;
 /// Both colliders as they lie; none if one of them has no volume, which can't be dropped.
 #[must_use]
 pub fn case_of(world: &PhysicsWorld, pair: [ColliderHandle; 2]) -> Vec<CaseBody> {
-    let colliders: Vec<_> = pair
-        .iter()
-        .filter_map(|&c| world.colliders.get(c))
-        .collect();
+    let colliders: Vec<_> = pair.iter().filter_map(|&c| world.colliders.get(c)).collect();
     let Some(first) = colliders.first() else {
         return Vec::new();
     };
     let body = |collider: &&Collider| {
-        let parent = collider
-            .parent()
-            .and_then(|parent| world.bodies.get(parent));
+        let parent = collider.parent().and_then(|parent| world.bodies.get(parent));
         Some(CaseBody {
             shape: volume(collider.shape())?,
             fixed: parent.is_none_or(RigidBody::is_fixed),

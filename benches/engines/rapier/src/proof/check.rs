@@ -13,10 +13,7 @@ pub fn check(
     steps: usize,
     mut dropped: impl FnMut(&PhysicsWorld, [ColliderHandle; 2]),
 ) -> Check {
-    let mut check = Check {
-        steps,
-        ..Check::default()
-    };
+    let mut check = Check { steps, ..Check::default() };
     for step in 0..steps {
         let before = sim.calls().narrow();
         let [start, free] = sim.unfiltered().map(|stage| stage.world);
@@ -42,9 +39,7 @@ pub fn check(
             }
         }
         let differs = |pair: &&[ColliderHandle; 2]| {
-            found
-                .get(*pair)
-                .is_some_and(|touch| *touch != expected[*pair])
+            found.get(*pair).is_some_and(|touch| *touch != expected[*pair])
         };
         check.contacts_that_differ += expected.keys().filter(differs).count() as u64;
         check.bodies_that_differ += bodies_that_differ(&filtered.bodies, &free.bodies) as u64;

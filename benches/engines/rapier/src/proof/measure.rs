@@ -50,9 +50,7 @@ pub fn measure(plan: Plan, forms: &[TriangleMesh], modes: &[Mode], steps: usize)
 fn compare(lanes: &mut [Lane]) {
     for i in 0..lanes.len() {
         let mode = lanes[i].sim.mode;
-        let partner = lanes
-            .iter()
-            .find(|other| other.sim.mode == mode.unfiltered());
+        let partner = lanes.iter().find(|other| other.sim.mode == mode.unfiltered());
         let Some(partner) = partner.filter(|_| lanes[i].equal) else {
             continue;
         };
@@ -64,9 +62,7 @@ fn compare(lanes: &mut [Lane]) {
 
 fn share(lane: &Lane, lanes: &[Lane]) -> Share {
     let (calls, steps) = (lane.sim.calls(), lane.steps.len().max(1) as f64);
-    let partner = lanes
-        .iter()
-        .find(|other| other.sim.mode == lane.sim.mode.unfiltered());
+    let partner = lanes.iter().find(|other| other.sim.mode == lane.sim.mode.unfiltered());
     let checked = |lane: &Lane| lane.sim.calls().narrow() as f64;
     let fewer = partner.map_or(0.0, |partner| checked(partner) - checked(lane));
     let of = |part: fn(&StepMs) -> f64| lane.steps.iter().map(part).collect::<Vec<f64>>();
@@ -101,10 +97,7 @@ fn median(mut numbers: Vec<f64>) -> f64 {
 /// seed.
 #[must_use]
 pub fn calibrate(plan: Plan, forms: &[TriangleMesh], steps: usize) -> Prices {
-    let plan = Plan {
-        seed: plan.seed + 1,
-        ..plan
-    };
+    let plan = Plan { seed: plan.seed + 1, ..plan };
     let mut sim = Sim::new(plan, forms, Mode::Dispatcher);
     sim.calls().set_filtering(Filtering::Shadow);
     sim.calls().set_timing(true);

@@ -70,11 +70,7 @@ impl Stage {
     /// If one of `forms` is no body at all: they are this program's own.
     #[must_use]
     pub fn new(plan: Plan, forms: &[TriangleMesh], hooks: ActiveHooks) -> Self {
-        let kinds = if plan.scene == Scene::Zoo {
-            Kind::ALL
-        } else {
-            &[plan.kind]
-        };
+        let kinds = if plan.scene == Scene::Zoo { Kind::ALL } else { &[plan.kind] };
         let made = |form| kinds.iter().map(move |&kind| made_of(kind, form, hooks));
         let colliders = forms.iter().flat_map(made).collect();
         let mut stage = Self {
@@ -123,20 +119,12 @@ impl Stage {
         let length = rows as Real * SPACING;
         let body = RigidBodyBuilder::kinematic_velocity_based().linvel(Vector::X * 1.5);
         let body = self.world.insert_body(body);
-        self.wall(
-            Some(body),
-            Vector::Y * -WALL,
-            Vector::new(length / 2.0 + 1.0, WALL, width),
-        );
+        self.wall(Some(body), Vector::Y * -WALL, Vector::new(length / 2.0 + 1.0, WALL, width));
         for side in [-1.0, 1.0] {
             let place = Vector::new(0.0, 1.0, side * (width / 2.0 + WALL));
             self.wall(None, place, Vector::new(length / 2.0 + 1.0, 2.0, WALL));
         }
-        self.belt = Some(Belt {
-            body,
-            length,
-            width,
-        });
+        self.belt = Some(Belt { body, length, width });
         for i in 0..self.plan.bodies {
             let (row, column, layer) = (i / 8, i % 4, i / 4 % 2);
             let place = Vector::new(
@@ -181,22 +169,11 @@ impl Stage {
 
     /// The first `count` walls of a box: the floor first, the ceiling last.
     pub(super) fn box_around(&mut self, body: Option<RigidBodyHandle>, half: Vector, count: usize) {
-        let sides = [
-            -Vector::Y,
-            Vector::X,
-            -Vector::X,
-            Vector::Z,
-            -Vector::Z,
-            Vector::Y,
-        ];
+        let sides = [-Vector::Y, Vector::X, -Vector::X, Vector::Z, -Vector::Z, Vector::Y];
         for side in &sides[..count] {
             let flat = Vector::ONE - side.abs();
             let place = *side * (half + Vector::splat(WALL));
-            let open = if count == 5 {
-                Vector::Y * half.y
-            } else {
-                Vector::ZERO
-            };
+            let open = if count == 5 { Vector::Y * half.y } else { Vector::ZERO };
             let tall = if side.y == 0.0 { open } else { Vector::ZERO };
             let extent = flat * (half + Vector::splat(2.0 * WALL) + tall) + side.abs() * WALL;
             self.wall(body, place + tall, extent);
@@ -205,13 +182,8 @@ impl Stage {
 
     fn wall(&mut self, body: Option<RigidBodyHandle>, place: Vector, half: Vector) {
         let wall = ColliderBuilder::cuboid(half.x, half.y, half.z).translation(place);
-        let bounce = if self.plan.scene == Scene::Cloud {
-            1.0
-        } else {
-            0.0
-        };
-        self.world
-            .insert_collider(wall.restitution(bounce).friction(0.5), body);
+        let bounce = if self.plan.scene == Scene::Cloud { 1.0 } else { 0.0 };
+        self.world.insert_collider(wall.restitution(bounce).friction(0.5), body);
     }
 
     /// What happens from outside between two steps.
@@ -225,12 +197,7 @@ impl Stage {
 
     /// The belt is put back, what fell off is replaced.
     fn convey(&mut self) {
-        let Some(Belt {
-            body,
-            length,
-            width,
-        }) = self.belt
-        else {
+        let Some(Belt { body, length, width }) = self.belt else {
             return;
         };
         if let Some(belt) = self.world.bodies.get_mut(body) {
@@ -239,13 +206,8 @@ impl Stage {
         let gone = |(_, rb): &(RigidBodyHandle, &RigidBody)| {
             rb.is_dynamic() && (rb.translation().x > length / 2.0 || rb.translation().y < -3.0)
         };
-        let gone: Vec<_> = self
-            .world
-            .bodies
-            .iter()
-            .filter(gone)
-            .map(|(handle, _)| handle)
-            .collect();
+        let gone: Vec<_> =
+            self.world.bodies.iter().filter(gone).map(|(handle, _)| handle).collect();
         for handle in gone {
             self.world.remove_body(handle);
             let z = self.random.sign() * (width / 2.0 - 0.6);
@@ -291,12 +253,7 @@ fn made_of(kind: Kind, form: &TriangleMesh, hooks: ActiveHooks) -> Vec<Collider>
         // Two hulls that share the cut through the middle.
         let cut = |side: Real| -> Vec<Vector> {
             let middle = points.iter().filter(|p| p.x.abs() < 0.15);
-            points
-                .iter()
-                .filter(|p| p.x * side > 0.0)
-                .chain(middle)
-                .copied()
-                .collect()
+            points.iter().filter(|p| p.x * side > 0.0).chain(middle).copied().collect()
         };
         [hull(&cut(-1.0)), hull(&cut(1.0))]
     };
@@ -307,9 +264,7 @@ fn made_of(kind: Kind, form: &TriangleMesh, hooks: ActiveHooks) -> Vec<Collider>
             vec![mesh.expect("every form has triangles")]
         }
         Kind::Compound => {
-            vec![SharedShape::compound(
-                halves().map(|half| (Pose::IDENTITY, half)).to_vec(),
-            )]
+            vec![SharedShape::compound(halves().map(|half| (Pose::IDENTITY, half)).to_vec())]
         }
         Kind::Colliders => halves().to_vec(),
         Kind::Box => {
@@ -318,12 +273,7 @@ fn made_of(kind: Kind, form: &TriangleMesh, hooks: ActiveHooks) -> Vec<Collider>
         }
         Kind::Ball => vec![SharedShape::ball(0.5)],
     };
-    let collider = |shape| {
-        ColliderBuilder::new(shape)
-            .friction(0.5)
-            .active_hooks(hooks)
-            .build()
-    };
+    let collider = |shape| ColliderBuilder::new(shape).friction(0.5).active_hooks(hooks).build();
     shapes.into_iter().map(collider).collect()
 }
 

@@ -55,11 +55,7 @@ impl Sim {
     /// Sets the scene up.
     #[must_use]
     pub fn new(plan: Plan, forms: &[TriangleMesh], mode: Mode) -> Self {
-        let hooks = if mode == Mode::Hook {
-            HOOKS
-        } else {
-            ActiveHooks::empty()
-        };
+        let hooks = if mode == Mode::Hook { HOOKS } else { ActiveHooks::empty() };
         let mut stage = Stage::new(plan, forms, hooks);
         let counted = CountingDispatcher::default();
         stage.world.narrow_phase = NarrowPhase::with_query_dispatcher(counted.clone());
@@ -70,13 +66,7 @@ impl Sim {
         if mode.dispatches() {
             counted.calls.set_filtering(Filtering::On);
         }
-        Self {
-            stage,
-            mode,
-            counted,
-            filter: Filter::default(),
-            without_margin: false,
-        }
+        Self { stage, mode, counted, filter: Filter::default(), without_margin: false }
     }
 
     /// The same with a bug planted: margins are left out.
@@ -159,17 +149,11 @@ pub fn touches(world: &PhysicsWorld) -> Touches {
                 point.data.tangent_impulse.y,
             );
             let places = [point.local_p1, point.local_p2, impulses];
-            places
-                .map(|v| v.to_array().map(|x| x.to_bits()))
-                .hash(&mut hash);
+            places.map(|v| v.to_array().map(|x| x.to_bits())).hash(&mut hash);
             point.dist.to_bits().hash(&mut hash);
         }
         let touch = Touch {
-            points: pair
-                .manifolds()
-                .iter()
-                .map(|manifold| manifold.points.len())
-                .sum(),
+            points: pair.manifolds().iter().map(|manifold| manifold.points.len()).sum(),
             active: pair.has_any_active_contact(),
             bits: hash.finish(),
         };
@@ -182,10 +166,7 @@ pub fn touches(world: &PhysicsWorld) -> Touches {
 #[must_use]
 pub fn overlaps(world: &PhysicsWorld) -> HashSet<[ColliderHandle; 2]> {
     let pairs = world.narrow_phase.intersection_pairs();
-    pairs
-        .filter(|(.., overlap)| *overlap)
-        .map(|(a, b, _)| [a, b])
-        .collect()
+    pairs.filter(|(.., overlap)| *overlap).map(|(a, b, _)| [a, b]).collect()
 }
 
 /// Bodies whose pose or velocities differ in a bit.

@@ -9,18 +9,12 @@ impl Stage {
     pub(super) fn zoo(&mut self) {
         let side = self.lattice(0.8, Vector::ZERO, 2.0);
         self.box_around(None, Vector::splat(side / 2.0), 6);
-        self.world
-            .integration_parameters
-            .normalized_prediction_distance = 0.05;
+        self.world.integration_parameters.normalized_prediction_distance = 0.05;
     }
 
     /// A fifth of the bodies is disturbed in one of many ways.
     pub(super) fn disturb(&mut self) {
-        let bodies: Vec<_> = self
-            .world
-            .rigid_bodies()
-            .map(|(handle, _)| handle)
-            .collect();
+        let bodies: Vec<_> = self.world.rigid_bodies().map(|(handle, _)| handle).collect();
         let reach = (bodies.len() as Real).cbrt() / 2.0;
         for handle in bodies {
             if self.random.below(5) > 0 {

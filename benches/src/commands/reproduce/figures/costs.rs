@@ -55,27 +55,19 @@ fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
     let time = |cost: &Cost| cost.frame.measured.mean;
     let mut times: Vec<f64> = costs.iter().map(|&cost| time(cost)).collect();
     times.sort_by(f64::total_cmp);
-    let gap = times
-        .windows(2)
-        .max_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
+    let gap = times.windows(2).max_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
     let border = match (gap, times.first(), times.last()) {
         (Some(gap), Some(first), Some(last)) if *last >= LEAST_TIME_RATIO * first => gap[0],
         _ => f64::INFINITY,
     };
-    costs
-        .iter()
-        .copied()
-        .partition(|&cost| time(cost) <= border)
+    costs.iter().copied().partition(|&cost| time(cost) <= border)
 }
 
 /// The legend of the terms that there are; returns what is left of the area.
 fn keys<'a>(area: &Area<'a>, costs: &[&Cost]) -> Result<Area<'a>, super::DrawError> {
     let there = |part: &&CostPart| costs.iter().any(|cost| (part.of)(&cost.terms) > 0.0);
-    let parts: Vec<_> = PARTS
-        .iter()
-        .filter(there)
-        .map(|part| (part.name, part.colour, false))
-        .collect();
+    let parts: Vec<_> =
+        PARTS.iter().filter(there).map(|part| (part.name, part.colour, false)).collect();
     let rows: Vec<_> = parts.chunks(5).collect();
     let (keys, body) = area.split_vertically(10 + 20 * rows.len() as i32);
     for (row, parts) in rows.iter().enumerate() {
@@ -134,10 +126,7 @@ fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost, name: String) -> DrawR
     chart.draw_series([Circle::new((middle, mean), 4, BLACK.filled())])?;
     let digits = usize::from(mean < 10.0);
     let value = format!("{mean:.digits$}");
-    let (top, above) = (
-        (middle, hi.max(base)),
-        anchored(11, HPos::Center, VPos::Bottom),
-    );
+    let (top, above) = ((middle, hi.max(base)), anchored(11, HPos::Center, VPos::Bottom));
     label(chart.plotting_area(), &top, (0, -8), value, above)?;
     let (foot, below) = ((middle, 0.0), anchored(12, HPos::Center, VPos::Top));
     label(chart.plotting_area(), &foot, (0, 8), name, below)
@@ -195,16 +184,10 @@ mod tests {
             [19.0, 22.0, 56.0, 245.0].map(|us| cost(Strategy::Sphere, Volume::Sphere, us));
         let all: Vec<&Cost> = spheres.iter().collect();
         let times = |costs: &[&Cost]| -> Vec<f64> {
-            costs
-                .iter()
-                .map(|cost| (1e6 * cost.frame.measured.mean).round())
-                .collect()
+            costs.iter().map(|cost| (1e6 * cost.frame.measured.mean).round()).collect()
         };
         let (fast, slow) = apart(&all);
-        assert_eq!(
-            (times(&fast), times(&slow)),
-            (vec![19.0, 22.0, 56.0], vec![245.0])
-        );
+        assert_eq!((times(&fast), times(&slow)), (vec![19.0, 22.0, 56.0], vec![245.0]));
         // Within four times, one scale serves all.
         let (fast, slow) = apart(&all[..3]);
         assert_eq!((fast.len(), slow.len()), (3, 0));
@@ -219,26 +202,17 @@ mod tests {
             (Strategy::Obb, Volume::Obb),
         ];
         let costs = named.map(|(strategy, volume)| cost(strategy, volume, 50.0));
-        let drawn = svg((1060, 480), |area| {
-            draw_strategies(area, "s", &costs.iter().collect::<Vec<_>>())
-        });
+        let drawn =
+            svg((1060, 480), |area| draw_strategies(area, "s", &costs.iter().collect::<Vec<_>>()));
         let drawn = drawn.unwrap_or_default();
         let lines: Vec<&str> = drawn.lines().map(str::trim).collect();
         for (strategy, _) in named {
-            assert!(
-                lines.contains(&strategy.name()),
-                "{}: {drawn}",
-                strategy.name()
-            );
+            assert!(lines.contains(&strategy.name()), "{}: {drawn}", strategy.name());
         }
         for colour in [UPDATES[2], TESTS[2]] {
             let fill = format!("fill=\"#{:02X}{:02X}{:02X}\"", colour.0, colour.1, colour.2);
             let rectangles = lines.iter().filter(|line| line.starts_with("<rect"));
-            assert_eq!(
-                rectangles.filter(|line| line.contains(&fill)).count(),
-                3,
-                "{fill}"
-            );
+            assert_eq!(rectangles.filter(|line| line.contains(&fill)).count(), 3, "{fill}");
         }
     }
 

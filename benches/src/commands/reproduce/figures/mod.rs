@@ -22,11 +22,7 @@ type DrawError = Box<dyn std::error::Error + Send + Sync>;
 type DrawResult = Result<(), DrawError>;
 
 /// A figure's file name, size, and what draws it.
-type Figure = (
-    &'static str,
-    (u32, u32),
-    fn(&Area<'_>, &Drawings) -> DrawResult,
-);
+type Figure = (&'static str, (u32, u32), fn(&Area<'_>, &Drawings) -> DrawResult);
 
 const FIGURES: [Figure; 5] = [
     ("frame_rates", (1000, 620), frame_rates::draw),
@@ -54,10 +50,8 @@ pub fn draw_all(drawings: &Drawings) -> miette::Result<Vec<(String, String)>> {
 /// # Errors
 /// What can't be drawn.
 pub fn draw_costs(scene: &str, costs: &[&Cost]) -> miette::Result<String> {
-    svg((1060, 480), |area| {
-        costs::draw_strategies(area, scene, costs)
-    })
-    .map_err(|error| miette::miette!("cannot draw the costs: {error}"))
+    svg((1060, 480), |area| costs::draw_strategies(area, scene, costs))
+        .map_err(|error| miette::miette!("cannot draw the costs: {error}"))
 }
 
 fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> DrawResult) -> Result<String, DrawError> {

@@ -76,10 +76,8 @@ where
     }))?;
     let dot = |cell| Circle::new(point(cell), 5, colour.filled());
     chart.draw_series(cells.iter().map(dot))?;
-    let paper: Vec<_> = cells
-        .iter()
-        .filter_map(|cell| Some((cell.bodies as f64, cell.paper?)))
-        .collect();
+    let paper: Vec<_> =
+        cells.iter().filter_map(|cell| Some((cell.bodies as f64, cell.paper?))).collect();
     let thin = colour.stroke_width(1);
     chart.draw_series(DashedLineSeries::new(paper.clone(), 5, 4, thin))?;
     let ring = |at| Circle::new(at, 5, colour.stroke_width(2));

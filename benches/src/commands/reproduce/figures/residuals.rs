@@ -19,15 +19,9 @@ pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
     )?;
     let (keys, body) = body.split_vertically(30);
     let (scenes, strategies) = (tables.scenes(), tables.strategies());
-    let named: Vec<_> = strategies
-        .iter()
-        .map(|&s| (paper_name(s), colour(s), false))
-        .collect();
+    let named: Vec<_> = strategies.iter().map(|&s| (paper_name(s), colour(s), false)).collect();
     legend(&keys, (14, 12), &named)?;
-    let sizes = tables
-        .costs
-        .iter()
-        .map(|cost| cost.frame.residual.mean.abs());
+    let sizes = tables.costs.iter().map(|cost| cost.frame.residual.mean.abs());
     let limit = 120.0 * sizes.fold(0.1, f64::max);
     let mut chart = ChartBuilder::on(&body)
         .margin(12)
@@ -50,10 +44,7 @@ pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
                 mark(&mut chart, cost, x)?;
             }
         }
-        let (at, style) = (
-            (group as f64 + 0.5, -limit),
-            anchored(13, HPos::Center, VPos::Top),
-        );
+        let (at, style) = ((group as f64 + 0.5, -limit), anchored(13, HPos::Center, VPos::Top));
         let name = (*scene).to_owned();
         label(chart.plotting_area(), &at, (0, 8), name, style)?;
     }
@@ -69,10 +60,6 @@ fn mark(chart: &mut Chart<'_, '_>, cost: &Cost, x: f64) -> DrawResult {
         vec![(x, ends[0]), (x, ends[1])],
         colour.stroke_width(2),
     )])?;
-    chart.draw_series([Circle::new(
-        (x, 100.0 * cost.frame.residual.mean),
-        5,
-        colour.filled(),
-    )])?;
+    chart.draw_series([Circle::new((x, 100.0 * cost.frame.residual.mean), 5, colour.filled())])?;
     Ok(())
 }

@@ -15,10 +15,7 @@ const RANGE: [f64; 2] = [0.7, 1.3];
 
 /// Percent over N.
 pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
-    let body = titled(
-        area,
-        "Share of sphere tests that hit: a fixed box has one, whatever N",
-    )?;
+    let body = titled(area, "Share of sphere tests that hit: a fixed box has one, whatever N")?;
     let (keys, body) = body.split_vertically(30);
     let own = colour(Strategy::Sphere);
     legend(

@@ -92,9 +92,7 @@ fn of(terms: &[Terms], term: fn(&Terms) -> f64, which: fn(Volume) -> bool) -> f6
 
 /// Text at a size, dark grey.
 pub fn text(size: i32) -> TextStyle<'static> {
-    ("sans-serif", size)
-        .into_font()
-        .color(&RGBColor(40, 40, 40))
+    ("sans-serif", size).into_font().color(&RGBColor(40, 40, 40))
 }
 
 /// Text with an anchor.
@@ -115,11 +113,7 @@ pub fn quiet<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
 
 /// A finite interval's ends, or the mean twice for one seed alone.
 pub fn ends(estimate: &Estimate) -> [f64; 2] {
-    if estimate.half_width.is_finite() {
-        estimate.interval()
-    } else {
-        [estimate.mean; 2]
-    }
+    if estimate.half_width.is_finite() { estimate.interval() } else { [estimate.mean; 2] }
 }
 
 /// A title over a figure; returns what is left of the area.
@@ -136,11 +130,8 @@ pub fn legend(
     keys: &[(&str, RGBColor, bool)],
 ) -> super::DrawResult {
     for (name, colour, hollow) in keys {
-        let style = if *hollow {
-            ShapeStyle::from(colour).stroke_width(2)
-        } else {
-            colour.filled()
-        };
+        let style =
+            if *hollow { ShapeStyle::from(colour).stroke_width(2) } else { colour.filled() };
         area.draw(&Circle::new((at.0 + 6, at.1), 5, style))?;
         area.draw(&Text::new(
             (*name).to_owned(),
@@ -162,7 +153,6 @@ pub fn label<CT: CoordTranslate>(
 ) -> super::DrawResult {
     let (at, origin) = (area.map_coordinate(at), area.get_base_pixel());
     let place = (at.0 - origin.0 + offset.0, at.1 - origin.1 + offset.1);
-    area.strip_coord_spec()
-        .draw(&Text::new(text, place, style))?;
+    area.strip_coord_spec().draw(&Text::new(text, place, style))?;
     Ok(())
 }

@@ -20,10 +20,8 @@ pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {
         "Collisions detected in percent of tests (ALL S-DOP: list entries count as tests)",
     )?;
     let (keys, body) = body.split_vertically(52);
-    let filled: Vec<_> = TABLE_1_STRATEGIES
-        .iter()
-        .map(|&s| (paper_name(s), colour(s), false))
-        .collect();
+    let filled: Vec<_> =
+        TABLE_1_STRATEGIES.iter().map(|&s| (paper_name(s), colour(s), false)).collect();
     legend(&keys, (14, 12), &filled)?;
     legend(
         &keys,

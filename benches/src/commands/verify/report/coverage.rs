@@ -66,12 +66,9 @@ impl Coverage {
         rotation: &Rotation,
     ) -> Self {
         let all = matrix.fold(rotation, |_| ());
-        let all = all
-            .first()
-            .map_or_else(MatrixPart::default, |(_, all)| *all);
-        let unrefined = Strategy::ALL
-            .iter()
-            .filter(|strategy| !strategy.scheme().has_overlap_test());
+        let all = all.first().map_or_else(MatrixPart::default, |(_, all)| *all);
+        let unrefined =
+            Strategy::ALL.iter().filter(|strategy| !strategy.scheme().has_overlap_test());
         let unrefined: Vec<&str> = unrefined.map(|strategy| strategy.name()).collect();
         Self {
             cells: all.cells,
@@ -162,10 +159,7 @@ fn rows(folded: impl IntoIterator<Item = ((String, String), MatrixPart)>) -> Vec
         let part = Part { name: part, filled };
         match rows.iter_mut().find(|row| row.name == name) {
             Some(row) => row.parts.push(part),
-            None => rows.push(CoverageLine {
-                name,
-                parts: vec![part],
-            }),
+            None => rows.push(CoverageLine { name, parts: vec![part] }),
         }
     }
     rows
@@ -193,11 +187,7 @@ fn threads(number: usize) -> String {
 fn box_part(cell: &BoxCell, boxes: &BoxLedger) -> ((String, String), MatrixPart) {
     let line = format!("{} {}", cell.tier, threads(cell.threads));
     let lists = boxes.lists(cell);
-    let filled = MatrixPart {
-        cells: 1,
-        filled: u64::from(lists > 0),
-        fewest: lists,
-    };
+    let filled = MatrixPart { cells: 1, filled: u64::from(lists > 0), fewest: lists };
     ((line, cell.finder.to_string()), filled)
 }
 
@@ -240,9 +230,5 @@ fn box_name(cell: &BoxCell) -> String {
 
 fn name(cell: &Cell) -> String {
     let (strategy, finder) = (strategy(cell), cell.finder);
-    format!(
-        "{strategy}, {finder}, k = {}, {}",
-        variant(cell),
-        mode(cell)
-    )
+    format!("{strategy}, {finder}, k = {}, {}", variant(cell), mode(cell))
 }

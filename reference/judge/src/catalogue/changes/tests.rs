@@ -64,11 +64,9 @@ impl Contestant for StaleCuller {
             }
         }
         self.kept = match self.keeps {
-            KeptBound::First => old
-                .iter()
-                .zip(&self.given)
-                .map(|(old, given)| old.unwrap_or(*given))
-                .collect(),
+            KeptBound::First => {
+                old.iter().zip(&self.given).map(|(old, given)| old.unwrap_or(*given)).collect()
+            }
             _ => self.given.clone(),
         };
         self.was = None;
@@ -112,10 +110,7 @@ fn stale_ends_are_caught() {
         "stale/rebase",
         "stale/all-at-once",
     ] {
-        assert!(
-            passes(group, KeptBound::Nothing, &[0, 1, 2, 3, 4, 5]),
-            "{group}"
-        );
+        assert!(passes(group, KeptBound::Nothing, &[0, 1, 2, 3, 4, 5]), "{group}");
         for axis in 0..3 {
             for ends in [vec![axis], vec![axis + 3], vec![axis, axis + 3]] {
                 for keeps in [KeptBound::Body, KeptBound::Number, KeptBound::First] {

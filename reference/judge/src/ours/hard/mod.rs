@@ -81,9 +81,7 @@ impl HardCaseGroup {
     /// A form can't be built.
     pub fn cases(&self, k: DirectionSet, axes: Axes) -> Result<HardCases, HardCaseError> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
-        Ok(self
-            .recipe
-            .cases(&self.forms, &self.contacts, (k, axes), &mut rng)?)
+        Ok(self.recipe.cases(&self.forms, &self.contacts, (k, axes), &mut rng)?)
     }
 
     /// The exact answers for one or-DOP, one per frame, run by run.

@@ -100,37 +100,20 @@ impl Recipe {
                 Ok(quadruples(exact(partners + 1, rng)?, nudged, rng))
             }
             Self::Lattice { edge } => Ok(lattice(exact(1, rng)?, edge, rng)),
-            Self::Borders {
-                scenes,
-                divided,
-                most,
-            } => {
+            Self::Borders { scenes, divided, most } => {
                 let drawn = (0..scenes).map(|n| border(n < divided, most, rng));
                 bars(drawn.collect(), k, axes)
             }
-            Self::Probe {
-                frames,
-                partners,
-                first_is_probe,
-            } => {
+            Self::Probe { frames, partners, first_is_probe } => {
                 let shapes = forms::build(forms, 2, k, axes, rng)?;
                 let run = |n: usize| {
-                    let shape = if first_is_probe {
-                        0
-                    } else {
-                        n % shapes.built.len()
-                    };
+                    let shape = if first_is_probe { 0 } else { n % shapes.built.len() };
                     vec![probe(&shapes, contacts, shape, partners, rng)]
                 };
                 let runs = (0..frames).map(run).collect();
                 Ok(HardCases { shapes, runs })
             }
-            Self::Chain {
-                ref bodies,
-                copies,
-                stacked,
-                jumps,
-            } => {
+            Self::Chain { ref bodies, copies, stacked, jumps } => {
                 let shapes = forms::build(forms, 2, k, axes, rng)?;
                 let run = |&n: &usize| {
                     let first = chain(&shapes, contacts, n, (copies, stacked), rng);
@@ -197,11 +180,7 @@ fn quadruple(rng: &mut impl Rng) -> ([f32; 3], f32) {
         let [m, n, p, q]: [i64; 4] = std::array::from_fn(|_| rng.random_range(-2047..=2047));
         let length = m * m + n * n + p * p + q * q;
         if (1 << 22..1 << 24).contains(&length) {
-            let d = [
-                m * m + n * n - p * p - q * q,
-                2 * (m * q + n * p),
-                2 * (n * q - m * p),
-            ];
+            let d = [m * m + n * n - p * p - q * q, 2 * (m * q + n * p), 2 * (n * q - m * p)];
             return (d.map(|x| x as f32), length as f32); // exact: below 2²⁴
         }
     }
@@ -224,19 +203,13 @@ fn quadruples(mut shapes: Shapes, nudged: bool, rng: &mut impl Rng) -> HardCases
         set_radius(&mut shapes, partner, length - radius);
         let axis = rng.random_range(0..3);
         if nudged {
-            d[axis] = if rng.random_range(0..2) == 0 {
-                d[axis].next_up()
-            } else {
-                d[axis].next_down()
-            };
+            d[axis] =
+                if rng.random_range(0..2) == 0 { d[axis].next_up() } else { d[axis].next_down() };
         }
         add(&mut bodies, &at_rest(partner, d), false);
     }
     add(&mut bodies, &at_rest(last, [0.0; 3]), true);
-    HardCases {
-        shapes,
-        runs: vec![vec![bodies]],
-    }
+    HardCases { shapes, runs: vec![vec![bodies]] }
 }
 
 fn set_radius(shapes: &mut Shapes, shape: usize, radius: f32) {
@@ -261,11 +234,7 @@ fn bars(scenes: Vec<Borders>, k: DirectionSet, axes: Axes) -> Result<HardCases, 
     let (mut built, mut runs) = (Vec::new(), Vec::new());
     for mut scene in scenes {
         let first = built.len() as u32;
-        scene
-            .bodies
-            .shape
-            .iter_mut()
-            .for_each(|shape| *shape += first);
+        scene.bodies.shape.iter_mut().for_each(|shape| *shape += first);
         for radius in scene.radii {
             built.push(bar_within(radius, k, axes).map_err(|error| FormError::of("bar", error))?);
         }
@@ -284,10 +253,7 @@ fn lattice(mut shapes: Shapes, edge: usize, rng: &mut impl Rng) -> HardCases {
         if length > 2_f64.powi(20) && length < 2_f64.powi(21) {
             let matrix = glam::DMat3::from_quat(glam::DQuat::from_xyzw(x, y, z, w).normalize());
             let exact = |c: DVec3| (c * length).round();
-            break (
-                [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(exact),
-                length,
-            );
+            break ([matrix.x_axis, matrix.y_axis, matrix.z_axis].map(exact), length);
         }
     };
     set_radius(&mut shapes, 0, (length / 2.0) as f32);
@@ -304,8 +270,5 @@ fn lattice(mut shapes: Shapes, edge: usize, rng: &mut impl Rng) -> HardCases {
         };
         add(&mut bodies, &placed, true);
     }
-    HardCases {
-        shapes,
-        runs: vec![vec![bodies]],
-    }
+    HardCases { shapes, runs: vec![vec![bodies]] }
 }

@@ -60,10 +60,7 @@ pub fn judge_compounds(
         if !row.strategy.scheme().culls() || row.overlap != Overlap::TwoSided {
             continue;
         }
-        let way = CullSettings {
-            budget: Some(Budget::Tests(3)),
-            ..row
-        };
+        let way = CullSettings { budget: Some(Budget::Tests(3)), ..row };
         let mut truths: HashMap<&str, Truth> = HashMap::new();
         for (mode, &pairs) in modes(number).into_iter().zip(Finder::ALL.iter().cycle()) {
             let plain = match mode.tier {
@@ -73,10 +70,7 @@ pub fn judge_compounds(
             if !truths.contains_key(plain.name()) {
                 truths.insert(plain.name(), truth(robots, &states, &near, &way, plain)?);
             }
-            let way = CullSettings {
-                pairs,
-                ..way.clone()
-            };
+            let way = CullSettings { pairs, ..way.clone() };
             let life = Life::new(world(robots, &way, mode)?, history, &states)?;
             let kind = WorldKind::Compounds(way.strategy);
             life.live(kind, mode, &truths[plain.name()], &mut ledger)?;
@@ -114,15 +108,10 @@ fn truth(
             let pair = NumberedPair::of(parts.pair.bodies);
             bodies.binary_search(&pair).is_ok()
         };
-        let required = near
-            .iter()
-            .filter(|parts| parts.meet || parts.touch && is_listed(parts));
+        let required = near.iter().filter(|parts| parts.meet || parts.touch && is_listed(parts));
         truth.required.push(with_bodies(required));
         let allowed = near.iter().filter(|parts| is_listed(parts));
-        truth
-            .allowed
-            .iter_mut()
-            .for_each(|lists| lists.push(with_bodies(allowed.clone())));
+        truth.allowed.iter_mut().for_each(|lists| lists.push(with_bodies(allowed.clone())));
     }
     Ok(truth)
 }
@@ -183,11 +172,7 @@ struct ExactParts<'a> {
 
 impl<'a> ExactParts<'a> {
     fn new(robots: &'a Robots, grown: &'a GrownParts) -> Self {
-        Self {
-            robots,
-            grown,
-            known: HashMap::new(),
-        }
+        Self { robots, grown, known: HashMap::new() }
     }
 
     /// The parts that are near each other after a frame.
@@ -224,11 +209,7 @@ impl<'a> ExactParts<'a> {
         let parts = 0..self.robots.parts[body.shape as usize].len();
         let posed = parts.map(|part| {
             let (shape, pose) = self.robots.posed(body, part);
-            PosedPart {
-                shape,
-                pose,
-                margin: margin.unwrap_or(0),
-            }
+            PosedPart { shape, pose, margin: margin.unwrap_or(0) }
         });
         posed.collect()
     }
@@ -262,11 +243,7 @@ impl<'a> ExactParts<'a> {
 
 /// What the answers about a body depend on.
 fn places(body: &Body) -> Body {
-    Body {
-        motion: Motion::Dynamic,
-        groups: Groups::ALL,
-        ..*body
-    }
+    Body { motion: Motion::Dynamic, groups: Groups::ALL, ..*body }
 }
 
 /// The distance of two balls in f64, below zero where they overlap.

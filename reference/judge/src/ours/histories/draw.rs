@@ -25,23 +25,15 @@ const FRAMES: usize = 2 * ChangeKind::ALL.len();
 /// Contact margins that are drawn.
 pub(super) const MARGINS: [f32; 3] = [0.0, 0.1, 0.25];
 /// Sides of drawn boxes.
-const SIDES: [[f32; 3]; 4] = [
-    [1.0, 1.0, 1.0],
-    [0.25, 2.0, 8.0],
-    [0.0, 1.0, 1.0],
-    [6.0, 6.0, 0.5],
-];
+const SIDES: [[f32; 3]; 4] = [[1.0, 1.0, 1.0], [0.25, 2.0, 8.0], [0.0, 1.0, 1.0], [6.0, 6.0, 0.5]];
 
 /// The shapes of histories of meshes, of sizes that a seed draws.
 ///
 /// # Errors
 /// As [`build`].
 pub fn history_shapes((k, axes): (DirectionSet, Axes), seed: u64) -> Result<Shapes, FormError> {
-    let offset = Form {
-        radius: None,
-        offset: Some([0.7, -0.3, 0.4]),
-        ..Form::of("l-shape", [0.0; 2])
-    };
+    let offset =
+        Form { radius: None, offset: Some([0.7, -0.3, 0.4]), ..Form::of("l-shape", [0.0; 2]) };
     let plain = ["box", "icosphere", "tetrahedron"].map(|name| Form::of(name, [-0.5, 0.5]));
     let forms: Vec<Form> = plain.into_iter().chain([offset]).collect();
     build(&forms, 1, k, axes, &mut ChaCha8Rng::seed_from_u64(seed))
@@ -57,11 +49,7 @@ pub fn draw_boxes(below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
             Some(other) if below(4) > 0 => beside(&other.bounds, sides, &mut |n| below(n)),
             _ => placed,
         };
-        BoxBody {
-            bounds,
-            motion: motion(below),
-            groups: groups(below),
-        }
+        BoxBody { bounds, motion: motion(below), groups: groups(below) }
     };
     let moved = |from: &BoxBody, to: &BoxBody, part: u32| {
         let mut bounds = from.bounds;
@@ -71,17 +59,8 @@ pub fn draw_boxes(below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
         }
         BoxBody { bounds, ..*from }
     };
-    let kinds = ChangeKind::ALL
-        .iter()
-        .copied()
-        .filter(|change| WorldKind::Boxes.has(*change));
-    draw(
-        &kinds.collect::<Vec<_>>(),
-        new,
-        moved,
-        |body, _, _| body,
-        below,
-    )
+    let kinds = ChangeKind::ALL.iter().copied().filter(|change| WorldKind::Boxes.has(*change));
+    draw(&kinds.collect::<Vec<_>>(), new, moved, |body, _, _| body, below)
 }
 
 /// A history of meshes in these shapes.
@@ -127,14 +106,8 @@ pub(super) fn draw_bodies(
         ..*from
     };
     let own = |body: Body, kind, below: &mut dyn FnMut(u32) -> u32| match kind {
-        ChangeKind::Margin => Body {
-            margin: next_margin(body.margin, below),
-            ..body
-        },
-        _ => Body {
-            shape: (body.shape + 1 + below(shapes - 1)) % shapes,
-            ..body
-        },
+        ChangeKind::Margin => Body { margin: next_margin(body.margin, below), ..body },
+        _ => Body { shape: (body.shape + 1 + below(shapes - 1)) % shapes, ..body },
     };
     draw(ChangeKind::ALL, new, moved, own, below)
 }
@@ -168,10 +141,7 @@ fn motion(below: &mut dyn FnMut(u32) -> u32) -> Motion {
 
 fn groups(below: &mut dyn FnMut(u32) -> u32) -> Groups {
     match below(3) {
-        0 => Groups {
-            member: 1 << below(2),
-            mask: 1 << below(2),
-        },
+        0 => Groups { member: 1 << below(2), mask: 1 << below(2) },
         _ => Groups::ALL,
     }
 }
@@ -186,10 +156,7 @@ fn draw<B: Properties>(
     own: impl Fn(B, ChangeKind, &mut dyn FnMut(u32) -> u32) -> B,
     below: &mut dyn FnMut(u32) -> u32,
 ) -> History<B> {
-    let mut drawn = Drawn {
-        bodies: Vec::new(),
-        excluded: Vec::new(),
-    };
+    let mut drawn = Drawn { bodies: Vec::new(), excluded: Vec::new() };
     for _ in 0..FIRST[below(2) as usize] {
         let body = new(&drawn.present(), below);
         drawn.bodies.push(Some(body));
@@ -204,11 +171,7 @@ fn draw<B: Properties>(
                 0 => kinds[(frame + offset) % kinds.len()],
                 _ => kinds[below(kinds.len() as u32) as usize],
             };
-            changes.extend(
-                drawn
-                    .change(kind, &new, &moved, &own, below)
-                    .map(|one| (kind, one)),
-            );
+            changes.extend(drawn.change(kind, &new, &moved, &own, below).map(|one| (kind, one)));
         }
         frames.push(changes);
     }

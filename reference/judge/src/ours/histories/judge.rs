@@ -35,12 +35,7 @@ pub(super) struct Truth {
 impl Truth {
     /// What is required is all that may be reported.
     pub fn exact(required: Vec<Pairs>) -> Self {
-        Self {
-            fresh: required.clone(),
-            required,
-            may_lack: false,
-            allowed: None,
-        }
+        Self { fresh: required.clone(), required, may_lack: false, allowed: None }
     }
 }
 
@@ -159,10 +154,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
             self.change(frame)?;
             let [missed, differ] = self.compare(frame, truth)?;
             let kinds: Vec<ChangeKind> = match frame.checked_sub(1) {
-                Some(before) => self.history.frames[before]
-                    .iter()
-                    .map(|one| one.0)
-                    .collect(),
+                Some(before) => self.history.frames[before].iter().map(|one| one.0).collect(),
                 None => Vec::new(),
             };
             for change in ChangeKind::ALL.iter().copied() {
@@ -255,20 +247,13 @@ pub fn judge_meshes(
     let answers = states.iter().map(answers).collect::<Result<Vec<_>, _>>()?;
     let mut ledger = HistoryLedger::default();
     for (row, modes) in rows {
-        let way = CullSettings {
-            budget: Some(Budget::Tests(3)),
-            ..row
-        };
+        let way = CullSettings { budget: Some(Budget::Tests(3)), ..row };
         let required = states.iter().zip(&answers);
-        let required: Vec<Pairs> = required
-            .map(|(state, answers)| required_of(state, answers, &way))
-            .collect();
+        let required: Vec<Pairs> =
+            required.map(|(state, answers)| required_of(state, answers, &way)).collect();
         let mut truths: BTreeMap<&str, Truth> = BTreeMap::new();
         for (mode, &pairs) in modes.into_iter().zip(Finder::ALL.iter().cycle()) {
-            let way = CullSettings {
-                pairs,
-                ..way.clone()
-            };
+            let way = CullSettings { pairs, ..way.clone() };
             let plain = match mode.tier {
                 Tier::SCALAR_FLUSH => mode.tier,
                 _ => Tier::SCALAR,
@@ -283,12 +268,7 @@ pub fn judge_meshes(
                 truths.insert(plain.name(), truth);
             }
             let life = Life::new(world(shapes, &way, mode)?, history, &states)?;
-            life.live(
-                WorldKind::of(&way),
-                mode,
-                &truths[plain.name()],
-                &mut ledger,
-            )?;
+            life.live(WorldKind::of(&way), mode, &truths[plain.name()], &mut ledger)?;
         }
     }
     Ok(ledger)
@@ -324,10 +304,7 @@ fn fresh_lists(
     way: &CullSettings,
     tier: Tier,
 ) -> Result<Vec<Pairs>, HistoryError> {
-    let way = CullSettings {
-        pairs: Finder::AllPairs,
-        ..way.clone()
-    };
+    let way = CullSettings { pairs: Finder::AllPairs, ..way.clone() };
     let lists = states.iter().map(|state| {
         let world = world(shapes, &way, Mode::plain(tier))?;
         state.fresh(world)
@@ -339,11 +316,7 @@ fn fresh_lists(
 pub(super) fn with_margins(shapes: &Shapes) -> Result<Shapes, HistoryError> {
     let all = shapes.built.iter();
     let all = all.flat_map(|shape| MARGINS.map(|margin| grown(shape, margin)));
-    Ok(Shapes {
-        built: Vec::new(),
-        judged: all.collect::<Result<_, _>>()?,
-        widened: Vec::new(),
-    })
+    Ok(Shapes { built: Vec::new(), judged: all.collect::<Result<_, _>>()?, widened: Vec::new() })
 }
 
 /// The number of a body's shape among those [`with_margins`].

@@ -142,10 +142,8 @@ impl WorldKind {
     /// Whether its bodies can change in this way.
     #[must_use]
     pub fn has(self, change: ChangeKind) -> bool {
-        let is_of_meshes = matches!(
-            change,
-            ChangeKind::Margin | ChangeKind::Reshaped | ChangeKind::Interest
-        );
+        let is_of_meshes =
+            matches!(change, ChangeKind::Margin | ChangeKind::Reshaped | ChangeKind::Interest);
         match self {
             Self::Boxes | Self::PeriodicBoxes | Self::AskedBoxes => !is_of_meshes,
             Self::Meshes(..) | Self::Compounds(_) => true,
@@ -198,12 +196,8 @@ impl HistoryCell {
             let has = |change: &ChangeKind| world.has(*change);
             for change in ChangeKind::ALL.iter().copied().filter(has) {
                 for mode in rotation.modes() {
-                    let cell = Self {
-                        world,
-                        change,
-                        tier: mode.tier.name(),
-                        threads: mode.threads,
-                    };
+                    let cell =
+                        Self { world, change, tier: mode.tier.name(), threads: mode.threads };
                     // Modes that differ in their updates alone share a cell.
                     if !cells.contains(&cell) {
                         cells.push(cell);

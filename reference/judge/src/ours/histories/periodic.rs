@@ -111,13 +111,7 @@ impl<B> Repeated<B> {
         };
         let frames = history.frames.iter();
         let frames = frames.map(|frame| frame.iter().map(&mut change).collect());
-        Self {
-            periods,
-            history: History {
-                first,
-                frames: frames.collect(),
-            },
-        }
+        Self { periods, history: History { first, frames: frames.collect() } }
     }
 }
 
@@ -125,9 +119,8 @@ impl<B> Repeated<B> {
 fn period(least: f64, below: &mut impl FnMut(u32) -> u32) -> f64 {
     let whole = f64::from(below(8));
     let parts = below(2) * 4;
-    let fraction = (0..parts).fold(0.0, |sum, _| {
-        (sum + f64::from(below(1 << 14))) / f64::from(1 << 14)
-    });
+    let fraction =
+        (0..parts).fold(0.0, |sum, _| (sum + f64::from(below(1 << 14))) / f64::from(1 << 14));
     least + whole + fraction
 }
 
@@ -177,13 +170,7 @@ pub fn judge_periodic_meshes(
     let Repeated { periods, history } = repeated;
     let states = State::all(history)?;
     let world = |strategy, pairs, mode| {
-        let way = CullSettings {
-            strategy,
-            pairs,
-            k,
-            axes,
-            ..CullSettings::default()
-        };
+        let way = CullSettings { strategy, pairs, k, axes, ..CullSettings::default() };
         let built = shapes.built.clone();
         PeriodicWorld::with(built, &culler(&way, mode), *periods)
     };
@@ -192,11 +179,7 @@ pub fn judge_periodic_meshes(
     for strategy in STRATEGIES {
         let meeting = |a: &Body, b: &Body| touching_images(&grown, [a, b], *periods, strategy);
         let fresh = states.iter().map(|state| {
-            let spheres = world(
-                Strategy::Sphere,
-                Finder::AllPairs,
-                Mode::plain(Tier::SCALAR),
-            )?;
+            let spheres = world(Strategy::Sphere, Finder::AllPairs, Mode::plain(Tier::SCALAR))?;
             state.fresh(spheres)
         });
         let truth = Truth {
@@ -207,12 +190,7 @@ pub fn judge_periodic_meshes(
         };
         for (&mode, &finder) in modes.iter().zip(Finder::ALL.iter().cycle()) {
             let life = Life::new(world(strategy, finder, mode)?, history, &states)?;
-            life.live(
-                WorldKind::PeriodicMeshes(strategy),
-                mode,
-                &truth,
-                &mut ledger,
-            )?;
+            life.live(WorldKind::PeriodicMeshes(strategy), mode, &truth, &mut ledger)?;
         }
     }
     Ok(ledger)

@@ -142,11 +142,7 @@ pub fn judge_queries_of_boxes(
     let mut ledger = HistoryLedger::default();
     for &mode in modes {
         let world = BoxWorld::with(&BoxCuller::builder().finder(Finder::AllPairs))?;
-        let life = Life::new(
-            Asked::new(world, &Shapes::default(), mode)?,
-            history,
-            &states,
-        )?;
+        let life = Life::new(Asked::new(world, &Shapes::default(), mode)?, history, &states)?;
         life.live(WorldKind::AskedBoxes, mode, &truth, &mut ledger)?;
     }
     Ok(ledger)
@@ -179,15 +175,8 @@ pub fn judge_queries_of_meshes(
     };
     let states = State::all(history)?;
     let grown = with_margins(shapes)?;
-    let predicates = [
-        Predicate::Sphere,
-        Predicate::OrDop(way.overlap),
-        Predicate::Aabb,
-    ];
-    let boxes = CullSettings {
-        strategy: Strategy::Aabb,
-        ..way.clone()
-    };
+    let predicates = [Predicate::Sphere, Predicate::OrDop(way.overlap), Predicate::Aabb];
+    let boxes = CullSettings { strategy: Strategy::Aabb, ..way.clone() };
     let required = states.iter().map(|state| {
         let mut state = state.clone();
         let bodies = state.bodies.iter_mut().flatten();
@@ -198,15 +187,9 @@ pub fn judge_queries_of_meshes(
         Ok(required)
     });
     let required = required.collect::<Result<_, HistoryError>>()?;
-    let fresh = states
-        .iter()
-        .map(|state| state.fresh(asked(Mode::plain(Tier::SCALAR))?));
-    let truth = Truth {
-        required,
-        fresh: fresh.collect::<Result<_, _>>()?,
-        may_lack: false,
-        allowed: None,
-    };
+    let fresh = states.iter().map(|state| state.fresh(asked(Mode::plain(Tier::SCALAR))?));
+    let truth =
+        Truth { required, fresh: fresh.collect::<Result<_, _>>()?, may_lack: false, allowed: None };
     let mut ledger = HistoryLedger::default();
     for &mode in modes {
         let life = Life::new(asked(mode)?, history, &states)?;

@@ -44,10 +44,7 @@ const ROTATIONS: [[f32; 4]; 10] = [
 const PLACES: [([f64; 3], f64); 3] = [
     ([0.0; 3], 1.0 / (1_u64 << 42) as f64),
     ([1_048_576.0, -524_288.0, 0.0], 1.0 / (1_u64 << 31) as f64),
-    (
-        [-805_306_368.0, 0.0, 536_870_912.0],
-        1.0 / (1_u64 << 22) as f64,
-    ),
+    ([-805_306_368.0, 0.0, 536_870_912.0], 1.0 / (1_u64 << 22) as f64),
 ];
 
 /// The compounds of a history, and the shapes of their parts.
@@ -70,16 +67,9 @@ impl Robots {
         let mut parts = counts.map(|count| draw_parts(count, shapes.built.len() as u32, below));
         let build = |parts: &Vec<Part>| Compound::build("robot", &shapes.built, parts);
         let compounds = parts.iter().map(build).collect::<Result<_, _>>()?;
-        let alone = Part {
-            shape: below(shapes.built.len() as u32),
-            ..Part::default()
-        };
+        let alone = Part { shape: below(shapes.built.len() as u32), ..Part::default() };
         Ok(Self {
-            parts: parts
-                .iter_mut()
-                .map(std::mem::take)
-                .chain([vec![alone]])
-                .collect(),
+            parts: parts.iter_mut().map(std::mem::take).chain([vec![alone]]).collect(),
             compounds,
             shapes,
         })
@@ -87,10 +77,7 @@ impl Robots {
 
     /// The shapes of a world.
     pub fn world_shapes(&self) -> Vec<Shape> {
-        let compounds = self
-            .compounds
-            .iter()
-            .map(|compound| compound.shape().clone());
+        let compounds = self.compounds.iter().map(|compound| compound.shape().clone());
         let alone = self.parts.last().into_iter().flatten();
         let alone = alone.map(|part| self.shapes.built[part.shape as usize].clone());
         compounds.chain(alone).collect()
@@ -153,17 +140,11 @@ impl Robots {
         let (shape, pose) = self.posed(first, parts[0]);
         let (partner, local) = self.posed(second, parts[1]);
         let rounded = |pose: &WidePose| pose.quaternion().map(|x| x as f32);
-        let placed = PlacedShape {
-            shape,
-            rotation: rounded(&pose),
-            translation: [0.0; 3],
-        };
+        let placed = PlacedShape { shape, rotation: rounded(&pose), translation: [0.0; 3] };
         let reach = [shape, partner].map(|number| f64::from(self.shapes.built[number].reach));
         let margin = f64::from(first.margin) + f64::from(second.margin);
-        let contact = Contact {
-            gap: contact.gap + margin / (U * (reach[0] + reach[1])),
-            ..contact.clone()
-        };
+        let contact =
+            Contact { gap: contact.gap + margin / (U * (reach[0] + reach[1])), ..contact.clone() };
         let apart = contact.place(&self.shapes, &placed, partner, rounded(&local))?;
         let (from, own) = (pose.translation(), local.translation());
         Some([0, 1, 2].map(|axis| from[axis] + f64::from(apart[axis]) - own[axis]))

@@ -31,16 +31,10 @@ impl NumberedPair {
     /// Two bodies in either order, the parts in the same order, and the image of the second.
     pub fn new([a, b]: [u32; 2], parts: Option<[u32; 2]>, image: [i32; 3]) -> Self {
         match a <= b {
-            true => Self {
-                bodies: [a, b],
-                parts,
-                image,
-            },
-            false => Self {
-                bodies: [b, a],
-                parts: parts.map(|[i, j]| [j, i]),
-                image: image.map(|n| -n),
-            },
+            true => Self { bodies: [a, b], parts, image },
+            false => {
+                Self { bodies: [b, a], parts: parts.map(|[i, j]| [j, i]), image: image.map(|n| -n) }
+            }
         }
     }
 }
@@ -143,9 +137,7 @@ impl<B: Copy> State<B> {
         let interest: Vec<BodyId> = self.interest.iter().filter_map(id).collect();
         world.interest(&interest)?;
         let numbers = ids.iter().zip(0..);
-        let numbers = numbers
-            .filter_map(|(id, number)| Some(((*id)?, number)))
-            .collect();
+        let numbers = numbers.filter_map(|(id, number)| Some(((*id)?, number))).collect();
         Ok(by_number(world.cull()?, &numbers))
     }
 }

@@ -50,11 +50,7 @@ impl JudgedWorld for Blind {
     }
 
     fn change(&mut self, id: BodyId, _: BoxBody, to: BoxBody) -> Result<(), HistoryError> {
-        let at = self
-            .known
-            .iter()
-            .position(|(known, _)| *known == id)
-            .unwrap();
+        let at = self.known.iter().position(|(known, _)| *known == id).unwrap();
         let mut body = self.known[at].1;
         if self.sees(ChangeKind::Moved) {
             body.bounds = to.bounds;
@@ -97,19 +93,9 @@ fn wrong(to: Option<ChangeKind>) -> u64 {
         let states = State::all(&history).unwrap();
         let required = required_boxes(&states);
         let truth = Truth::exact(required);
-        let world = Blind {
-            world: BoxWorld::new(),
-            to,
-            known: Vec::new(),
-        };
+        let world = Blind { world: BoxWorld::new(), to, known: Vec::new() };
         let life = Life::new(world, &history, &states).unwrap();
-        life.live(
-            WorldKind::Boxes,
-            Mode::plain(Tier::SCALAR),
-            &truth,
-            &mut ledger,
-        )
-        .unwrap();
+        life.live(WorldKind::Boxes, Mode::plain(Tier::SCALAR), &truth, &mut ledger).unwrap();
     }
     assert_eq!(ledger.failure.is_some(), ledger.missed + ledger.differ > 0);
     ledger.missed + ledger.differ
@@ -156,10 +142,7 @@ fn every_kind_of_change_is_drawn() {
         let mut seen: Vec<ChangeKind> = history.frames.iter().flatten().map(|one| one.0).collect();
         seen.sort_unstable();
         seen.dedup();
-        let all = ChangeKind::ALL
-            .iter()
-            .copied()
-            .filter(|change| WorldKind::Boxes.has(*change));
+        let all = ChangeKind::ALL.iter().copied().filter(|change| WorldKind::Boxes.has(*change));
         assert_eq!(seen, all.collect::<Vec<_>>(), "seed {seed}");
     }
 }

@@ -45,11 +45,7 @@ impl ReportedPair {
     /// Two bodies, or two parts of them, where space does not repeat.
     pub fn of(bodies: [BodyId; 2], parts: Option<[u32; 2]>) -> Self {
         let image = [0; 3];
-        Self {
-            bodies,
-            parts,
-            image,
-        }
+        Self { bodies, parts, image }
     }
 }
 
@@ -117,14 +113,8 @@ impl JudgedWorld for BoxWorld {
     unrepeated!();
 
     fn change(&mut self, id: BodyId, from: BoxBody, to: BoxBody) -> Result<(), HistoryError> {
-        let moved = BoxBody {
-            bounds: to.bounds,
-            ..from
-        };
-        let rested = BoxBody {
-            motion: to.motion,
-            ..from
-        };
+        let moved = BoxBody { bounds: to.bounds, ..from };
+        let rested = BoxBody { motion: to.motion, ..from };
         match to {
             to if to == moved => self.set_bounds(id, to.bounds)?,
             to if to == rested => self.set_motion(id, to.motion)?,
@@ -143,15 +133,8 @@ impl JudgedWorld for World {
     unrepeated!();
 
     fn change(&mut self, id: BodyId, from: Body, to: Body) -> Result<(), HistoryError> {
-        let moved = Body {
-            rotation: to.rotation,
-            translation: to.translation,
-            ..from
-        };
-        let rested = Body {
-            motion: to.motion,
-            ..from
-        };
+        let moved = Body { rotation: to.rotation, translation: to.translation, ..from };
+        let rested = Body { motion: to.motion, ..from };
         match to {
             to if to == moved => self.set_pose(id, to.rotation, to.translation)?,
             to if to == rested => self.set_motion(id, to.motion)?,

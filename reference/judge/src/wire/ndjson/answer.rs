@@ -27,10 +27,7 @@ pub(in crate::wire) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAns
         Ok(AnswerLine { frame, pairs, ns }) if frame == expected as u64 => {
             Ok(ProgramAnswer::Answer(Answer { pairs, ns }))
         }
-        Ok(AnswerLine { frame, .. }) => Err(AnswerError::OutOfTurn {
-            expected,
-            found: frame,
-        }),
+        Ok(AnswerLine { frame, .. }) => Err(AnswerError::OutOfTurn { expected, found: frame }),
         Err(error) => diagnose(expected, line, &error),
     }
 }
@@ -43,11 +40,7 @@ fn diagnose(
 ) -> Result<ProgramAnswer, AnswerError> {
     let value: Value = match serde_json::from_slice(line) {
         Ok(value) => value,
-        Err(_)
-            if line
-                .windows(3)
-                .any(|word| word.eq_ignore_ascii_case(b"nan")) =>
-        {
+        Err(_) if line.windows(3).any(|word| word.eq_ignore_ascii_case(b"nan")) => {
             return Err(malformed(expected, line, "NaN is no number of a body"));
         }
         Err(error) => return Err(malformed(expected, line, format!("no JSON ({error})"))),

@@ -56,11 +56,7 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
         let at = |problem: String| format!("line {number}: {problem}");
         let mut line: CaseFrame = parse(number, &line.map_err(|e| at(e.to_string()))?)?;
         if line.frame < next {
-            return Err(at(format!(
-                "frame {} follows frame {}",
-                line.frame,
-                next - 1
-            )));
+            return Err(at(format!("frame {} follows frame {}", line.frame, next - 1)));
         }
         next = line.frame.saturating_add(1);
         let was = line.bodies.take().map(|changed| {
@@ -197,10 +193,7 @@ fn checked(boxes: Vec<WorldBox>, bodies: usize) -> Result<Vec<WorldBox>, String>
         ends.iter().all(|x| x.is_finite()) && (0..3).all(|axis| ends[axis] <= ends[axis + 3])
     };
     match boxes.iter().position(|ends| !sound(ends)) {
-        Some(at) => Err(format!(
-            "box {at}, {:?}, isn't finite with lower ends first",
-            boxes[at]
-        )),
+        Some(at) => Err(format!("box {at}, {:?}, isn't finite with lower ends first", boxes[at])),
         None => Ok(boxes),
     }
 }

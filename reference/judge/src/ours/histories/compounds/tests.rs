@@ -67,19 +67,10 @@ fn judged(fault: Fault) -> HistoryLedger {
     let mut truth = truth(&robots, &states, &near, &way, Tier::SCALAR).unwrap();
     let mode = Mode::plain(Tier::SCALAR);
     let new = || WrongWorld(world(&robots, &way, mode).unwrap(), fault);
-    truth.fresh = states
-        .iter()
-        .map(|state| state.fresh(new()).unwrap())
-        .collect();
+    truth.fresh = states.iter().map(|state| state.fresh(new()).unwrap()).collect();
     let mut ledger = HistoryLedger::default();
     let life = Life::new(new(), &history, &states).unwrap();
-    life.live(
-        WorldKind::Compounds(way.strategy),
-        mode,
-        &truth,
-        &mut ledger,
-    )
-    .unwrap();
+    life.live(WorldKind::Compounds(way.strategy), mode, &truth, &mut ledger).unwrap();
     ledger
 }
 
