@@ -2,6 +2,7 @@
 //! languages.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::forms;
 use std::collections::HashMap;
 
 use sdop::compound::{Compound, Part, PartCuller};
@@ -10,8 +11,6 @@ use sdop::{
 };
 use sha2::{Digest, Sha256};
 
-#[path = "support/forms.rs"]
-mod forms;
 use forms::BOX_FACES;
 
 const BODIES: u32 = 1600;

@@ -43,8 +43,7 @@ from outcomes import TOP, Outcomes, by_reason, by_room, judge, place, say
 from trees import ENVIRONMENT, WORK, Built, build, cargo, lanes_tree, main_tree, plant_all, settle, tracked, whole_tree, write_tree
 
 PACKAGES = ["-p", "sdop", "-p", "sdop-judge", "-p", "sdop-bench"]
-SUITES = ["golden_pairs", "finders", "near_misses", "against_reference", "worst_case", "world", "naive_margins", "finder_costs",
-          "volume", "misuse", "crowds", "cost", "accounts", "settings", "domain", "boxes"]
+SUITES = ["golden_pairs", "never_misses", "worlds", "bounds", "shapes", "studies", "scenes", "finder_costs"]
 # Seconds: tests below go together.
 QUICK = 0.1
 

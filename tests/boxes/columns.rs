@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Motion, Tier, WorldError};
 
-use crate::lives::{drawn, pairs};
-use crate::misuse::wrong;
-use crate::scenes::{Kind, Random, boxes, moved};
+use crate::boxes::lives::{drawn, pairs};
+use crate::boxes::misuse::wrong;
+use crate::boxes::scenes::{Kind, Random, boxes, moved};
 
 /// More boxes than are checked at once, so many that columns end within a vector.
 const COUNT: usize = 1203;

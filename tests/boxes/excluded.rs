@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, BoxWorld, Groups, Motion};
 
-use crate::scenes::Random;
+use crate::boxes::scenes::Random;
 
 fn sorted(a: BodyId, b: BodyId) -> [BodyId; 2] {
     [a.min(b), a.max(b)]

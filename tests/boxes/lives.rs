@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use sdop::boxes::{BoxBody, BoxWorldSnapshot};
 use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion, Tier, WorldError};
 
-use crate::scenes::{Kind, Random, boxes, expected, moved};
+use crate::boxes::scenes::{Kind, Random, boxes, expected, moved};
 
 pub fn drawn(random: &mut Random, kind: Kind) -> BoxBody {
     let bounds = boxes(kind, 8, random)[random.below(8)];

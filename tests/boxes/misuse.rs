@@ -10,7 +10,7 @@
 
 use sdop::{Aabb, BoxCuller, BoxWorld, CullError, Finder, Groups, WorldError};
 
-use crate::scenes::{Kind, Random, boxes, expected};
+use crate::boxes::scenes::{Kind, Random, boxes, expected};
 
 /// Invalid boxes.
 pub fn wrong() -> Vec<Aabb> {

@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion, Tier};
 
-use crate::lives::{drawn, pairs, through_text};
-use crate::scenes::{Kind, Random, boxes, expected, moved};
+use crate::boxes::lives::{drawn, pairs, through_text};
+use crate::boxes::scenes::{Kind, Random, boxes, expected, moved};
 
 /// A world, what it should hold, and what events should be read against.
 struct History {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::{sdop, stdout, text};
+use crate::cli::{sdop, stdout, text};
 
 /// The path of a table of claims for an adapter with one answer to every frame.
 fn claims(folder: &Path, answer: &str, more: &str) -> PathBuf {

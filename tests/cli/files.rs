@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::{command, refusal, scene_file, text};
+use crate::cli::{command, refusal, scene_file, text};
 
 const LONG: &str = r#"
 name = "long"

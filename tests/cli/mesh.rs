@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{json, refusal, stdout, text};
+use crate::cli::{json, refusal, stdout, text};
 
 /// Spot is closed and every volume is larger than its hull.
 #[test]

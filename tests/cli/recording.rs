@@ -7,7 +7,7 @@ use sdop_bench::simulate::{self, SimulationError};
 use sdop_reference as reference;
 use serde::Deserialize;
 
-use crate::{scene_file, stdout, text};
+use crate::cli::{scene_file, stdout, text};
 
 const SCENE: &str = r#"
 name = "recorded"
@@ -148,7 +148,7 @@ fn recording_reads_back_exactly() {
 fn frame_counters_add_up() {
     let (directory, scene) = scene_file(SCENE);
     let path = directory.path().join("run.ndjson");
-    let run = crate::json(&["run", text(&scene), "--record", text(&path)]);
+    let run = crate::cli::json(&["run", text(&scene), "--record", text(&path)]);
     let (_, frames) = record(&[]);
     let sum = |volume: &str, get: fn(&Volume) -> u64| -> u64 {
         let volumes = frames.iter().flat_map(|frame| &frame.counters);
@@ -175,7 +175,7 @@ fn unfinished_record_leaves_no_file() {
     let far = SCENE.replace("dt = 0.1", "dt = 1e18").replace("walls = \"specular\"\n", "");
     let (directory, scene) = scene_file(&far);
     let path = directory.path().join("run.ndjson");
-    let message = crate::refusal(&["run", text(&scene), "--record", text(&path)]);
+    let message = crate::cli::refusal(&["run", text(&scene), "--record", text(&path)]);
     assert!(message.contains("frame 1"), "{message}");
     let entries = std::fs::read_dir(directory.path()).unwrap();
     let left: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();

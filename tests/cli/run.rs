@@ -4,7 +4,7 @@
 use sdop::simd::Tier;
 use serde_json::Value;
 
-use crate::{json, refusal, scene_file, sdop, stdout, text};
+use crate::cli::{json, refusal, scene_file, sdop, stdout, text};
 
 const SCENE: &str = "data/scenes/paper-50.toml";
 const FAST: [&str; 4] = ["run", SCENE, "--frames", "20"];

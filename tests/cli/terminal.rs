@@ -1,7 +1,7 @@
 //! Terminal output: completions, manual pages, readable numbers, and no colour or progress in
 //! pipes.
 
-use crate::{command, stdout, text};
+use crate::cli::{command, stdout, text};
 
 /// The commands that the program's help lists.
 fn commands() -> Vec<String> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::{refusal, scene_file, sdop, stdout, text};
+use crate::cli::{refusal, scene_file, sdop, stdout, text};
 
 const SCENE: &str = r#"
 name = "seen </script>"

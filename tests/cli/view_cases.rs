@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-use crate::view::{header, view};
-use crate::{refusal, stdout, text};
+use crate::cli::view::{header, view};
+use crate::cli::{refusal, stdout, text};
 
 /// Hard cases are shown run by run.
 #[test]

@@ -7,7 +7,7 @@ use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_bench::tradeoff::truth::ExactJudge;
 use sdop_judge::ours::compare::settings;
 
-use crate::{pairs_alone, pairs_on, support};
+use crate::domain::{pairs_alone, pairs_on, support};
 
 const NO_TURN: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 

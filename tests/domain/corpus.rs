@@ -5,7 +5,7 @@ use sdop::volume::{Axes, DirectionSet};
 use sdop_judge::ours::compare::settings;
 use sdop_judge::ours::hard::{FILES, HardCaseGroup};
 
-use crate::{pairs_alone, pairs_on};
+use crate::domain::{pairs_alone, pairs_on};
 
 /// Ranks report the pairs of one process in every group.
 #[test]

@@ -3,7 +3,7 @@
 use sdop::settings::{CullSettings, Finder, Interest, Strategy, Updates};
 use sdop_bench::scene::Scene;
 
-use crate::{RANKS, alone, build, ghosts, on, parse};
+use crate::domain::{RANKS, alone, build, ghosts, on, parse};
 
 const EFFECTS: &str = "
     [effects]

@@ -7,7 +7,7 @@ use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::ours::seeded_draws::rotation;
 
-use crate::support::{self, shapes};
+use crate::finders::support::{self, shapes};
 
 pub struct Scene {
     pub name: &'static str,

@@ -202,7 +202,7 @@ fn parts_are_never_dropped() {
         let error = examine_given(&silent, &options, case.clone()).unwrap_err();
         assert!(matches!(error, JudgeError::Parts { .. }), "{claim}: {error}");
     }
-    let single = judge(|_: &Scene<'_>| crate::cullers::Boxes::default());
+    let single = judge(|_: &Scene<'_>| crate::judge::cullers::Boxes::default());
     let verdict = single.claims(Claim::Parts).run().unwrap();
     assert_eq!(verdict.conclusion(), Conclusion::Incomplete);
     assert!(verdict.to_string().contains("its bodies are single shapes"));

@@ -204,7 +204,7 @@ fn one_case(pattern: &str) -> Case {
 /// Cullers without periods skip the cases.
 #[test]
 fn periods_are_never_dropped() {
-    let plain = judge(|_: &Scene<'_>| crate::cullers::Boxes::default());
+    let plain = judge(|_: &Scene<'_>| crate::judge::cullers::Boxes::default());
     let verdict = plain.claims(Claim::Periodic).run().unwrap();
     assert_eq!(verdict.conclusion(), Conclusion::Incomplete);
     assert!(verdict.to_string().contains("its space has no periods"));

@@ -6,7 +6,7 @@ use sdop::settings::Strategy;
 use sdop_judge::answer::AnswerError;
 use sdop_judge::{Claim, Conclusion, Outcome, Scene, Verdict, judge, judge_pair_test};
 
-use crate::cullers::{
+use crate::judge::cullers::{
     All, Boxes, BoxesOfAWorld, Flaw, Ours, balls_meet, balls_meet_without_margin,
 };
 

@@ -7,7 +7,7 @@ use sdop::mesh::topology::Topology;
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes, write_bytes};
 use sdop::volume::{Hull, Shape, ShapeSpec};
 
-use crate::forms::BOX_FACES;
+use crate::mesh::forms::BOX_FACES;
 
 const FORMATS: [MeshFormat; 5] =
     [MeshFormat::Tri, MeshFormat::Obj, MeshFormat::Stl, MeshFormat::Ply, MeshFormat::Off];

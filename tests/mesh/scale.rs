@@ -2,7 +2,7 @@
 
 use sdop::mesh::{ProceduralShape, TriangleMesh};
 
-use crate::signed_volume;
+use crate::mesh::signed_volume;
 
 fn l_shape() -> TriangleMesh {
     ProceduralShape::from_name("l-shape", &[]).unwrap().build().unwrap()

@@ -7,9 +7,9 @@ use sdop_reference::Pose;
 use sdop_reference::exact::meeting::meet;
 use sdop_reference::exact::query::{ExactLine, ball_meets_mesh, is_no_later, line_meets_mesh};
 
-use crate::forms::BOX_FACES;
-use crate::scenes::Random;
-use crate::{UNTURNED, contains, cube, mesh, reference, shapes, tiers};
+use crate::queries::forms::BOX_FACES;
+use crate::queries::scenes::Random;
+use crate::queries::{UNTURNED, contains, cube, mesh, reference, shapes, tiers};
 
 fn pose_of(body: &Body) -> Pose {
     Pose::from_f64(body.rotation, body.translation).unwrap()

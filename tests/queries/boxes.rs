@@ -4,8 +4,8 @@ use sdop::query::QueryError;
 use sdop::{Aabb, BodyId, BoxWorld, Line, QueryIndex, QueryVolume};
 use sdop_reference::exact::query::{ExactLine, ball_meets_box, is_no_later, line_meets_box};
 
-use crate::scenes::{Kind, Random, boxes};
-use crate::tiers;
+use crate::queries::scenes::{Kind, Random, boxes};
+use crate::queries::tiers;
 
 /// Closer than that, relative to the coordinates, rounding may report what only nearly touches.
 const NEAR: f64 = 1e-12;

@@ -5,8 +5,8 @@ use sdop::query::{QueryShape, QueryVolume};
 use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{Body, Line, QueryIndex, Shape, TriangleMesh, World};
 
-use crate::UNTURNED;
-use crate::scenes::Random;
+use crate::queries::UNTURNED;
+use crate::queries::scenes::Random;
 
 /// A step of all places.
 const STEP: f64 = 1.0 / 1024.0;

@@ -5,8 +5,8 @@ use sdop::query::QuerySource;
 use sdop::volume::DirectionSet;
 use sdop::{Aabb, Body, BodyId, BoxWorld, Line, Motion, QueryIndex, QueryVolume, World};
 
-use crate::scenes::Random;
-use crate::{UNTURNED, cube, shapes};
+use crate::queries::scenes::Random;
+use crate::queries::{UNTURNED, cube, shapes};
 
 fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random) {
     let mut fresh = QueryIndex::new();

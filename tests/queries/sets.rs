@@ -6,8 +6,8 @@ use sdop::{Aabb, Body, BodyId, BoxWorld, Motion, QueryIndex, World};
 use sdop_reference::Pose;
 use sdop_reference::exact::meeting::meet;
 
-use crate::scenes::{Kind, Random, boxes};
-use crate::{UNTURNED, cube, reference, shapes, tiers};
+use crate::queries::scenes::{Kind, Random, boxes};
+use crate::queries::{UNTURNED, cube, reference, shapes, tiers};
 
 fn box_world(boxes: &[Aabb]) -> BoxWorld {
     let mut world = BoxWorld::new();

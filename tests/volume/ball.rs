@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
 use sdop::volume::Ball;
 
-use crate::{exact::ball_contains, meshes};
+use crate::volume::{exact::ball_contains, meshes};
 
 /// The smallest ball that some subset of up to four points spans and that contains all points, to
 /// 10⁻⁹.

@@ -5,7 +5,7 @@ use glam::DMat3;
 use proptest::prelude::*;
 use sdop::volume::{Basis, DirectionSet};
 
-use crate::{
+use crate::volume::{
     exact::{dot, integer, point},
     meshes::rotation,
 };

@@ -5,7 +5,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 use sdop::volume::{Axes, Ball, Basis, DirectionSet, OrDop, Origin, Shape, ShapeSpec};
 
-use crate::{
+use crate::volume::{
     exact::{ball_contains, slabs_contain},
     meshes::{box_corners, extended, mesh, rotated, rotation, vertices},
 };

@@ -8,7 +8,7 @@ use glam::{DQuat, Vec3};
 use proptest::prelude::*;
 use sdop::volume::Hull;
 
-use crate::{
+use crate::volume::{
     exact::{dot, point, sub},
     meshes::{box_corners, box_grid, rotated, rotation, vertices},
 };

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use sdop::volume::{Axes, Basis, Hull, Shape, ShapeSpec};
 use sdop_bench::tightness::PolytopeVolume as _;
 
-use crate::meshes::{box_corners, box_grid, mesh, rotated, rotation};
+use crate::volume::meshes::{box_corners, box_grid, mesh, rotated, rotation};
 
 fn principal(points: &[Vec3]) -> Basis {
     Basis::principal(&Hull::of(points), points)

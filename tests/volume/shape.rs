@@ -8,7 +8,7 @@ use sdop::{
 use sdop_bench::hash::volumes_sha256;
 use sdop_bench::tightness::PolytopeVolume as _;
 
-use crate::meshes::{box_corners, mesh, rotated};
+use crate::volume::meshes::{box_corners, mesh, rotated};
 
 fn spec(origin: Origin, radius: Option<f32>) -> ShapeSpec {
     ShapeSpec { origin, radius, axes: Axes::Model, ..ShapeSpec::default() }

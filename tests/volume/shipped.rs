@@ -7,7 +7,7 @@ use sdop::{
 use sdop_bench::hash::volumes_sha256;
 use sdop_bench::tightness::{PolytopeVolume as _, mean_world_aligned_volume};
 
-use crate::{
+use crate::volume::{
     exact::{ball_contains, slabs_contain},
     hull::assert_hull,
 };

@@ -10,7 +10,7 @@ use sdop::{
     volume::{Ball, Basis, DirectionSet, Hull, OrDop},
 };
 
-use crate::meshes::{box_corners, rotation, vertices};
+use crate::volume::meshes::{box_corners, rotation, vertices};
 
 fn near(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * b.abs()

@@ -9,10 +9,9 @@ mod outside;
 mod plan;
 mod scenes;
 mod sizes;
-#[path = "../support/mod.rs"]
-mod support;
 mod windows;
 
+use crate::support;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;

@@ -5,20 +5,17 @@
 mod borders;
 mod boxes;
 mod events;
-#[path = "../support/forms.rs"]
-mod forms;
 mod layouts;
 mod meshes;
 mod misuse;
 mod queries;
-#[allow(dead_code, reason = "the suite of boxes uses the rest")]
-#[path = "../boxes/scenes.rs"]
-mod scenes;
 
+use crate::boxes::scenes;
+use crate::forms;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicPair, PeriodicWorld};
 use sdop::{Body, BodyId, Groups, Motion};
 
-use crate::scenes::Random;
+use crate::periodic::scenes::Random;
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 

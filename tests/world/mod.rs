@@ -7,8 +7,6 @@ mod counters;
 mod exchange;
 mod excluded;
 mod far;
-#[path = "../support/forms.rs"]
-mod forms;
 mod lives;
 mod many;
 mod margins;
@@ -18,6 +16,7 @@ mod regions;
 mod saves;
 mod single_changes;
 
+use crate::forms;
 use std::collections::{BTreeSet, HashMap};
 
 use rand_chacha::ChaCha8Rng;

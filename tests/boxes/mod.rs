@@ -7,7 +7,7 @@ mod excluded;
 mod lives;
 mod misuse;
 mod movers;
-mod scenes;
+pub mod scenes;
 
 use sdop::boxes::BoxCullerBuilder;
 use sdop::{Aabb, BoxCuller, Finder, Groups, Tier};

@@ -5,14 +5,11 @@
 mod bodies;
 mod boxes;
 mod corners;
-#[path = "../support/forms.rs"]
-mod forms;
 mod lives;
-#[allow(dead_code, reason = "the suite of boxes uses the rest")]
-#[path = "../boxes/scenes.rs"]
-mod scenes;
 mod sets;
 
+use crate::boxes::scenes;
+use crate::forms;
 use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{BodyId, ProceduralShape, QueryIndex, Shape, Tier};
 

@@ -10,11 +10,10 @@
 mod case;
 mod functions;
 mod inputs;
-#[path = "../support/limit.rs"]
-mod limit;
 mod ordops;
 mod small;
 
+use crate::limit;
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Write as _};

@@ -3,13 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "../support/mod.rs"]
-mod support;
-
 mod borders;
 mod corpus;
 mod scenes;
 
+use crate::support;
 use std::path::Path;
 
 use sdop::Culler;

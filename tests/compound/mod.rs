@@ -3,22 +3,19 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod corners;
-#[path = "../support/forms.rs"]
-mod forms;
 mod lives;
 mod misuse;
 mod robots;
-#[allow(dead_code, reason = "the suite of boxes uses the rest")]
-#[path = "../boxes/scenes.rs"]
-mod scenes;
 mod volumes;
 
+use crate::boxes::scenes;
+use crate::forms;
 use sdop::compound::{Compound, Part, PartCuller, PartPair};
 use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{Body, BodyId, ProceduralShape, Shape, World};
 use sdop_reference::WidePose;
 
-use crate::scenes::Random;
+use crate::compound::scenes::Random;
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 

@@ -3,8 +3,6 @@
 
 mod decimate;
 mod far;
-#[path = "../support/forms.rs"]
-mod forms;
 mod obj;
 mod off;
 mod prop;
@@ -15,6 +13,7 @@ mod tolerant;
 mod topology;
 mod tri;
 
+use crate::forms;
 use sdop::mesh::TriangleMesh;
 use sha2::{Digest, Sha256};
 

@@ -1,0 +1,5 @@
+//! The program `sdop`, as a user runs it.
+
+mod cli;
+mod judge;
+mod tradeoff;

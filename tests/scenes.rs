@@ -1,0 +1,10 @@
+//! Scenes: files, errors, placement, effects, and one scene on many ranks.
+
+mod domain;
+mod effects;
+mod far_scenes;
+mod scene_errors;
+mod scene_files;
+mod scene_generation;
+mod smallest_scene;
+mod support;
