@@ -18,17 +18,18 @@
 mod aabb;
 mod columns;
 mod fp_mode;
+#[cfg_attr(omits, allow(dead_code, reason = "each tier uses other parts"))]
 mod lanes;
 mod scalar;
 mod tier;
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(omits = "avx2")))]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(omits = "avx512")))]
 mod avx512;
-#[cfg(target_arch = "aarch64")]
+#[cfg(all(target_arch = "aarch64", not(omits = "neon")))]
 mod neon;
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(omits = "sse2")))]
 mod sse2;
 
 pub use aabb::{Aabb, TaggedBox, boxes_of, numbers_of};
@@ -88,14 +89,15 @@ pub trait Kernel {
 pub fn dispatch<K: Kernel>(tier: Tier, kernel: K) -> K::Output {
     match tier.tier() {
         tier::Isa::Scalar => kernel.run(scalar::Scalar::<false>::new()),
+        #[cfg(not(omits = "scalar-flush"))]
         tier::Isa::ScalarFlush => kernel.run(scalar::Scalar::<true>::new()),
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", not(omits = "sse2")))]
         tier::Isa::Sse2(token) => sse2::run(token, kernel),
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", not(omits = "avx2")))]
         tier::Isa::Avx2(token) => avx2::run(token, kernel),
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", not(omits = "avx512")))]
         tier::Isa::Avx512(token) => avx512::run(token, kernel),
-        #[cfg(target_arch = "aarch64")]
+        #[cfg(all(target_arch = "aarch64", not(omits = "neon")))]
         tier::Isa::Neon(token) => neon::run(token, kernel),
     }
 }

@@ -3,10 +3,14 @@
 use std::fmt;
 use std::str::FromStr;
 
-#[cfg(target_arch = "aarch64")]
+#[cfg(all(target_arch = "x86_64", not(omits = "avx2")))]
+use super::avx2;
+#[cfg(all(target_arch = "x86_64", not(omits = "avx512")))]
+use super::avx512;
+#[cfg(all(target_arch = "aarch64", not(omits = "neon")))]
 use super::neon;
-#[cfg(target_arch = "x86_64")]
-use super::{avx2, avx512, sse2};
+#[cfg(all(target_arch = "x86_64", not(omits = "sse2")))]
+use super::sse2;
 
 /// A SIMD level of this CPU. It comes from [`Tier::detect`], [`Tier::available`] or a parsed name,
 /// which check that the CPU has it.
@@ -16,14 +20,15 @@ pub struct Tier(Isa);
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Isa {
     Scalar,
+    #[cfg(not(omits = "scalar-flush"))]
     ScalarFlush,
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", not(omits = "sse2")))]
     Sse2(sse2::Sse2),
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", not(omits = "avx2")))]
     Avx2(avx2::Avx2),
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", not(omits = "avx512")))]
     Avx512(avx512::Avx512),
-    #[cfg(target_arch = "aarch64")]
+    #[cfg(all(target_arch = "aarch64", not(omits = "neon")))]
     Neon(neon::Neon),
 }
 
@@ -34,7 +39,7 @@ pub enum TierError {
     #[error("unknown SIMD level `{0}`; known are scalar, sse2, avx2, avx512, neon")]
     Unknown(String),
     /// The tier exists but this CPU lacks it.
-    #[error("this CPU has no {missing}; it has {have}")]
+    #[error("this CPU or build has no {missing}; it has {have}")]
     Unavailable {
         /// The requested tier.
         missing: String,
@@ -53,7 +58,11 @@ impl Tier {
     /// The scalar tier with denormal operands and results replaced by zero, as a CPU does in
     /// flush-to-zero mode. For tests alone: decisions stay sound there, but need not equal the
     /// other tiers'.
+    #[cfg(not(omits = "scalar-flush"))]
     pub const SCALAR_FLUSH: Self = Self(Isa::ScalarFlush);
+    /// Without that tier, the plain one.
+    #[cfg(omits = "scalar-flush")]
+    pub const SCALAR_FLUSH: Self = Self::SCALAR;
 
     /// The fastest tier of this CPU.
     #[must_use]
@@ -65,18 +74,13 @@ impl Tier {
     #[must_use]
     pub fn available() -> Vec<Self> {
         let mut tiers = vec![Self::SCALAR];
-        #[cfg(target_arch = "x86_64")]
-        tiers.extend(
-            [
-                sse2::Sse2::new().map(Isa::Sse2),
-                avx2::Avx2::new().map(Isa::Avx2),
-                avx512::Avx512::new().map(Isa::Avx512),
-            ]
-            .into_iter()
-            .flatten()
-            .map(Self),
-        );
-        #[cfg(target_arch = "aarch64")]
+        #[cfg(all(target_arch = "x86_64", not(omits = "sse2")))]
+        tiers.extend(sse2::Sse2::new().map(|token| Self(Isa::Sse2(token))));
+        #[cfg(all(target_arch = "x86_64", not(omits = "avx2")))]
+        tiers.extend(avx2::Avx2::new().map(|token| Self(Isa::Avx2(token))));
+        #[cfg(all(target_arch = "x86_64", not(omits = "avx512")))]
+        tiers.extend(avx512::Avx512::new().map(|token| Self(Isa::Avx512(token))));
+        #[cfg(all(target_arch = "aarch64", not(omits = "neon")))]
         tiers.extend(neon::Neon::new().map(|token| Self(Isa::Neon(token))));
         tiers
     }
@@ -86,14 +90,15 @@ impl Tier {
     pub fn name(self) -> &'static str {
         match self.0 {
             Isa::Scalar => "scalar",
+            #[cfg(not(omits = "scalar-flush"))]
             Isa::ScalarFlush => "scalar-flush",
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(omits = "sse2")))]
             Isa::Sse2(_) => "sse2",
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(omits = "avx2")))]
             Isa::Avx2(_) => "avx2",
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(omits = "avx512")))]
             Isa::Avx512(_) => "avx512",
-            #[cfg(target_arch = "aarch64")]
+            #[cfg(all(target_arch = "aarch64", not(omits = "neon")))]
             Isa::Neon(_) => "neon",
         }
     }
