@@ -3,6 +3,7 @@
 
 extern crate self as sdop_bench; // commands name the rooms as from outside
 
+#[cfg(feature = "maintain")]
 pub mod board;
 #[cfg(feature = "cli")]
 #[doc(hidden)]

@@ -6,15 +6,18 @@
 
 mod advise;
 mod bench;
+#[cfg(feature = "maintain")]
 mod board;
 mod cases;
 mod check;
 mod cmp;
+#[cfg(feature = "maintain")]
 mod completions;
 mod cost;
 mod curves;
 mod files;
 mod judge;
+#[cfg(feature = "maintain")]
 mod man;
 mod merge;
 mod mesh;
@@ -23,6 +26,7 @@ mod palette;
 mod prices;
 mod ranks;
 mod record;
+#[cfg(feature = "maintain")]
 mod report;
 mod reproduce;
 mod run;
@@ -48,6 +52,10 @@ use sdop_judge::{Conclusion, Verdict};
     version,
     after_help = "Exit codes: 0 all is well, 1 a check failed, 2 bad input, 3 some requested cases were not judged. Standard error says why."
 )]
+#[cfg_attr(
+    not(feature = "maintain"),
+    command(after_long_help = "A build with `--features maintain` also has `report`, `board`, `man` and `completions`.")
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -67,12 +75,16 @@ enum Command {
     Cases(cases::Args),
     Check(check::Args),
     Bench(bench::Args),
+    #[cfg(feature = "maintain")]
     Board(board::Args),
     View(view::Args),
     Record(record::Args),
     Cmp(cmp::Args),
+    #[cfg(feature = "maintain")]
     Report(report::Args),
+    #[cfg(feature = "maintain")]
     Completions(completions::Args),
+    #[cfg(feature = "maintain")]
     Man(man::Args),
 }
 
@@ -84,21 +96,7 @@ impl Command {
             Self::Tradeoff(args) => args.is_sweep(),
             Self::Record(args) => args.is_sweep(),
             Self::Reproduce(_) => true,
-            Self::Run(_)
-            | Self::Cost(_)
-            | Self::Advise(_)
-            | Self::Mesh(_)
-            | Self::Judge(_)
-            | Self::Merge(_)
-            | Self::Cases(_)
-            | Self::Check(_)
-            | Self::Bench(_)
-            | Self::Board(_)
-            | Self::View(_)
-            | Self::Cmp(_)
-            | Self::Report(_)
-            | Self::Completions(_)
-            | Self::Man(_) => false,
+            _ => false,
         }
     }
 
@@ -156,12 +154,16 @@ impl Cli {
             Command::Cases(args) => cases::run(&args),
             Command::Check(args) => check::run(&args),
             Command::Bench(args) => bench::run(&args),
+            #[cfg(feature = "maintain")]
             Command::Board(args) => board::run(&args),
             Command::View(args) => view::run(&args),
             Command::Record(args) => record::run(&args),
             Command::Cmp(args) => cmp::run(&args),
+            #[cfg(feature = "maintain")]
             Command::Report(args) => report::run(&args),
+            #[cfg(feature = "maintain")]
             Command::Completions(args) => completions::run(&args),
+            #[cfg(feature = "maintain")]
             Command::Man(args) => man::run(&args),
         }
     }

@@ -12,8 +12,10 @@ mod costs;
 pub mod digits;
 mod engines;
 mod experiment;
+#[cfg(feature = "maintain")]
 mod fill;
 mod manifest;
+#[cfg(feature = "maintain")]
 pub mod pages;
 mod peers;
 mod provenance;
