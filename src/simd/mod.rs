@@ -18,7 +18,7 @@
 mod aabb;
 mod columns;
 mod fp_mode;
-#[cfg_attr(omits, allow(dead_code, reason = "each tier uses other parts"))]
+#[cfg_attr(omits, allow(unused, reason = "each tier uses other parts"))]
 mod lanes;
 mod scalar;
 mod tier;
