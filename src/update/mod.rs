@@ -44,7 +44,8 @@ const BODIES_PER_TASK: usize = 4096;
 
 /// Updates the spheres (x, y, z, R) of the bodies in a range of places. Returns whether all
 /// translations, and the centres that depend on a rotation, are within the contract. Checking it
-/// here, where they have just been computed, costs few instructions per body (`benches/README.md`).
+/// here, where they have just been computed, costs few instructions per body
+/// (`paper/results/kernels.md`).
 pub fn update_spheres(
     executor: Executor<'_>,
     spheres: &mut [[f32; 4]],

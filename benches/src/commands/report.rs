@@ -13,18 +13,19 @@ use super::files::write;
 use super::output::{print, rows};
 use super::{Outcome, reproduce, tradeoff};
 
-/// Pages that people write, with blocks whose numbers come from records or without any.
-const PAGES_WITH_BLOCKS: [&str; 10] = [
+/// Pages that people write, with blocks whose numbers come from records.
+const PAGES_WITH_BLOCKS: [&str; 11] = [
     "README.md",
     "paper/results.md",
-    "ARCHITECTURE.md",
-    "benches/engines/BIAS.md",
-    "examples/rapier/ENGINES.md",
-    "tests/README.md",
-    "paper/guide.md",
-    "paper/artifact.md",
+    "benches/adapters/README.md",
+    "benches/engines/VERDICTS.md",
+    "examples/bullet/README.md",
+    "examples/rapier/README.md",
+    "paper/machines.md",
+    "paper/many-ranks.md",
     "paper/proofs/README.md",
-    "data/hard_cases/README.md",
+    "python/bench/README.md",
+    "tests/README.md",
 ];
 
 /// Where figures are.

@@ -55,13 +55,13 @@ choices! {
     /// An assumption of a prediction. If the prediction is off, it is the one that fails.
     Assumption, "assumption", {
         /// Neither prices nor frames scatter by more than the residual.
-        Steady = "the machine worked at one speed while prices and frames were measured",
+        Steady = "the assumption that the machine worked at one speed while prices and frames were measured",
         /// Updates take as long as in the calibration.
-        Updates = "an update costs the same here as on the calibration's bodies",
+        Updates = "the assumption that an update costs the same here as on the calibration's bodies",
         /// Neither the number of bodies nor how hits lie among misses changes a price.
-        Finding = "finding and testing cost the same at this density and number of bodies as in the calibration",
+        Finding = "the assumption that finding and testing cost the same here as at the calibration's densities and numbers of bodies",
         /// Second tests follow one another as in the calibration.
-        Refining = "a second test costs the same here as on the calibration's pairs",
+        Refining = "the assumption that a second test costs the same here as on the calibration's pairs",
     }
 }
 

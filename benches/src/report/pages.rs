@@ -1,7 +1,7 @@
 //! Pages whose numbers come from records.
 //!
 //! A page that is mostly tables is rendered from a template below `paper/templates/pages/`:
-//! `pages/benches/README.md` becomes `benches/README.md`. A page that people write has rendered
+//! `pages/paper/summary.md` becomes `paper/summary.md`. A page that people write has rendered
 //! blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a separate line, from the
 //! template `paper/templates/NAME.md`. Templates are in Jinja's language. The macros that they
 //! share are in one file, and expressions call them as `q`. Paragraphs are wrapped

@@ -126,8 +126,8 @@ pub fn advice(cheapest: &[CheapestRange], narrow_phase: &NarrowPhase) -> String 
         .collect();
     let own = cheapest.iter().rfind(|s| s.from <= narrow_phase.miss);
     format!(
-        "Cheapest at this density, by the price of a narrow-phase check: {}. The exact reference takes {:.0} ns to find two \
-         meshes apart: with it, take {}.",
+        "Cheapest at this density, by the price of a narrow-phase check: {}. Our exact reference takes {:.0} ns \
+         for two meshes that are apart; if it is your narrow phase, {} is cheapest.",
         parts.join("; "),
         1e9 * narrow_phase.miss,
         own.map_or("nothing", |s| s.name.as_str())
