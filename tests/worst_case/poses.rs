@@ -1,5 +1,5 @@
-//! Attacks on the f64 pose: transformed coordinates, ball centres, re-fitted extents. What they should
-//! give is computed to some 100 bits.
+//! Attacks on the f64 pose: transformed coordinates, ball centres, re-fitted extents. What they
+//! should give is computed to some 100 bits.
 
 use std::ops::{Add, Mul};
 
