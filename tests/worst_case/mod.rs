@@ -41,7 +41,7 @@ pub const CONTAINMENTS: [(&str, Search); 4] = [
 #[test]
 fn searches_stay_below_bounds() {
     for (name, unit, teeth, constant, search) in BOUNDS {
-        let found = search(1, EVALUATIONS);
+        let found = (1..=4).map(|seed| search(seed, EVALUATIONS)).fold(f64::NEG_INFINITY, f64::max);
         println!("{name:40} {found:.3} of {constant}");
         assert!(teeth <= found && found <= constant, "{name}: {found} {unit}, of {constant}");
     }

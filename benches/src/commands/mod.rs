@@ -54,7 +54,9 @@ use sdop_judge::{Conclusion, Verdict};
 )]
 #[cfg_attr(
     not(feature = "maintain"),
-    command(after_long_help = "A build with `--features maintain` also has `report`, `board`, `man` and `completions`.")
+    command(
+        after_long_help = "A build with `--features maintain` also has `report`, `board`, `man` and `completions`."
+    )
 )]
 struct Cli {
     #[command(subcommand)]
