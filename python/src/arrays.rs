@@ -195,7 +195,17 @@ fn as_array<'py>(
     }
     let options = PyDict::new(given.py());
     options.set_item("copy", false)?;
-    array.call_method("astype", (dtype,), Some(&options))
+    let converted = array.call_method("astype", (dtype,), Some(&options))?;
+    if dtype == "float64" && kind != "f" && size == 8 {
+        let back = converted.call_method1("astype", (&own,))?;
+        if !numpy(given.py())?.call_method1("array_equal", (&array, back))?.is_truthy()? {
+            return Err(with_help(
+                format!("{what} has whole numbers above 2**53, which float64 can't hold"),
+                "pass float64, whose numbers are then the ones that are meant",
+            ));
+        }
+    }
+    Ok(converted)
 }
 
 /// Refuses a masked array with masked numbers, which NumPy hands over as if they were valid.

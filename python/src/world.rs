@@ -72,7 +72,7 @@ impl World {
     ///     Number of its shape.
     /// rotation : four numbers
     ///     Quaternion x, y, z, w of any non-zero norm. If float32 can't hold it, the body is grown
-    ///     by what rounding it may move, about 2**-23 of its reach.
+    ///     by what rounding it may move, rounded up to about 2**-12 of its reach.
     /// translation : three numbers
     ///     Position of its origin, in world coordinates, in float64.
     /// margin : float

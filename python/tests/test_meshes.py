@@ -245,6 +245,7 @@ def test_a_body_says_that_it_rests():
         (lambda s: sdop.Shape(BRACKET * np.nan, [[0, 1, 2]]), "NaN"),
         (lambda s: sdop.Shape(np.ma.masked_equal(BRACKET, 4), [[0, 1, 2]]), "vertices is a masked array"),
         (lambda s: sdop.Culler([s], np.ma.masked_equal([0], 0)), "body_shapes is a masked array"),
+        (lambda s: sdop.World([s]).insert(0, [0, 0, 0, 1], [2**60 + 1, 0, 0]), r"translation has whole numbers above 2\*\*53"),
         (lambda s: sdop.World([s]).insert(0, np.ma.masked_equal([0, 0, 0, 1], 1), [0, 0, 0]), "rotation is a masked array"),
     ],
 )

@@ -16,8 +16,8 @@ pub struct Body {
     /// Translation of the body origin, world frame.
     pub translation: [f64; 3],
     /// Whether the rotation was rounded from f64 ([`Self::turned`]). The body is then grown by what
-    /// that may move its points, about 2⁻²³ of its reach, so that no pair of the exact pose is
-    /// missed.
+    /// that may move its points, rounded up to at least 2⁻¹² of its reach, so that no pair of the
+    /// exact pose is missed.
     pub rounded: bool,
     /// Which bodies it may collide with.
     pub groups: Groups,
