@@ -70,6 +70,11 @@
 //! - **Far meshes**: where rounding a mesh to f32 would move a vertex by more than 2⁻²⁰ of the
 //!   mesh's size, its vertices are kept about a point near it. A [`World`] adds that offset to the
 //!   pose in f64; a [`Culler`], whose poses are f32, rejects it.
+//! - **Numbers in f64**: no pair of them is missed. [`Aabb::outward`] rounds a box;
+//!   [`Body::turned`], [`World::set_pose_f64`], [`QueryVolume::shape`] and
+//!   [`Part::turned`](compound::Part::turned) round a rotation, and [`TriangleMesh::from_f64`]
+//!   vertices, and what they make is grown by what that may move. A [`Culler`] has no margins per
+//!   body: bodies with poses in f64 belong into a [`World`].
 //! - **Units**: any one unit of length, the same everywhere. Sizes and coordinates are finite and
 //!   at most 2⁶⁰.
 //! - **A pair** is two body indices i < j, of which at least one may move. A list holds a pair

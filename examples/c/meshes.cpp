@@ -136,10 +136,30 @@ void a_world_that_repeats(const SdopShape *shape) {
     assert(sdop_periodic_world_set(world.get(), &ids[1], &bodies[1], 1) == SDOP_STATUS_REFUSED);
 }
 
+// Boxes and rotations in double: no pair is lost by what floats make of them.
+void numbers_in_double(const SdopShape *shape) {
+    const double given[][6] = {{0, 0, 0, 0.1, 1, 1}, {0.1, 0, 0, 1, 1, 1}};
+    std::array<SdopBox, 2> boxes{};
+    check(sdop_boxes_outward(given, boxes.size(), boxes.data()));
+    assert(static_cast<double>(boxes[0].max[0]) > 0.1 && static_cast<double>(boxes[1].min[0]) < 0.1);
+
+    SdopWorld *made = nullptr;
+    check(sdop_world_new(&shape, 1, nullptr, &made));
+    const World world(made);
+    const SdopBody body = sdop_body_turned(sdop_body_at(0, 0, 0, 0), 0, 0, 0.6, 0.8);
+    assert(body.rounded && !sdop_body_turned(body, 0, 0, 0.75, 1).rounded);
+    std::array<std::uint64_t, 2> ids{};
+    for (auto &id : ids) check(sdop_world_insert(world.get(), &body, &id));
+    const double rotation[][4] = {{0, 0, 0.8, 0.6}}, place[][3] = {{0.1, 0, 0}};
+    check(sdop_world_set_poses_f64(world.get(), &ids[1], rotation, place, 1));
+    assert(pairs_of(world.get()).size() == 1);
+    assert(sdop_part_turned(SdopPart{}, 0, 0, 0.6, 0.8).rounded);
+}
+
 // An arm of three links next to a post: which link may touch it?
 void parts_of_bodies(const SdopShape *link) {
     std::array<SdopPart, 3> parts{};
-    for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {0, {0, 0, 0, 1}, {1.5 * static_cast<double>(i), 0, 0}};
+    for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {0, {0, 0, 0, 1}, {1.5 * static_cast<double>(i), 0, 0}, false};
     SdopCompound *arm_made = nullptr;
     check(sdop_compound_new("arm", &link, 1, parts.data(), parts.size(), &arm_made));
     const Compound arm(arm_made);
@@ -239,5 +259,6 @@ int main() {
     queries(shape.get());
     parts_of_bodies(shape.get());
     single_pairs(shape.get());
+    numbers_in_double(shape.get());
     std::puts("all as expected");
 }

@@ -24,9 +24,10 @@ True
 True
 
 Lengths have any one unit. Axes are right-handed; rotations are quaternions x, y, z, w of any
-non-zero norm that turn a body's frame into the world's. Columns are float32: arrays of float64 are
-accepted if float32 holds each number exactly, and rejected otherwise, because the answer would be
-about other numbers. `World` and the periodic worlds keep float64 as it is.
+non-zero norm that turn a body's frame into the world's. Arrays are float32 or float64. No pair of
+float64 input is missed: boxes that float32 can't hold are rounded outward, and bodies are grown by
+what rounding their rotations, translations or vertices may move. float32 input isn't changed; with
+`exact=True`, a call rejects numbers that float32 can't hold.
 
 Classes may be used from several threads; calls on one object take turns, and other threads of
 Python run meanwhile. Arrays are read in place: don't write to one while a call reads it.
@@ -52,8 +53,8 @@ from ._sdop import (
     World,
     box_pairs,
     exact_meet,
+    rounded_outward,
 )
-from .boxes import rounded_outward
 from .collision import CollisionManager
 from .laboratory import MissedPair, Verdict, cost, judge, tradeoff
 

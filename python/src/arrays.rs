@@ -1,8 +1,8 @@
 //! Arrays of numpy as rows of numbers, and back.
 //!
 //! One rule for all columns of f32: an array of float32 whose rows lie one after the other is read
-//! in place; any other array of numbers is copied; a number that float32 can't hold is rejected,
-//! since the answer would be about another number.
+//! in place; any other array of numbers is copied. If float32 can't hold all of its numbers, they
+//! stay float64, for functions that miss no pair of these; with `exact`, they are rejected.
 
 use numpy::{
     PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn,
@@ -14,31 +14,44 @@ use pyo3::types::PyDict;
 
 use super::errors::with_help;
 
-/// Rows of N numbers, borrowed from an array of numpy or copied.
+/// Rows of N numbers: in f32, borrowed from an array of numpy or copied, or in f64.
 pub enum Rows<'py, const N: usize> {
     Borrowed(PyReadonlyArrayDyn<'py, f32>),
     Copied(Vec<f32>),
+    /// Some number is none of f32.
+    Wide(Vec<f64>),
 }
 
 impl<const N: usize> Rows<'_, N> {
-    /// The rows.
-    pub fn rows(&self) -> &[[f32; N]] {
+    /// The rows, if f32 holds them.
+    pub fn narrow(&self) -> Option<&[[f32; N]]> {
         let numbers = match self {
             // checked when it was borrowed
             Self::Borrowed(array) => array.as_slice().unwrap_or_default(),
             Self::Copied(numbers) => numbers,
+            Self::Wide(_) => return None,
         };
-        numbers.as_chunks().0
+        Some(numbers.as_chunks().0)
+    }
+
+    /// The rows in f64.
+    pub fn wide(&self) -> Vec<[f64; N]> {
+        match (self, self.narrow()) {
+            (Self::Wide(numbers), _) => numbers.as_chunks().0.to_vec(),
+            (_, rows) => rows.into_iter().flatten().map(|row| row.map(f64::from)).collect(),
+        }
     }
 }
 
-/// A column of rows of N numbers in f32. `what` is its name in errors, and `remedy` the advice for
-/// numbers that f32 can't hold.
+/// A column of rows of N numbers. `what` is its name in errors. If it has to be `exact`, numbers
+/// that f32 can't hold are rejected with the advice `remedy`.
 pub fn rows<'py, const N: usize>(
     given: &Bound<'py, PyAny>,
     what: &str,
+    exact: bool,
     remedy: &str,
 ) -> PyResult<Rows<'py, N>> {
+    check_mask(given, what)?;
     if let Ok(array) = given.cast::<PyArrayDyn<f32>>() {
         check_shape::<N>(array.shape(), what)?;
         let array = array.readonly();
@@ -50,12 +63,12 @@ pub fn rows<'py, const N: usize>(
     }
     let (array, shape) = as_f64(given, what)?;
     check_shape::<N>(&shape, what)?;
-    let numbers = array.into_iter().enumerate().map(|(at, wide)| {
-        let narrow = wide as f32;
-        let is_same = f64::from(narrow) == wide || wide.is_nan();
-        is_same.then_some(narrow).ok_or_else(|| with_help(inexact(what, at, N, wide), remedy))
-    });
-    Ok(Rows::Copied(numbers.collect::<PyResult<_>>()?))
+    let is_narrow = |wide: &f64| f64::from(*wide as f32) == *wide || wide.is_nan();
+    match array.iter().position(|wide| !is_narrow(wide)) {
+        None => Ok(Rows::Copied(array.into_iter().map(|wide| wide as f32).collect())),
+        Some(_) if !exact => Ok(Rows::Wide(array)),
+        Some(at) => Err(with_help(inexact(what, at, N, array[at]), remedy)),
+    }
 }
 
 fn inexact(what: &str, at: usize, n: usize, number: f64) -> String {
@@ -76,6 +89,7 @@ pub fn one_row<'py, const N: usize>(
     what: &str,
     remedy: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
+    check_mask(given, what)?;
     let array = numpy(given.py())?.call_method1("asarray", (given,))?;
     if array.getattr("size")?.extract::<usize>()? != N {
         let shape: Vec<usize> = array.getattr("shape")?.extract()?;
@@ -115,6 +129,7 @@ pub fn id_column(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<u64>> {
 
 /// A column of true and false.
 pub fn flags(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<bool>> {
+    check_mask(given, what)?;
     let array = numpy(given.py())?.call_method1("asarray", (given,))?;
     let Ok(array) = array.cast::<PyArrayDyn<bool>>() else {
         let text = format!("{what} has dtype {}", array.getattr("dtype")?);
@@ -151,28 +166,59 @@ fn as_f64(given: &Bound<'_, PyAny>, what: &str) -> PyResult<(Vec<f64>, Vec<usize
 }
 
 /// Converts anything that numpy accepts as an array of numbers to another type of the same kind: no
-/// fraction is cut off.
+/// fraction is cut off, and no number is rounded.
 fn as_array<'py>(
     given: &Bound<'py, PyAny>,
     dtype: &str,
     what: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
+    check_mask(given, what)?;
     let array = numpy(given.py())?.call_method1("asarray", (given,))?;
     if array.getattr("size")?.extract::<usize>()? == 0 {
         return array.call_method1("astype", (dtype,)); // an empty list has no kind
     }
-    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
-    let fits = match dtype {
-        "float64" => ["f", "i", "u"].contains(&kind.as_str()),
-        _ => ["i", "u"].contains(&kind.as_str()),
+    let own = array.getattr("dtype")?;
+    let (kind, size): (String, usize) =
+        (own.getattr("kind")?.extract()?, own.getattr("itemsize")?.extract()?);
+    let accepted = match (dtype, kind.as_str()) {
+        (_, "i" | "u") => "",
+        ("float64", "f") if size <= 8 => "",
+        ("float64", _) => "accepted are float32, float64, float16 and integers",
+        ("uint64", "f") => {
+            "accepted are integers: NumPy makes float64 of uint64 next to signed integers, which \
+             changes ids; write np.array(ids, dtype=np.uint64)"
+        }
+        _ => "accepted are integers, such as int64 or uint32",
     };
-    if !fits {
-        let text = format!("{what} has dtype {}", array.getattr("dtype")?);
-        return Err(PyTypeError::new_err(format!("{text}, and must be of {dtype}")));
+    if !accepted.is_empty() {
+        return Err(PyTypeError::new_err(format!("{what} has dtype {own}; {accepted}")));
     }
     let options = PyDict::new(given.py());
     options.set_item("copy", false)?;
-    array.call_method("astype", (dtype,), Some(&options))
+    let converted = array.call_method("astype", (dtype,), Some(&options))?;
+    if dtype == "float64" && kind != "f" && size == 8 {
+        let back = converted.call_method1("astype", (&own,))?;
+        if !numpy(given.py())?.call_method1("array_equal", (&array, back))?.is_truthy()? {
+            return Err(with_help(
+                format!("{what} has whole numbers above 2**53, which float64 can't hold"),
+                "pass float64, whose numbers are then the ones that are meant",
+            ));
+        }
+    }
+    Ok(converted)
+}
+
+/// Refuses a masked array with masked numbers, which NumPy hands over as if they were valid.
+fn check_mask(given: &Bound<'_, PyAny>, what: &str) -> PyResult<()> {
+    let has_mask = given.getattr_opt("mask")?.is_some();
+    let masked = || given.py().import("numpy.ma")?.call_method1("is_masked", (given,));
+    if has_mask && masked()?.is_truthy()? {
+        return Err(with_help(
+            format!("{what} is a masked array, and some of its numbers are masked"),
+            "leave their rows out, or fill them: `array.filled(…)`",
+        ));
+    }
+    Ok(())
 }
 
 fn numpy(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {

@@ -8,15 +8,48 @@ use pyo3::prelude::*;
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, Finder, Groups, PairList};
 
-use super::arrays::{Rows, check_length, id_column, one_row, pairs, rows, whole_rows};
+use super::arrays::{Rows, check_length, id_column, matrix, one_row, pairs, rows, whole_rows};
 use super::errors::{locked, refused};
 use super::ids::bits_of;
 use super::world::Events;
 
-const ROUND: &str = "pass float32, or `sdop.rounded_outward(boxes)`, which misses none and may report boxes that all but touch";
+const ROUND: &str = "pass float32, or leave `exact` out: boxes are then rounded as by `sdop.rounded_outward`, which misses none and may report boxes that all but touch";
 
-fn boxes<'py>(given: &Bound<'py, PyAny>) -> PyResult<Rows<'py, 6>> {
-    rows(given, "boxes", ROUND)
+/// Boxes in f32: those that f32 can't hold are rounded outward, unless they have to be `exact`.
+fn boxes<'py>(given: &Bound<'py, PyAny>, exact: bool) -> PyResult<Rows<'py, 6>> {
+    Ok(match rows(given, "boxes", exact, ROUND)? {
+        Rows::Wide(wide) => Rows::Copied(outward(wide.as_chunks().0)),
+        narrow => narrow,
+    })
+}
+
+/// The numbers of the smallest f32 boxes that contain these.
+fn outward(boxes: &[[f64; 6]]) -> Vec<f32> {
+    let outward = boxes.iter().map(|&[a, b, c, d, e, f]| Aabb::outward([a, b, c], [d, e, f]));
+    outward.flat_map(|Aabb { min, max }| [min, max]).flatten().collect()
+}
+
+/// The rows as boxes.
+fn aabbs<'a>(rows: &'a Rows<'_, 6>) -> &'a [Aabb] {
+    Aabb::from_rows(rows.narrow().unwrap_or_default())
+}
+
+/// Rounds boxes of float64 to the smallest boxes of float32 that contain them.
+///
+/// No pair is missed with them; boxes that are apart by less than the rounding may be reported.
+///
+/// Parameters
+/// ----------
+/// boxes : array of floats, shape (n, 6) or (n, 2, 3)
+///     Lower corner x, y, z, then the upper one.
+///
+/// Returns
+/// -------
+/// array of float32, shape (n, 6)
+#[pyfunction]
+pub fn rounded_outward<'py>(boxes: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    let rows = rows::<6>(boxes, "boxes", false, "")?.wide();
+    matrix(boxes.py(), outward(&rows).as_chunks::<6>().0)
 }
 
 /// Pairs as rows, sorted if `sort` is true.
@@ -40,29 +73,33 @@ pub(super) fn groups(
 ///
 /// Parameters
 /// ----------
-/// boxes : array of float32, shape (n, 6) or (n, 2, 3)
-///     Lower corner x, y, z, then the upper one. float64 is accepted if float32 holds each number.
+/// boxes : array of float32 or float64, shape (n, 6) or (n, 2, 3)
+///     Lower corner x, y, z, then the upper one. Boxes that float32 can't hold are rounded outward.
 /// groups : array of whole numbers, shape (n, 2), optional
 ///     Bits of the groups that each box is in, and of those that it collides with.
 /// sort : bool
 ///     Whether the rows are sorted. Otherwise equal boxes give an equal order.
 /// threads : int
 ///     Number of threads.
+/// exact : bool
+///     Whether boxes that float32 can't hold are rejected.
 ///
 /// Returns
 /// -------
 /// array of uint32, shape (m, 2)
-///     Each pair i < j once: exactly those that share a point in exact arithmetic.
+///     Each pair i < j once: exactly those that share a point in exact arithmetic. If boxes were
+///     rounded, some may be reported that all but touch.
 #[pyfunction]
-#[pyo3(signature = (boxes, *, groups=None, sort=false, threads=1))]
+#[pyo3(signature = (boxes, *, groups=None, sort=false, threads=1, exact=false))]
 pub fn box_pairs<'py>(
     py: Python<'py>,
     boxes: &Bound<'py, PyAny>,
     groups: Option<&Bound<'py, PyAny>>,
     sort: bool,
     threads: usize,
+    exact: bool,
 ) -> PyResult<Bound<'py, PyArray2<u32>>> {
-    BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort)
+    BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort, exact)
 }
 
 /// Finds the boxes that meet, frame after frame. It is faster than `box_pairs`, since results of
@@ -97,16 +134,17 @@ impl BoxCuller {
 
     /// The pairs of this frame's boxes, in the form of `box_pairs`. The number of boxes may change
     /// from frame to frame.
-    #[pyo3(signature = (boxes, *, groups=None, sort=false))]
+    #[pyo3(signature = (boxes, *, groups=None, sort=false, exact=false))]
     fn cull<'py>(
         &self,
         py: Python<'py>,
         boxes: &Bound<'py, PyAny>,
         groups: Option<&Bound<'py, PyAny>>,
         sort: bool,
+        exact: bool,
     ) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let given = self::boxes(boxes)?;
-        let boxes = Aabb::from_rows(given.rows());
+        let given = self::boxes(boxes, exact)?;
+        let boxes = aabbs(&given);
         let groups = self::groups(groups, boxes.len())?;
         let found = locked(py, &self.0, |TimedCuller { culler, seconds }| {
             culler.set_groups(groups);
@@ -141,17 +179,18 @@ impl BoxWorld {
 
     /// Adds a box (lower corner x, y, z, then the upper one) and returns its id, which stays until
     /// `remove`.
-    #[pyo3(signature = (bounds, *, motion="dynamic", groups=(u32::MAX, u32::MAX)))]
+    #[pyo3(signature = (bounds, *, motion="dynamic", groups=(u32::MAX, u32::MAX), exact=false))]
     fn insert(
         &self,
         py: Python<'_>,
         bounds: &Bound<'_, PyAny>,
         motion: &str,
         groups: (u32, u32),
+        exact: bool,
     ) -> PyResult<u64> {
         let (member, mask) = groups;
         let body = BoxBody {
-            bounds: one(bounds)?,
+            bounds: one(bounds, exact)?,
             motion: super::world::motion(motion)?,
             groups: Groups { member, mask },
         };
@@ -164,8 +203,15 @@ impl BoxWorld {
     }
 
     /// Moves or resizes a box.
-    fn set_bounds(&self, py: Python<'_>, id: u64, bounds: &Bound<'_, PyAny>) -> PyResult<()> {
-        let bounds = one(bounds)?;
+    #[pyo3(signature = (id, bounds, *, exact=false))]
+    fn set_bounds(
+        &self,
+        py: Python<'_>,
+        id: u64,
+        bounds: &Bound<'_, PyAny>,
+        exact: bool,
+    ) -> PyResult<()> {
+        let bounds = one(bounds, exact)?;
         locked(py, &self.0, |world| world.set_bounds(BodyId::from_bits(id), bounds))
             .map_err(refused)
     }
@@ -193,14 +239,16 @@ impl BoxWorld {
 
     /// Moves many boxes: ids of shape (n,), boxes in the form of `box_pairs`. If one is rejected,
     /// those before it have moved.
+    #[pyo3(signature = (ids, boxes, *, exact=false))]
     fn set_many(
         &self,
         py: Python<'_>,
         ids: &Bound<'_, PyAny>,
         boxes: &Bound<'_, PyAny>,
+        exact: bool,
     ) -> PyResult<()> {
-        let (ids, given) = (id_column(ids, "ids")?, self::boxes(boxes)?);
-        let boxes = Aabb::from_rows(given.rows());
+        let (ids, given) = (id_column(ids, "ids")?, self::boxes(boxes, exact)?);
+        let boxes = aabbs(&given);
         check_length("boxes", boxes.len(), ids.len())?;
         let ids: Vec<_> = ids.iter().map(|&id| BodyId::from_bits(id)).collect();
         locked(py, &self.0, |world| world.set_many(&ids, boxes)).map_err(refused)
@@ -245,8 +293,8 @@ impl BoxWorld {
 }
 
 /// One box: six numbers, or two corners.
-fn one(given: &Bound<'_, PyAny>) -> PyResult<Aabb> {
+fn one(given: &Bound<'_, PyAny>, exact: bool) -> PyResult<Aabb> {
     let remedy = "pass six numbers: the lower corner, then the upper one";
-    let given = boxes(&one_row::<6>(given, "bounds", remedy)?)?;
-    Ok(Aabb::from_rows(given.rows())[0])
+    let given = boxes(&one_row::<6>(given, "bounds", remedy)?, exact)?;
+    Ok(aabbs(&given)[0])
 }

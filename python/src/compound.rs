@@ -22,36 +22,40 @@ use super::world::{ROUND, World};
 /// shapes : list of Shape
 /// part_shapes : array of whole numbers, shape (n,)
 ///     For each part, the index of its shape.
-/// rotations : array of float32, shape (n, 4)
-///     Quaternions x, y, z, w of any non-zero norm: each part's orientation in the body's frame.
+/// rotations : array of float32 or float64, shape (n, 4)
+///     Quaternions x, y, z, w of any non-zero norm: each part's orientation in the body's frame. A
+///     part is grown by what rounding to float32 moves.
 /// translations : array of floats, shape (n, 3)
 ///     Position of each part's origin in the body's frame.
 /// name : str
 ///     Its name in errors.
+/// exact : bool
+///     Whether rotations that float32 can't hold are rejected.
 #[pyclass(frozen, module = "sdop")]
 pub struct Compound(sdop::compound::Compound);
 
 #[pymethods]
 impl Compound {
     #[new]
-    #[pyo3(signature = (shapes, part_shapes, rotations, translations, *, name="compound"))]
+    #[pyo3(signature = (shapes, part_shapes, rotations, translations, *, name="compound", exact=false))]
     fn new(
         shapes: Vec<PyRef<'_, Shape>>,
         part_shapes: &Bound<'_, PyAny>,
         rotations: &Bound<'_, PyAny>,
         translations: &Bound<'_, PyAny>,
         name: &str,
+        exact: bool,
     ) -> PyResult<Self> {
         let part_shapes = whole_column(part_shapes, "part_shapes")?;
-        let rotations = rows::<4>(rotations, "rotations", ROUND)?;
+        let rotations = rows::<4>(rotations, "rotations", exact, ROUND)?.wide();
         let translations = wide_rows::<3>(translations, "translations")?;
-        check_length("rotations", rotations.rows().len(), part_shapes.len())?;
+        check_length("rotations", rotations.len(), part_shapes.len())?;
         check_length("translations", translations.len(), part_shapes.len())?;
-        let poses = rotations.rows().iter().zip(translations);
-        let parts = part_shapes.into_iter().zip(poses);
-        let parts: Vec<Part> = parts
-            .map(|(shape, (&rotation, translation))| Part { shape, rotation, translation })
-            .collect();
+        let poses = rotations.into_iter().zip(translations);
+        let part = |(shape, (rotation, translation)): (u32, ([f64; 4], [f64; 3]))| {
+            Part { shape, translation, ..Part::default() }.turned(rotation)
+        };
+        let parts: Vec<Part> = part_shapes.into_iter().zip(poses).map(part).collect();
         let compound = sdop::compound::Compound::build(name, &built(&shapes), &parts);
         Ok(Self(compound.map_err(refused)?))
     }

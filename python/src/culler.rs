@@ -5,14 +5,17 @@ use std::time::Instant;
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use sdop::{Bodies, Finder, Interest, Strategy};
+use sdop::culler::CullerBuilder;
+use sdop::{Bodies, Body, BodyId, Groups, Interest, World};
 
 use super::arrays::{check_length, flags, pairs, rows, whole_column};
 use super::boxes::{groups, list};
 use super::errors::{locked, refused};
 use super::shape::{Shape, built};
+use super::world::builder;
 
-const ROUND: &str = "pass float32, whose pose is then the one that is culled; `sdop.World` takes float64 translations as they are";
+const ROUND: &str =
+    "pass float32, or leave `exact` out: poses of float64 are then culled as they are";
 
 /// Culls the frames of a fixed set of bodies whose poses change.
 ///
@@ -45,6 +48,13 @@ struct State {
     /// Whether there was no frame yet, so that the poses of static bodies are unknown.
     is_new: bool,
     seconds: f64,
+    /// What culls poses of float64 that float32 can't hold, since the first of them.
+    wide: Option<(World, Vec<BodyId>)>,
+    /// What it is made of.
+    shapes: Vec<Py<Shape>>,
+    builder: CullerBuilder,
+    interest: Option<Vec<u32>>,
+    groups: Option<Vec<Groups>>,
 }
 
 #[pymethods]
@@ -69,47 +79,69 @@ impl Culler {
             None => vec![true; n],
         };
         check_length("dynamic", dynamic.len(), n)?;
-        let (strategy, finder): (Strategy, Finder) =
-            (strategy.parse().map_err(refused)?, finder.parse().map_err(refused)?);
-        let mut builder =
-            sdop::Culler::builder().strategy(strategy).finder(finder).threads(threads);
-        if let Some(bodies) = interest {
-            builder = builder.interest(Interest::Bodies(bodies));
+        let builder = self::builder(strategy, finder, threads)?;
+        let mut with_interest = builder.clone();
+        if let Some(bodies) = &interest {
+            with_interest = with_interest.interest(Interest::Bodies(bodies.clone()));
         }
         let (rotation, translation) = (vec![[0.0, 0.0, 0.0, 1.0]; n], vec![[0.0; 3]; n]);
         let bodies = Bodies { shape, dynamic, rotation, translation };
-        let mut culler = builder.build(&built(&shapes), &bodies).map_err(refused)?;
-        culler.set_groups(self::groups(groups, n)?).map_err(refused)?;
-        Ok(Self(Mutex::new(State { culler, bodies, is_new: true, seconds: 0.0 })))
+        let mut culler = with_interest.build(&built(&shapes), &bodies).map_err(refused)?;
+        let groups = self::groups(groups, n)?;
+        culler.set_groups(groups.clone()).map_err(refused)?;
+        let (shapes, wide) = (shapes.into_iter().map(Into::into).collect(), None);
+        let (is_new, seconds) = (true, 0.0);
+        Ok(Self(Mutex::new(State {
+            culler,
+            bodies,
+            is_new,
+            seconds,
+            wide,
+            shapes,
+            builder,
+            interest,
+            groups,
+        })))
     }
 
     /// The pairs of this frame that might touch.
     ///
     /// Parameters
     /// ----------
-    /// rotations : array of float32, shape (n, 4)
+    /// rotations : array of float32 or float64, shape (n, 4)
     ///     Quaternions x, y, z, w of any non-zero norm.
-    /// translations : array of float32, shape (n, 3)
-    ///     Position of each body's origin, in world coordinates.
+    /// translations : array of float32 or float64, shape (n, 3)
+    ///     Position of each body's origin, in world coordinates. A frame of float64 that float32
+    ///     can't hold is culled as by a `World`, which grows bodies by what rounding may move.
     /// sort : bool
     ///     Whether the rows are sorted.
+    /// exact : bool
+    ///     Whether poses that float32 can't hold are rejected.
     ///
     /// Returns
     /// -------
     /// array of uint32, shape (m, 2)
     ///     Each pair i < j once.
-    #[pyo3(signature = (rotations, translations, *, sort=false))]
+    #[pyo3(signature = (rotations, translations, *, sort=false, exact=false))]
     fn cull<'py>(
         &self,
         py: Python<'py>,
         rotations: &Bound<'py, PyAny>,
         translations: &Bound<'py, PyAny>,
         sort: bool,
+        exact: bool,
     ) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let rotations = rows::<4>(rotations, "rotations", ROUND)?;
-        let translations = rows::<3>(translations, "translations", ROUND)?;
-        let (rotations, translations) = (rotations.rows(), translations.rows());
-        let found = locked(py, &self.0, |state| state.cull(rotations, translations, sort));
+        let rotations = rows::<4>(rotations, "rotations", exact, ROUND)?;
+        let translations = rows::<3>(translations, "translations", exact, ROUND)?;
+        let found = match (rotations.narrow(), translations.narrow()) {
+            (Some(rotations), Some(translations)) => {
+                locked(py, &self.0, |state| state.cull(rotations, translations, sort))
+            }
+            _ => {
+                let (rotations, translations) = (rotations.wide(), translations.wide());
+                locked(py, &self.0, |state| state.cull_wide(&rotations, &translations))
+            }
+        };
         pairs(py, found?)
     }
 
@@ -131,6 +163,47 @@ impl Culler {
 }
 
 impl State {
+    /// The pairs of poses in f64, by a world whose bodies have their numbers as slots.
+    fn cull_wide(
+        &mut self,
+        rotations: &[[f64; 4]],
+        translations: &[[f64; 3]],
+    ) -> PyResult<Vec<[u32; 2]>> {
+        let n = self.bodies.len();
+        check_length("rotations", rotations.len(), n)?;
+        check_length("translations", translations.len(), n)?;
+        let (world, ids) = match &mut self.wide {
+            Some(wide) => wide,
+            None => {
+                let wide = self.world()?;
+                self.wide.insert(wide)
+            }
+        };
+        let start = Instant::now();
+        for ((&id, &q), &t) in ids.iter().zip(rotations).zip(translations) {
+            world.set_pose_f64(id, q, t).map_err(refused)?;
+        }
+        let found = world.cull().map_err(refused)?;
+        self.seconds = start.elapsed().as_secs_f64();
+        Ok(found.iter().map(|pair| pair.map(|id| id.slot() as u32)).collect())
+    }
+
+    /// A world of the bodies, at the origin.
+    fn world(&self) -> PyResult<(World, Vec<BodyId>)> {
+        let shapes = self.shapes.iter().map(|shape| shape.get().built.clone()).collect();
+        let mut world = World::with(shapes, &self.builder).map_err(refused)?;
+        let mut ids = Vec::new();
+        for (i, &shape) in self.bodies.shape.iter().enumerate() {
+            let groups = self.groups.as_ref().map_or(Groups::ALL, |groups| groups[i]);
+            let body = Body { shape, groups, ..Body::default() };
+            let body = if self.bodies.dynamic[i] { body } else { body.fixed() };
+            ids.push(world.insert(body).map_err(refused)?);
+        }
+        let interest = self.interest.iter().flatten().map(|&i| ids[i as usize]);
+        world.set_interest(&interest.collect::<Vec<_>>()).map_err(refused)?;
+        Ok((world, ids))
+    }
+
     fn cull(
         &mut self,
         rotations: &[[f32; 4]],

@@ -11,6 +11,10 @@ use super::world::{POSITION, QUATERNION};
 /// Whether two posed meshes share a point, or one lies inside of a closed part of the other, in
 /// exact arithmetic.
 ///
+/// The meshes are those of `Shape.vertices`, in float32: vertices of float64 were rounded, by at
+/// most `Shape.rounding`. The answer may be another for meshes that are nearer to each other, or
+/// overlap by less, than both bounds.
+///
 /// Parameters
 /// ----------
 /// shape_a, shape_b : Shape

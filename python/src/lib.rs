@@ -21,7 +21,7 @@ mod world;
 #[pyo3::pymodule]
 mod _sdop {
     #[pymodule_export]
-    use super::boxes::{BoxCuller, BoxWorld, box_pairs};
+    use super::boxes::{BoxCuller, BoxWorld, box_pairs, rounded_outward};
     #[pymodule_export]
     use super::compound::{Compound, PartCuller};
     #[pymodule_export]

@@ -271,7 +271,7 @@ periodic_class! {
 
         /// Adds a body and returns its id, which stays until `remove`. Parameters are those of
         /// `World.insert`.
-        #[pyo3(signature = (shape, rotation, translation, *, margin=0.0, dynamic=true, groups=(u32::MAX, u32::MAX)))]
+        #[pyo3(signature = (shape, rotation, translation, *, margin=0.0, dynamic=true, groups=(u32::MAX, u32::MAX), exact=false))]
         #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
         fn insert(
             &self,
@@ -282,44 +282,48 @@ periodic_class! {
             margin: f32,
             dynamic: bool,
             groups: (u32, u32),
+            exact: bool,
         ) -> PyResult<u64> {
-            let body = body(shape, pose(rotation, translation)?, margin, dynamic, groups);
+            let body = body(shape, pose(rotation, translation, exact)?, margin, dynamic, groups);
             locked(py, &self.0, |world| world.insert(body))
                 .map(BodyId::to_bits)
                 .map_err(refused)
         }
 
         /// Moves a body by any distance.
+        #[pyo3(signature = (id, rotation, translation, *, exact=false))]
         fn set_pose(
             &self,
             py: Python<'_>,
             id: u64,
             rotation: &Bound<'_, PyAny>,
             translation: &Bound<'_, PyAny>,
+            exact: bool,
         ) -> PyResult<()> {
-            let pose = pose(rotation, translation)?;
+            let pose = pose(rotation, translation, exact)?;
             locked(py, &self.0, |world| changed(world, id, |body| set_pose(body, pose)))
                 .map_err(refused)
         }
 
         /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). If one is
         /// rejected, those before it have moved.
+        #[pyo3(signature = (ids, rotations, translations, *, exact=false))]
         fn set_poses(
             &self,
             py: Python<'_>,
             ids: &Bound<'_, PyAny>,
             rotations: &Bound<'_, PyAny>,
             translations: &Bound<'_, PyAny>,
+            exact: bool,
         ) -> PyResult<()> {
             let ids = id_column(ids, "ids")?;
-            let rotations = rows::<4>(rotations, "rotations", ROUND)?;
+            let rotations = rows::<4>(rotations, "rotations", exact, ROUND)?.wide();
             let translations = wide_rows::<3>(translations, "translations")?;
-            check_length("rotations", rotations.rows().len(), ids.len())?;
+            check_length("rotations", rotations.len(), ids.len())?;
             check_length("translations", translations.len(), ids.len())?;
-            let rotations = rotations.rows();
             locked(py, &self.0, |world| {
-                let mut all = ids.iter().zip(rotations.iter().zip(translations));
-                all.try_for_each(|(&id, (&q, t))| changed(world, id, |body| set_pose(body, (q, t))))
+                let mut all = ids.iter().zip(rotations.into_iter().zip(translations));
+                all.try_for_each(|(&id, pose)| changed(world, id, |body| set_pose(body, pose)))
             })
             .map_err(refused)
         }
@@ -332,8 +336,8 @@ periodic_class! {
     }
 }
 
-fn set_pose(body: &mut Body, (rotation, translation): ([f32; 4], [f64; 3])) {
-    (body.rotation, body.translation) = (rotation, translation);
+fn set_pose(body: &mut Body, (rotation, translation): ([f64; 4], [f64; 3])) {
+    *body = Body { translation, ..*body }.turned(rotation);
 }
 
 /// One box: six numbers, or two corners.

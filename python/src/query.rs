@@ -121,17 +121,21 @@ impl QueryIndex {
     /// ----------
     /// shape : Shape
     ///     Its ball and its or-DOP are tested.
-    /// rotations : array of float32, shape (n, 4)
-    ///     Quaternions x, y, z, w of any non-zero norm.
+    /// rotations : array of float32 or float64, shape (n, 4)
+    ///     Quaternions x, y, z, w of any non-zero norm. If float32 can't hold one, the shape is
+    ///     grown by what rounding moves.
     /// translations : array of floats, shape (n, 3)
     /// margin : float
     ///     A length by which the shape is grown.
+    /// exact : bool
+    ///     Whether rotations that float32 can't hold are rejected.
     ///
     /// Returns
     /// -------
     /// array of uint64, shape (m, 2)
     ///     Rows of a pose's number and a body's id, sorted by both.
-    #[pyo3(signature = (shape, rotations, translations, *, margin=0.0))]
+    #[pyo3(signature = (shape, rotations, translations, *, margin=0.0, exact=false))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn touching_shapes<'py>(
         &self,
         py: Python<'py>,
@@ -139,18 +143,14 @@ impl QueryIndex {
         rotations: &Bound<'py, PyAny>,
         translations: &Bound<'py, PyAny>,
         margin: f32,
+        exact: bool,
     ) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let rotations = rows::<4>(rotations, "rotations", ROUND)?;
+        let rotations = rows::<4>(rotations, "rotations", exact, ROUND)?.wide();
         let translations = wide_rows::<3>(translations, "translations")?;
-        check_length("translations", translations.len(), rotations.rows().len())?;
+        check_length("translations", translations.len(), rotations.len())?;
         let shape = &QueryShape::new(&shape.built);
-        let poses = rotations.rows().iter().zip(translations);
-        let volumes = poses.map(|(&rotation, translation)| QueryVolume::Shape {
-            shape,
-            rotation,
-            translation,
-            margin,
-        });
+        let poses = rotations.into_iter().zip(translations);
+        let volumes = poses.map(|(q, t)| QueryVolume::shape(shape, q, t, margin));
         self.touching(py, volumes.collect())
     }
 

@@ -18,7 +18,8 @@ use super::errors::{refused, with_help};
 /// ----------
 /// vertices : array of floats, shape (n, 3), or a `trimesh.Trimesh`
 ///     Positions in the mesh's frame, whose origin poses place. float64 is rounded to float32, about
-///     a point near the mesh if it is far from its origin.
+///     a point near the mesh if it is far from its origin. Ball and or-DOP are grown by the bound of
+///     that, `rounding`, so that no pair of the float64 meshes is missed.
 /// triangles : array of whole numbers, shape (m, 3)
 ///     Vertex indices of each triangle; left out for a `trimesh.Trimesh`.
 /// radius : float, optional
@@ -135,6 +136,13 @@ impl Shape {
     #[getter]
     fn pose_offset(&self) -> [f64; 3] {
         self.built.pose_offset
+    }
+
+    /// A bound on the distance of the vertices from the float64 ones that were given; 0 if they are
+    /// the same.
+    #[getter]
+    fn rounding(&self) -> f32 {
+        self.built.rounding
     }
 
     /// The factor by which the mesh was scaled.

@@ -14,7 +14,7 @@ use super::ids::bits_of;
 use super::shape::{Shape, built};
 
 pub(super) const ROUND: &str =
-    "pass a float32 quaternion, whose rotation is then the one that is culled";
+    "pass a float32 quaternion, or leave `exact` out: bodies are then grown by what rounding moves";
 
 pub(super) const QUATERNION: &str = "pass four numbers: a quaternion x, y, z, w";
 pub(super) const POSITION: &str = "pass three numbers: x, y, z";
@@ -71,7 +71,8 @@ impl World {
     /// shape : int
     ///     Number of its shape.
     /// rotation : four numbers
-    ///     Quaternion x, y, z, w of any non-zero norm, in float32.
+    ///     Quaternion x, y, z, w of any non-zero norm. If float32 can't hold it, the body is grown
+    ///     by what rounding it may move, rounded up to about 2**-12 of its reach.
     /// translation : three numbers
     ///     Position of its origin, in world coordinates, in float64.
     /// margin : float
@@ -80,7 +81,9 @@ impl World {
     ///     Whether it may move; pairs of two static bodies are never reported.
     /// groups : (int, int)
     ///     Bits of the groups that it is in, and of those that it collides with.
-    #[pyo3(signature = (shape, rotation, translation, *, margin=0.0, dynamic=true, groups=(u32::MAX, u32::MAX)))]
+    /// exact : bool
+    ///     Whether a rotation that float32 can't hold is rejected.
+    #[pyo3(signature = (shape, rotation, translation, *, margin=0.0, dynamic=true, groups=(u32::MAX, u32::MAX), exact=false))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn insert(
         &self,
@@ -91,8 +94,9 @@ impl World {
         margin: f32,
         dynamic: bool,
         groups: (u32, u32),
+        exact: bool,
     ) -> PyResult<u64> {
-        let body = body(shape, pose(rotation, translation)?, margin, dynamic, groups);
+        let body = body(shape, pose(rotation, translation, exact)?, margin, dynamic, groups);
         locked(py, &self.0, |world| world.insert(body)).map(BodyId::to_bits).map_err(refused)
     }
 
@@ -102,37 +106,40 @@ impl World {
     }
 
     /// Moves a body by any distance.
+    #[pyo3(signature = (id, rotation, translation, *, exact=false))]
     fn set_pose(
         &self,
         py: Python<'_>,
         id: u64,
         rotation: &Bound<'_, PyAny>,
         translation: &Bound<'_, PyAny>,
+        exact: bool,
     ) -> PyResult<()> {
-        let (rotation, translation) = pose(rotation, translation)?;
-        locked(py, &self.0, |world| world.set_pose(BodyId::from_bits(id), rotation, translation))
-            .map_err(refused)
+        let (rotation, translation) = pose(rotation, translation, exact)?;
+        let id = BodyId::from_bits(id);
+        locked(py, &self.0, |world| world.set_pose_f64(id, rotation, translation)).map_err(refused)
     }
 
     /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). If one
     /// is rejected, those before it have moved.
+    #[pyo3(signature = (ids, rotations, translations, *, exact=false))]
     fn set_poses(
         &self,
         py: Python<'_>,
         ids: &Bound<'_, PyAny>,
         rotations: &Bound<'_, PyAny>,
         translations: &Bound<'_, PyAny>,
+        exact: bool,
     ) -> PyResult<()> {
         let ids = id_column(ids, "ids")?;
-        let rotations = rows::<4>(rotations, "rotations", ROUND)?;
-        let (rotations, translations) =
-            (rotations.rows(), wide_rows::<3>(translations, "translations")?);
+        let rotations = rows::<4>(rotations, "rotations", exact, ROUND)?.wide();
+        let translations = wide_rows::<3>(translations, "translations")?;
         check_length("rotations", rotations.len(), ids.len())?;
         check_length("translations", translations.len(), ids.len())?;
         locked(py, &self.0, |world| {
             let poses = rotations.iter().zip(&translations);
             let mut all = ids.iter().zip(poses);
-            all.try_for_each(|(&id, (&q, &t))| world.set_pose(BodyId::from_bits(id), q, t))
+            all.try_for_each(|(&id, (&q, &t))| world.set_pose_f64(BodyId::from_bits(id), q, t))
         })
         .map_err(refused)
     }
@@ -158,7 +165,8 @@ impl World {
         locked(py, &self.0, |world| world.include(a, b)).map_err(refused)
     }
 
-    /// The present body, with the names of `insert`'s parameters, and whether it is "resting".
+    /// The present body, with the names of `insert`'s parameters, and whether it is "resting" and
+    /// its rotation, in float32, was "rounded".
     fn body<'py>(&self, py: Python<'py>, id: u64) -> PyResult<Bound<'py, PyDict>> {
         let body =
             locked(py, &self.0, |world| world.body(BodyId::from_bits(id))).map_err(refused)?;
@@ -226,26 +234,28 @@ pub(super) fn builder(strategy: &str, finder: &str, threads: usize) -> PyResult<
 /// A body of `insert`'s parameters.
 pub(super) fn body(
     shape: u32,
-    (rotation, translation): ([f32; 4], [f64; 3]),
+    (rotation, translation): ([f64; 4], [f64; 3]),
     margin: f32,
     dynamic: bool,
     (member, mask): (u32, u32),
 ) -> Body {
-    Body {
+    let body = Body {
         shape,
         motion: if dynamic { Motion::Dynamic } else { Motion::Fixed },
-        rotation,
         translation,
         margin,
         groups: Groups { member, mask },
-    }
+        ..Body::default()
+    };
+    body.turned(rotation)
 }
 
-/// A body with the names of `insert`'s parameters, and whether it is "resting".
+/// A body with the names of `insert`'s parameters, and whether it is "resting" or "rounded".
 pub(super) fn named<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> {
     let named = PyDict::new(py);
     named.set_item("shape", body.shape)?;
     named.set_item("rotation", body.rotation)?;
+    named.set_item("rounded", body.rounded)?;
     named.set_item("translation", body.translation)?;
     named.set_item("margin", body.margin)?;
     named.set_item("dynamic", body.motion.is_dynamic())?;
@@ -258,11 +268,12 @@ pub(super) fn named<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, Py
 pub(super) fn pose(
     rotation: &Bound<'_, PyAny>,
     translation: &Bound<'_, PyAny>,
-) -> PyResult<([f32; 4], [f64; 3])> {
+    exact: bool,
+) -> PyResult<([f64; 4], [f64; 3])> {
     let rotation = one_row::<4>(rotation, "rotation", QUATERNION)?;
     let translation = one_row::<3>(translation, "translation", POSITION)?;
     Ok((
-        rows::<4>(&rotation, "rotation", ROUND)?.rows()[0],
+        rows::<4>(&rotation, "rotation", exact, ROUND)?.wide()[0],
         wide_rows::<3>(&translation, "translation")?[0],
     ))
 }

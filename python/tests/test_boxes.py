@@ -51,8 +51,11 @@ def test_corners_columns_and_strides_are_read_alike():
         (np.zeros(6, np.float32), sdop.SdopError, r"\(n, 6\)"),
         ([[0, 0, 0, np.nan, 1, 1]], sdop.SdopError, "box"),
         ([[2, 0, 0, 1, 1, 1]], sdop.SdopError, "min"),
-        ([[0.1, 0, 0, 1, 1, 1]], sdop.SdopError, r"boxes\[0, 0\] is 0.1.*\n.*rounded_outward"),
-        (np.zeros((3, 6), complex), TypeError, "complex"),
+        ([[0.2, 0, 0, 0.1, 1, 1]], sdop.SdopError, "min"),
+        ([[0.1, 0, 0, 1e39, 1, 1]], sdop.SdopError, "inf"),
+        (np.ma.masked_less(np.zeros((3, 6)), 1), sdop.SdopError, r"boxes is a masked array.*\n.*filled"),
+        (np.zeros((3, 6), complex), TypeError, "complex128; accepted are float32, float64"),
+        (np.zeros((3, 6), np.longdouble), TypeError, "longdouble|float128; accepted are float32"),
         ("no boxes", TypeError, "dtype"),
         (np.zeros((3, 6), object), TypeError, "object"),
     ],
@@ -70,6 +73,40 @@ def test_boxes_of_float64_rounded_outward_contain_the_given():
     assert (narrow[:, :3] <= wide[:, :3]).all() and (narrow[:, 3:] >= wide[:, 3:]).all()
     exact = boxes(10)
     np.testing.assert_array_equal(sdop.rounded_outward(exact.astype(np.float64)), exact)
+
+
+def test_boxes_of_float64_lose_no_pair():
+    wide = np.random.default_rng(2).random((1000, 6)) / 8
+    wide[:, 3:] += wide[:, :3]
+    wide[1::2, :3] = wide[::2, 3:]  # each second one touches the one before
+    wide[1::2, 3:] += wide[1::2, :3]
+    found = sdop.box_pairs(wide)
+    truth = {tuple(pair) for pair in brute_force(wide).tolist()}
+    assert truth <= {tuple(pair) for pair in found.tolist()} and len(truth) > 500 and len(found) < 1.01 * len(truth)
+    np.testing.assert_array_equal(found, sdop.BoxCuller().cull(sdop.rounded_outward(wide)))
+    world = sdop.BoxWorld()
+    ids = [world.insert(box) for box in wide]
+    assert world.cull().tolist() == [[ids[i], ids[j]] for i, j in sorted(found.tolist())]
+    world.set_many(ids, wide + 1)
+    index = sdop.QueryIndex()
+    index.update(world)
+    corners = np.concatenate([wide[:, 3:], wide[:, 3:]], axis=1) + 1
+    assert {(i, ids[i]) for i in range(1000)} <= {tuple(row) for row in index.touching_boxes(corners).tolist()}
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda box: sdop.box_pairs([box], exact=True),
+        lambda box: sdop.BoxCuller().cull([box], exact=True),
+        lambda box: sdop.BoxWorld().insert(box, exact=True),
+        lambda box: sdop.BoxWorld().set_bounds(1, box, exact=True),
+        lambda box: sdop.BoxWorld().set_many([1], [box], exact=True),
+    ],
+)
+def test_exact_boxes_are_float32(call):
+    with pytest.raises(sdop.SdopError, match=r"(boxes|bounds)\[0, 0\] is 0.1.*\n.*leave `exact` out"):
+        call([0.1, 0, 0, 1, 1, 1])
 
 
 def test_groups_exclude_pairs():

@@ -88,9 +88,71 @@ def test_translations_are_float64_in_a_world():
     for x in (1000000031.5, 1000000032.2):
         world.insert(0, [0, 0, 0, 1], [x, 0, 0])
     assert len(world.cull()) == 1
-    culler = sdop.Culler([shape], [0, 0])
-    with pytest.raises(sdop.SdopError, match=r"translations\[0, 0\] is 1000000031.5.*\n.*World"):
-        culler.cull([[0, 0, 0, 1]] * 2, [[1000000031.5, 0, 0], [1000000032.2, 0, 0]])
+    culler = sdop.Culler([shape], [0, 0], dynamic=[True, False])
+    frame = [[0, 0, 0, 1]] * 2, [[1000000031.5, 0, 0], [1000000032.2, 0, 0]]
+    assert culler.cull(*frame).tolist() == [[0, 1]]
+    with pytest.raises(sdop.SdopError, match=r"translations\[0, 0\] is 1000000031.5.*\n.*leave `exact` out"):
+        culler.cull(*frame, exact=True)
+
+
+@pytest.mark.parametrize("strategy", ["s-dop-sequential", "aabb", "s-dop-object-of-interest"])
+def test_poses_of_float64_lose_no_pair(strategy):
+    shape, draws = sdop.Shape(*bracket()), np.random.default_rng(5)
+    interest = [0, 1, 2] if strategy == "s-dop-object-of-interest" else None
+    groups = np.where(np.arange(60) % 5, 1, 3)[:, None].repeat(2, axis=1)
+    options = dict(strategy=strategy, dynamic=np.arange(60) % 3 > 0, groups=groups, interest=interest)
+    culler = sdop.Culler([shape], [0] * 60, **options)
+    for _ in range(2):
+        rotations, translations = Rotation.random(60, random_state=draws.integers(99)).as_quat(), draws.uniform(-6, 6, (60, 3))
+        found = culler.cull(rotations, translations).tolist()
+        truth = meeting(shape, rotations, translations)
+        truth = [[i, j] for i, j in truth if (i % 3 or j % 3) and (not interest or i in interest)]
+        assert len(truth) > 10 and all(pair in found for pair in truth) and culler.seconds > 0
+        narrow = culler.cull(np.float32(rotations), np.float32(translations))
+        assert sdop.Culler([shape], [0] * 60, **options).cull(np.float32(rotations), np.float32(translations)).tolist() == narrow.tolist()
+    world = sdop.World([shape])
+    ids = [world.insert(0, q, t, dynamic=bool(i % 3)) for i, (q, t) in enumerate(zip(rotations, translations))]
+    assert all([ids[i], ids[j]] in world.cull().tolist() for i, j in truth)
+    world.set_poses(ids, rotations[::-1], translations)
+    assert world.body(ids[0])["rounded"] and world.body(ids[0])["rotation"] == np.float32(rotations[-1]).tolist()
+    world.set_pose(ids[0], [0, 0, 0, 1], [0, 0, 0])
+    assert not world.body(ids[0])["rounded"]
+
+
+def test_vertices_of_float64_grow_the_volumes():
+    rounded, given = sdop.Shape(*bracket()), sdop.Shape(np.float64(BRACKET) * (1 + 2.0**-30), bracket()[1])
+    assert rounded.rounding == 0 and given.rounding >= 4 * 2.0**-30
+    np.testing.assert_array_equal(rounded.vertices, given.vertices)
+    assert given.ball[1] > rounded.ball[1] and (given.slabs[1] > rounded.slabs[1]).all()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda s, q: sdop.Culler([s], [0]).cull([q], [[0, 0, 0]], exact=True),
+        lambda s, q: sdop.World([s]).insert(0, q, [0, 0, 0], exact=True),
+        lambda s, q: sdop.World([s]).set_pose(1, q, [0, 0, 0], exact=True),
+        lambda s, q: sdop.World([s]).set_poses([1], [q], [[0, 0, 0]], exact=True),
+        lambda s, q: sdop.PeriodicWorld([s], [99, None, None]).insert(0, q, [0, 0, 0], exact=True),
+        lambda s, q: sdop.PeriodicWorld([s], [99, None, None]).set_pose(1, q, [0, 0, 0], exact=True),
+        lambda s, q: sdop.PeriodicWorld([s], [99, None, None]).set_poses([1], [q], [[0, 0, 0]], exact=True),
+        lambda s, q: sdop.QueryIndex().touching_shapes(s, [q], [[0, 0, 0]], exact=True),
+        lambda s, q: sdop.Compound([s], [0], [q], [[0, 0, 0]], exact=True),
+    ],
+)
+def test_exact_poses_are_float32(call):
+    shape = sdop.Shape(*bracket())
+    with pytest.raises(sdop.SdopError, match=r"rotations?\[0, 2\] is 0.6.*\n.*leave `exact` out"):
+        call(shape, [0, 0, 0.6, 0.8])
+
+
+def test_periodic_worlds_take_float64():
+    world = sdop.PeriodicWorld([tetrahedron()], [99, None, None])
+    a, b = world.insert(0, [0, 0, 0.6, 0.8], [0.1, 0, 0]), world.insert(0, [0, 0, 0, 1], [99.2, 0, 0])
+    assert world.cull()[0].tolist() == [[a, b]] and world.body(a)["rounded"]
+    world.set_poses([a, b], [[0, 0, 0, 1], [0, 0, 0.6, 0.8]], [[0, 0, 0], [50, 0, 0]])
+    world.set_pose(b, [0, 0, 0.6, 0.8], [50, 0, 0])
+    assert not world.body(a)["rounded"] and world.body(b)["rounded"] and len(world.cull()[0]) == 0
 
 
 def test_a_world_is_saved_and_restored():
@@ -181,6 +243,10 @@ def test_a_body_says_that_it_rests():
         (lambda s: sdop.Culler([s], [[0]]), r"body_shapes has shape \[1, 1\]"),
         (lambda s: sdop.Shape(BRACKET, [[0, 1, 99]]), "99"),
         (lambda s: sdop.Shape(BRACKET * np.nan, [[0, 1, 2]]), "NaN"),
+        (lambda s: sdop.Shape(np.ma.masked_equal(BRACKET, 4), [[0, 1, 2]]), "vertices is a masked array"),
+        (lambda s: sdop.Culler([s], np.ma.masked_equal([0], 0)), "body_shapes is a masked array"),
+        (lambda s: sdop.World([s]).insert(0, [0, 0, 0, 1], [2**60 + 1, 0, 0]), r"translation has whole numbers above 2\*\*53"),
+        (lambda s: sdop.World([s]).insert(0, np.ma.masked_equal([0, 0, 0, 1], 1), [0, 0, 0]), "rotation is a masked array"),
     ],
 )
 def test_what_is_wrong_is_said_with_a_remedy(call, text):
@@ -198,6 +264,8 @@ def test_what_is_wrong_is_said_with_a_remedy(call, text):
         (lambda s: sdop.Shape(BRACKET, np.zeros((1, 3))), "triangles has dtype float64"),
         (lambda s: sdop.World([s]).insert(0, [True] * 4, [0, 0, 0]), "rotation has dtype bool"),
         (lambda s: sdop.Culler("shapes", [0]), "shapes"),
+        (lambda s: sdop.World([s]).set_poses(np.array([np.uint64(1), -1]), [], []), "ids has dtype float64; .*np.uint64"),
+        (lambda s: sdop.World([s]).set_poses(["1"], [], []), "ids has dtype <U1; accepted are integers"),
     ],
 )
 def test_what_has_another_dtype_is_refused(call, text):

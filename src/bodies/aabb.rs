@@ -2,6 +2,7 @@
 //! [`BoxWorld`](crate::BoxWorld).
 
 use super::contract::{ContractError, refuse};
+use crate::rounding::{ceil_f32, floor_f32};
 use crate::simd::{boxes_of, in_default_mode};
 
 pub use crate::simd::Aabb;
@@ -12,6 +13,22 @@ impl Aabb {
     pub fn new(min: impl Into<[f32; 3]>, max: impl Into<[f32; 3]>) -> Self {
         let (min, max) = (min.into(), max.into());
         Self { min, max }
+    }
+
+    /// The smallest f32 box that contains an f64 box: the lower ends are rounded down and the upper
+    /// ones up. No pair of f64 boxes is missed that way; boxes that are less than that apart may be
+    /// reported. Ends in the wrong order, NaN, or beyond f32 stay invalid.
+    #[must_use]
+    pub fn outward(min: impl Into<[f64; 3]>, max: impl Into<[f64; 3]>) -> Self {
+        let (min, max) = (min.into(), max.into());
+        in_default_mode(|| {
+            let is_valid = |axis: usize| min[axis] <= max[axis];
+            let [down, up] = [floor_f32, ceil_f32];
+            Self {
+                min: [0, 1, 2].map(|i| if is_valid(i) { down(min[i]) } else { up(min[i]) }),
+                max: [0, 1, 2].map(|i| if is_valid(i) { up(max[i]) } else { down(max[i]) }),
+            }
+        })
     }
 
     /// Reads rows of six numbers as boxes, without a copy: the lower corner x, y, z, then the upper
@@ -57,5 +74,33 @@ impl Aabb {
         let value = format!("from {:?} to {:?}", self.min, self.max);
         let hint = "ends are finite, and `min` is at most `max` on each axis";
         refuse(body, "box", value, hint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rounding::exp2;
+
+    /// The ends are the nearest f32 on the outer side, and themselves if f32 holds them.
+    #[test]
+    fn outward_boxes_are_the_smallest() {
+        let given = Aabb::new([-1.5, 0.0, f32::MIN], [1.5, -0.0, f32::MAX]);
+        assert_eq!(Aabb::outward(given.min.map(f64::from), given.max.map(f64::from)), given);
+        for x in [0.1, 1.0 + exp2(-40), exp2(-160), 1.0e30, -0.1, -exp2(-140) - exp2(-160)] {
+            let Aabb { min, max } = Aabb::outward([x; 3], [x; 3]);
+            assert!(f64::from(min[0]) < x && x < f64::from(max[2]), "{x:e}");
+            assert_eq!((min, max), (min, [min[0].next_up(); 3]), "{x:e}");
+        }
+    }
+
+    /// Rounding mends no invalid box.
+    #[test]
+    fn invalid_boxes_stay_invalid() {
+        let above = 1.0 + exp2(-40);
+        for (lo, hi) in [(above, 1.0), (-1.0, -above), (f64::NAN, 1.0), (0.0, 1.0e39), (0.2, 0.1)] {
+            let outward = Aabb::outward([0.0, lo, 0.0], [1.0, hi, 1.0]);
+            assert!(outward.check(0).is_err(), "{lo} to {hi}: {outward:?}");
+        }
     }
 }

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::BoxWorld;
 use crate::bodies::{Aabb, Groups};
 use crate::world::{
-    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, resting_column,
-    resting_slots, restored_excluded,
+    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, flag_column,
+    flagged_slots, restored_excluded,
 };
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
@@ -41,7 +41,7 @@ impl BoxWorld {
             ids: IdsSnapshot::of(&self.ids),
             bounds: self.bounds.iter().map(bits).collect(),
             dynamic: self.dynamic.clone(),
-            resting: resting_slots(&self.resting),
+            resting: flagged_slots(&self.resting),
             groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
             pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
             excluded: self.excluded.sorted(),
@@ -71,7 +71,7 @@ impl BoxWorld {
         }
         let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
         let excluded = restored_excluded(&snapshot.excluded, &ids)?;
-        let resting = resting_column(&snapshot.resting, ids.slots())?;
+        let resting = flag_column(&snapshot.resting, ids.slots(), "at rest")?;
 
         (self.ids, self.log, self.bounds) = (ids, log, bounds);
         self.dynamic.clone_from(&snapshot.dynamic);

@@ -54,7 +54,8 @@ unsafe fn spec(given: *const SdopShapeSpec) -> Result<ShapeSpec, Refusal> {
 }
 
 /// Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex
-/// indices of triangles. `spec` may be null.
+/// indices of triangles. Its volumes are grown by what rounding the vertices to float moves. `spec`
+/// may be null.
 ///
 /// # Safety
 /// The columns have the stated numbers of entries; `spec` is null or a specification; `out` may be

@@ -28,6 +28,27 @@ pub(super) unsafe fn builder(
     Ok(BoxCuller::builder().finder(finder).threads(threads))
 }
 
+/// Rounds boxes in double, each the lower corner x, y, z and then the upper one, to the smallest
+/// boxes of floats that contain them. No pair is missed that way; boxes that are less than that
+/// apart may be reported.
+///
+/// # Safety
+/// `boxes` and `out` have `count` entries, and those of `out` may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_boxes_outward(
+    boxes: *const [f64; 6],
+    count: usize,
+    out: *mut Aabb,
+) -> SdopStatus {
+    call(|| {
+        // SAFETY: the caller's promise.
+        let boxes = unsafe { column(boxes, count, "boxes") }?;
+        let outward = boxes.iter().map(|&[a, b, c, d, e, f]| Aabb::outward([a, b, c], [d, e, f]));
+        // SAFETY: the caller's promise.
+        unsafe { fill(outward, out, count, &mut 0) }
+    })
+}
+
 /// Makes a culler of boxes. `finder` is "auto" if null; 0 threads are 1.
 ///
 /// # Safety

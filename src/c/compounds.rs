@@ -36,6 +36,13 @@ impl From<&PartPair> for SdopPartPair {
     }
 }
 
+/// A part with a rotation in double, a quaternion of any non-zero norm: `rotation` gets the nearest
+/// floats, and `rounded` says whether they are others. No pair of the exact pose is missed.
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_part_turned(part: Part, x: f64, y: f64, z: f64, w: f64) -> Part {
+    part.turned([x, y, z, w])
+}
+
 /// Makes a compound of parts, whose shapes are numbered as in `shapes`. `name` is for errors, and
 /// may be null.
 ///

@@ -180,6 +180,9 @@ typedef struct {
   float rotation[4];
   // Position of the shape's origin in the frame of the body.
   double translation[3];
+  // Whether the rotation was rounded from f64: `turned` sets it. The part is then grown by what
+  // that may move its points.
+  bool rounded;
 } SdopPart;
 
 // Two parts of two bodies.
@@ -244,6 +247,9 @@ typedef struct {
   float margin;
   // Which bodies it may collide with; all bits for all.
   SdopGroups groups;
+  // Whether the rotation was rounded from double: `sdop_body_turned` sets it. The body is then
+  // grown by what that may move its points.
+  bool rounded;
 } SdopBody;
 
 // The points from + s·(to − from) for 0 ≤ s ≤ 1, world frame.
@@ -274,7 +280,8 @@ const char *sdop_version(void);
 const char *sdop_last_error(void);
 
 // Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex
-// indices of triangles. `spec` may be null.
+// indices of triangles. Its volumes are grown by what rounding the vertices to float moves. `spec`
+// may be null.
 //
 // # Safety
 // The columns have the stated numbers of entries; `spec` is null or a specification; `out` may be
@@ -413,6 +420,14 @@ SdopStatus sdop_box_world_snapshot(SdopBoxWorld *world, uint8_t *buffer, size_t 
 // `world` is a handle; `count` bytes may be read.
 SdopStatus sdop_box_world_restore(SdopBoxWorld *world, const uint8_t *bytes, size_t count);
 
+// Rounds boxes in double, each the lower corner x, y, z and then the upper one, to the smallest
+// boxes of floats that contain them. No pair is missed that way; boxes that are less than that
+// apart may be reported.
+//
+// # Safety
+// `boxes` and `out` have `count` entries, and those of `out` may be written.
+SdopStatus sdop_boxes_outward(const double (*boxes)[6], size_t count, SdopBox *out);
+
 // Makes a culler of boxes. `finder` is "auto" if null; 0 threads are 1.
 //
 // # Safety
@@ -456,6 +471,10 @@ SdopStatus sdop_box_culler_cull_each(SdopBoxCuller *culler,
                                      size_t count,
                                      SdopTakePairs take,
                                      void *user);
+
+// A part with a rotation in double, a quaternion of any non-zero norm: `rotation` gets the nearest
+// floats, and `rounded` says whether they are others. No pair of the exact pose is missed.
+SdopPart sdop_part_turned(SdopPart part, double x, double y, double z, double w);
 
 // Makes a compound of parts, whose shapes are numbered as in `shapes`. `name` is for errors, and
 // may be null.
@@ -819,6 +838,10 @@ SdopStatus sdop_query_index_along(const SdopQueryIndex *index,
 // a margin, in all groups. Change what differs.
 SdopBody sdop_body_at(uint32_t shape, double x, double y, double z);
 
+// A body with a rotation in double, a quaternion of any non-zero norm: `rotation` gets the nearest
+// floats, and `rounded` says whether they are others. No pair of the exact pose is missed.
+SdopBody sdop_body_turned(SdopBody body, double x, double y, double z, double w);
+
 // Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 // defaults.
 //
@@ -875,6 +898,17 @@ SdopStatus sdop_world_set_poses(SdopWorld *world,
                                 const float (*rotation)[4],
                                 const double (*translation)[3],
                                 size_t count);
+
+// Moves bodies as `sdop_world_set_poses` does, with rotations in double: no pair of the exact
+// poses is missed.
+//
+// # Safety
+// As `sdop_world_set_poses`.
+SdopStatus sdop_world_set_poses_f64(SdopWorld *world,
+                                    const uint64_t *ids,
+                                    const double (*rotation)[4],
+                                    const double (*translation)[3],
+                                    size_t count);
 
 // Never reports the pair of two bodies again, such as two links that share a joint, until it is
 // included or one of them is removed.

@@ -8,7 +8,7 @@ use super::border::{
     put, read_back, saved, shared,
 };
 use crate::bodies::{Groups, Motion};
-use crate::world::{Body, BodyId, World};
+use crate::world::{Body, BodyId, World, WorldError};
 
 /// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
 /// events.
@@ -33,6 +33,9 @@ pub struct SdopBody {
     pub margin: f32,
     /// Which bodies it may collide with; all bits for all.
     pub groups: Groups,
+    /// Whether the rotation was rounded from double: `sdop_body_turned` sets it. The body is then
+    /// grown by what that may move its points.
+    pub rounded: bool,
 }
 
 impl From<SdopBody> for Body {
@@ -41,6 +44,7 @@ impl From<SdopBody> for Body {
             shape: body.shape,
             motion: Motion::of(!body.fixed, body.resting),
             rotation: body.rotation,
+            rounded: body.rounded,
             translation: body.translation,
             groups: body.groups,
             margin: body.margin,
@@ -57,10 +61,19 @@ pub extern "C" fn sdop_body_at(shape: u32, x: f64, y: f64, z: f64) -> SdopBody {
         fixed: false,
         resting: false,
         rotation: [0.0, 0.0, 0.0, 1.0],
+        rounded: false,
         translation: [x, y, z],
         margin: 0.0,
         groups: Groups::ALL,
     }
+}
+
+/// A body with a rotation in double, a quaternion of any non-zero norm: `rotation` gets the nearest
+/// floats, and `rounded` says whether they are others. No pair of the exact pose is missed.
+#[unsafe(no_mangle)]
+pub extern "C" fn sdop_body_turned(body: SdopBody, x: f64, y: f64, z: f64, w: f64) -> SdopBody {
+    let Body { rotation, rounded, .. } = Body::default().turned([x, y, z, w]);
+    SdopBody { rotation, rounded, ..body }
 }
 
 /// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
@@ -182,6 +195,39 @@ pub unsafe extern "C" fn sdop_world_set_poses(
     translation: *const [f64; 3],
     count: usize,
 ) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    unsafe { set_poses(world, ids, rotation, translation, count, World::set_pose) }
+}
+
+/// Moves bodies as `sdop_world_set_poses` does, with rotations in double: no pair of the exact
+/// poses is missed.
+///
+/// # Safety
+/// As `sdop_world_set_poses`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_set_poses_f64(
+    world: *mut SdopWorld,
+    ids: *const u64,
+    rotation: *const [f64; 4],
+    translation: *const [f64; 3],
+    count: usize,
+) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    unsafe { set_poses(world, ids, rotation, translation, count, World::set_pose_f64) }
+}
+
+/// Moves bodies by a method of the world.
+///
+/// # Safety
+/// As `sdop_world_set_poses`.
+unsafe fn set_poses<Q: Copy>(
+    world: *mut SdopWorld,
+    ids: *const u64,
+    rotation: *const Q,
+    translation: *const [f64; 3],
+    count: usize,
+    set_pose: impl Fn(&mut World, BodyId, Q, [f64; 3]) -> Result<(), WorldError>,
+) -> SdopStatus {
     call(|| {
         // SAFETY: the caller's promise.
         let it = unsafe { handle(world, "world") }?;
@@ -194,7 +240,7 @@ pub unsafe extern "C" fn sdop_world_set_poses(
             )
         };
         for ((&id, &q), &t) in ids.iter().zip(rotations).zip(translations) {
-            it.0.set_pose(BodyId::from_bits(id), q, t)?;
+            set_pose(&mut it.0, BodyId::from_bits(id), q, t)?;
         }
         Ok(())
     })

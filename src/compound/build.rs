@@ -4,10 +4,11 @@ use super::CompoundError;
 use super::part_set::PartSet;
 use crate::bodies::contract::{ContractError, check_pose};
 use crate::mesh::TriangleMesh;
+use crate::rounding::narrow::{narrow, turn_error};
 use crate::rounding::up;
 use crate::simd::in_default_mode;
 use crate::volume::{Shape, ShapeSpec};
-use crate::world::compose;
+use crate::world::{compose, reach_about_pose};
 
 /// A shape in the frame of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,12 +20,25 @@ pub struct Part {
     pub rotation: [f32; 4],
     /// Position of the shape's origin in the frame of the body.
     pub translation: [f64; 3],
+    /// Whether the rotation was rounded from f64: `turned` sets it. The part is then grown by what
+    /// that may move its points.
+    pub rounded: bool,
 }
 
 impl Default for Part {
     /// Shape 0 at the origin of the body, not rotated.
     fn default() -> Self {
-        Self { shape: 0, rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] }
+        Self { shape: 0, rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3], rounded: false }
+    }
+}
+
+impl Part {
+    /// This part with a rotation in f64, a quaternion (x, y, z, w) of any non-zero norm. If f32
+    /// holds it, that is all. Otherwise `rotation` gets the nearest, and `rounded` says so.
+    #[must_use]
+    pub fn turned(self, rotation: impl Into<[f64; 4]>) -> Self {
+        let (rotation, rounded) = in_default_mode(|| narrow(rotation.into()));
+        Self { rotation, rounded, ..self }
     }
 }
 
@@ -104,8 +118,9 @@ fn mesh_of(shapes: &[Shape], parts: &[Part]) -> Result<TriangleMesh, CompoundErr
             let own = [0, 1, 2].map(|axis| f64::from(vertex[axis]) + shape.pose_offset[axis]);
             let (point, error) = compose(part.rotation, part.translation, own);
             points.push(point);
+            let turned = turn_error(part.rounded, reach_about_pose(0.0, own));
             // Twice the bound, for the sum above.
-            rounding = rounding.max(2.0 * error + f64::from(shape.rounding));
+            rounding = rounding.max(2.0 * error + f64::from(shape.rounding) + turned);
         }
     }
     let mut mesh = TriangleMesh::from_f64(&points, &triangles)?;

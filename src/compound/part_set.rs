@@ -3,10 +3,11 @@
 use super::Part;
 use crate::query::{PosedShape, QueryShape};
 use crate::rounding::compose::{TURN_ERROR, product};
+use crate::rounding::narrow::turn_error;
 use crate::rounding::pose::{rotate_of, rotation};
 use crate::rounding::query::{is_beyond, largest, slack};
 use crate::volume::Shape;
-use crate::world::{Body, compose};
+use crate::world::{Body, compose, reach_about_pose};
 
 /// An unturned part keeps the quaternion of its body.
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
@@ -36,7 +37,8 @@ impl PartSet {
         let ball = |part: &Part| {
             let (centre, radius) = shapes[part.shape as usize].ball();
             let (centre, error) = compose(part.rotation, part.translation, centre);
-            (centre, radius + 2.0 * error) // twice, for the sum in `ball`
+            let turned = turn_error(part.rounded, shapes[part.shape as usize].radius_about_pose());
+            (centre, radius + 2.0 * error + turned) // twice, for the sum in `ball`
         };
         let balls: Vec<_> = parts.iter().map(ball).collect();
         let reach = balls.iter().map(|(c, radius)| 2.0 * largest(*c) + radius);
@@ -51,14 +53,17 @@ impl PartSet {
     fn posed(&self, body: &Body, number: u32) -> PosedShape<'_> {
         let part = &self.parts[number as usize];
         let shape = &self.shapes[part.shape as usize];
-        let (turn, turn_error) = if part.rotation == UNTURNED {
+        let (turn, product_error) = if part.rotation == UNTURNED {
             (body.rotation, 0.0)
         } else {
             let error = TURN_ERROR * shape.radius_about_pose();
             (product(body.rotation, part.rotation), error)
         };
         let (place, error) = compose(body.rotation, body.translation, part.translation);
-        shape.as_part((turn, place), body.margin, error + turn_error)
+        let reach = shape.radius_about_pose();
+        let about_body = reach_about_pose(reach, part.translation);
+        let rounded = turn_error(part.rounded, reach) + turn_error(body.rounded, about_body);
+        shape.as_part((turn, place), body.margin, error + product_error + rounded)
     }
 }
 
@@ -140,7 +145,8 @@ impl<'a> PosedParts<'a> {
     fn place(&mut self, origin: [f64; 3]) {
         let turn = rotation(self.body.rotation);
         let apart = [0, 1, 2].map(|axis| self.body.translation[axis] - origin[axis]);
-        let margin = f64::from(self.body.margin);
+        let rounded = turn_error(self.body.rounded, self.set.reach);
+        let margin = f64::from(self.body.margin) + rounded;
         let out = margin + slack(self.set.reach + margin + largest(apart));
         let mut bounds = Bounds::EMPTY;
         self.balls.clear();

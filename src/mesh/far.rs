@@ -64,7 +64,7 @@ fn moved(points: impl Iterator<Item = [f64; 3]>) -> f64 {
 }
 
 /// The largest distance of a point from its offset + vertex, rounded up; 0 where all are exact.
-fn rounding(points: &[[f64; 3]], offset: [f64; 3]) -> f32 {
+pub(super) fn rounding(points: &[[f64; 3]], offset: [f64; 3]) -> f32 {
     let squared = |&point: &[f64; 3]| {
         let vertex = vertex(point, offset);
         let moved = |i: usize| {

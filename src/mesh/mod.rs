@@ -31,9 +31,9 @@ pub const MAX_COORDINATE: f32 = (1_u64 << 60) as f32;
 /// is offset + vertex.
 ///
 /// The promise of this library is about these f32 vertices, within their `rounding`. Usually the
-/// offset is zero and coordinates are rounded to f32. If that would move a vertex by more than 2⁻²⁰
-/// of the mesh's largest extent, the mesh is far from its origin, and its vertices are stored
-/// relative to a point near it.
+/// offset is zero and coordinates are rounded to f32; what a file says is what it says in f32. If
+/// that would move a vertex by more than 2⁻²⁰ of the mesh's largest extent, the mesh is far from
+/// its origin, and its vertices are stored relative to a point near it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleMesh {
     /// The mesh's name in messages and tables: the file's stem or the procedural shape's name.
@@ -45,8 +45,9 @@ pub struct TriangleMesh {
     /// The origin of `vertices` in the file's coordinates: zero unless the mesh is far from its
     /// origin.
     pub offset: [f64; 3],
-    /// An upper bound on the distance of the vertices of a far mesh, or of several meshes as one,
-    /// from their f64 points. Volumes are grown by it.
+    /// An upper bound on the distance of the vertices from f64 points that they were rounded from:
+    /// those of [`Self::from_f64`], of a far mesh, or of several meshes as one. Volumes are grown
+    /// by it.
     pub rounding: f32,
 }
 
@@ -82,11 +83,20 @@ impl TriangleMesh {
     }
 
     /// Makes a mesh, without a name, from borrowed vertices in f64. They are rounded to f32, about
-    /// an offset if the mesh is far from its origin.
+    /// an offset if the mesh is far from its origin, and its volumes are grown by a bound on what
+    /// that moves, its `rounding`: no pair of the f64 meshes is missed.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn from_f64(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        let mut mesh = Self::rounded(vertices, triangles)?;
+        mesh.rounding = far::rounding(vertices, mesh.offset);
+        Ok(mesh)
+    }
+
+    /// Makes a mesh as a file has it: its vertices are the rounded ones, except that a far mesh
+    /// keeps the bound of its rounding.
+    fn rounded(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
         match check(vertices, triangles) {
             Ok(()) => Ok(Self::placed(far::place(vertices), triangles.to_vec())),
             Err(problem) => Err(problem.at("mesh", None)),

@@ -20,8 +20,8 @@ impl From<[f64; 3]> for Scale {
 }
 
 impl TriangleMesh {
-    /// The mesh with each coordinate of the file multiplied by its factor in f64 and then stored as
-    /// by [`Self::from_f64`]. Faces stay counter-clockwise from outside: if the scale mirrors, each
+    /// The mesh with each coordinate of the file multiplied by its factor in f64 and then rounded
+    /// as if a file had it. Faces stay counter-clockwise from outside: if the scale mirrors, each
     /// triangle's last two corners are exchanged.
     ///
     /// # Errors
@@ -36,10 +36,12 @@ impl TriangleMesh {
         let mirrors = scale.iter().filter(|factor| **factor < 0.0).count() % 2 == 1;
         let triangle = |&[a, b, c]: &[u32; 3]| if mirrors { [a, c, b] } else { [a, b, c] };
         let triangles: Vec<[u32; 3]> = self.triangles.iter().map(triangle).collect();
-        let mut scaled = Self::from_f64(&points, &triangles)
+        let is_rounded = self.rounding > 0.0;
+        let make = if is_rounded { Self::from_f64 } else { Self::rounded };
+        let mut scaled = make(&points, &triangles)
             .map_err(|error| error.problem.at(&self.name, None))?
             .named(&self.name);
-        if self.rounding > 0.0 {
+        if is_rounded {
             // The rounding of the original vertices is scaled too.
             let largest = scale.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
             let moved = f64::from(self.rounding) * largest + f64::from(scaled.rounding);

@@ -5,9 +5,10 @@ use super::PeriodicError;
 use super::images::{ImageWorld, PlacedBody, Placement, forward_images};
 use super::periods::{Periods, margin_about};
 use crate::rounding::exp2;
+use crate::rounding::narrow::turn_error;
 use crate::rounding::period::wrap;
 use crate::rounding::query::largest;
-use crate::world::{Body, BodyId, World, WorldError, WorldPairs, compose};
+use crate::world::{Body, BodyId, World, WorldError, WorldPairs, compose, reach_about_pose};
 
 /// 2⁻⁴⁸, as a multiple of the period: more than rounding takes from the ends of a placed body, and
 /// from differences of ends.
@@ -56,7 +57,8 @@ impl ImageWorld for World {
         let (centre, radius) = self.ball(body.shape);
         let (middle, error) = compose(body.rotation, wrapped, centre);
         // Twice the bound for the sum that is the centre, and again for roundings of the sum here.
-        let radius = radius + f64::from(body.margin) + 4.0 * error;
+        let turned = turn_error(body.rounded, reach_about_pose(radius, centre));
+        let radius = radius + f64::from(body.margin) + 4.0 * error + turned;
         let rounding = REACH_SHARE * (largest(centre) + radius);
         place.is_small = true;
         for (axis, period) in periods.iter() {

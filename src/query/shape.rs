@@ -6,6 +6,7 @@
 use super::LineTrack;
 use crate::bodies::Aabb;
 use crate::bodies::contract::{ContractError, check_pose};
+use crate::rounding::narrow::turn_error;
 use crate::rounding::pose::{self, Rotation, rotate_of};
 use crate::rounding::query::{
     Course, STILL, crossing, into_body, is_beyond, largest, slack, turn_back,
@@ -13,7 +14,7 @@ use crate::rounding::query::{
 use crate::rounding::{down, up};
 use crate::update::ShapeFrame;
 use crate::volume::{DirectionSet, OrDop, Shape};
-use crate::world::{Body, ShapeVolumes, compose};
+use crate::world::{Body, ShapeVolumes, compose, reach_about_pose};
 
 /// A shape prepared for queries: its ball and its or-DOP, computed once.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,9 +139,16 @@ impl QueryShape {
         (centre, self.radius)
     }
 
+    /// This shape as that of a body, grown by its margin and by what the rounding of its rotation
+    /// moves.
+    pub(super) fn of_body(&self, body: &Body) -> PosedShape<'_> {
+        let error = turn_error(body.rounded, self.radius_about_pose());
+        self.as_part((body.rotation, body.translation), body.margin, error)
+    }
+
     /// A bound on the distance of the shape's points from the point that poses place.
     pub(crate) fn radius_about_pose(&self) -> f64 {
-        self.reach + self.pose_offset.iter().map(|x| x.abs()).sum::<f64>()
+        reach_about_pose(self.reach, self.pose_offset)
     }
 
     /// No less than e·x for each point x.
@@ -215,7 +223,7 @@ impl PosedBodies {
     pub fn at(&self, slot: usize) -> Option<PosedShape<'_>> {
         let body = &self.bodies[slot];
         let shape = self.shapes[body.shape as usize].as_ref()?;
-        Some(shape.at(body.rotation, body.translation, body.margin))
+        Some(shape.of_body(body))
     }
 }
 

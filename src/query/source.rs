@@ -74,7 +74,7 @@ impl QuerySource for World {
                 continue;
             }
             if let Some(shape) = &posed.shapes[body.shape as usize] {
-                let body_there = shape.at(body.rotation, body.translation, body.margin);
+                let body_there = shape.of_body(&body);
                 let tree = if body.motion.is_dynamic() { MOVING_TREE } else { FIXED_TREE };
                 index.put(id, tree, &body_there.bounds(index.origin));
             }

@@ -5,7 +5,9 @@ use thiserror::Error;
 use super::LineTrack;
 use super::shape::QueryShape;
 use crate::bodies::Aabb;
-use crate::rounding::{LIMIT, exp2, query::largest};
+use crate::rounding::narrow::{narrow, turn_error};
+use crate::rounding::{LIMIT, exp2, query::largest, up};
+use crate::simd::in_default_mode;
 
 /// The least size of a ray's direction.
 const LEAST_DIRECTION: f64 = exp2(-60);
@@ -38,6 +40,27 @@ pub enum QueryVolume<'a> {
         /// The margin, a length of 0 or more.
         margin: f32,
     },
+}
+
+impl<'a> QueryVolume<'a> {
+    /// A shape at a pose in f64, grown by a margin: the rotation is a quaternion (x, y, z, w) of
+    /// any non-zero norm. If f32 doesn't hold it, the margin also covers what rounding may move.
+    #[must_use]
+    pub fn shape(
+        shape: &'a QueryShape,
+        rotation: impl Into<[f64; 4]>,
+        translation: impl Into<[f64; 3]>,
+        margin: f32,
+    ) -> Self {
+        let (rotation, translation) = (rotation.into(), translation.into());
+        in_default_mode(|| {
+            let (rotation, is_rounded) = narrow(rotation);
+            let error = turn_error(is_rounded, shape.radius_about_pose());
+            let is_grown = error > 0.0 && margin >= 0.0; // an invalid margin stays invalid
+            let margin = if is_grown { up(f64::from(margin) + error) } else { margin };
+            Self::Shape { shape, rotation, translation, margin }
+        })
+    }
 }
 
 impl From<Aabb> for QueryVolume<'_> {

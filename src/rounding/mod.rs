@@ -18,6 +18,7 @@
 pub mod border;
 pub mod compose;
 pub mod cube;
+pub mod narrow;
 pub mod period;
 pub mod pose;
 pub mod query;

@@ -78,8 +78,9 @@ pub struct Shape {
     /// vertices at t + R(q)·pose_offset. A [`World`](crate::World) computes that in f64; a culler
     /// with f32 poses rejects such a shape.
     pub pose_offset: [f64; 3],
-    /// An upper bound on the distance of the vertices of a far mesh, or of a compound, from their
-    /// f64 points; 0 for any other mesh. Ball, reach and slabs are grown by it.
+    /// An upper bound on the distance of the vertices from the f64 points that they were rounded
+    /// from: those of [`TriangleMesh::from_f64`], of a far mesh, or of a compound; 0 for any other
+    /// mesh. Ball, reach and slabs are grown by it.
     pub rounding: f32,
     /// Smallest enclosing ball of `vertices`, rounded up.
     pub ball: Ball,

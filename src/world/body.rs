@@ -1,6 +1,8 @@
 //! The bodies of a world.
 
 use crate::bodies::{Groups, Motion};
+use crate::rounding::narrow::narrow;
+use crate::simd::in_default_mode;
 
 /// A body of a [`World`](crate::World): its shape, pose, motion, groups and contact margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +15,10 @@ pub struct Body {
     pub rotation: [f32; 4],
     /// Translation of the body origin, world frame.
     pub translation: [f64; 3],
+    /// Whether the rotation was rounded from f64 ([`Self::turned`]). The body is then grown by what
+    /// that may move its points, rounded up to at least 2⁻¹² of its reach, so that no pair of the
+    /// exact pose is missed.
+    pub rounded: bool,
     /// Which bodies it may collide with.
     pub groups: Groups,
     /// Contact margin, a length ≥ 0: a pair is reported when its meshes, each grown by its margin,
@@ -34,6 +40,14 @@ impl Body {
         }
     }
 
+    /// This body with a rotation in f64, a quaternion (x, y, z, w) of any non-zero norm. If f32
+    /// holds it, that is all. Otherwise `rotation` gets the nearest, and `rounded` says so.
+    #[must_use]
+    pub fn turned(self, rotation: impl Into<[f64; 4]>) -> Self {
+        let (rotation, rounded) = in_default_mode(|| narrow(rotation.into()));
+        Self { rotation, rounded, ..self }
+    }
+
     /// This body, fixed: pairs of two fixed bodies are never tested.
     #[must_use]
     pub fn fixed(self) -> Self {
@@ -50,6 +64,7 @@ impl Default for Body {
             motion: Motion::Dynamic,
             rotation: [0.0, 0.0, 0.0, 1.0],
             translation: [0.0; 3],
+            rounded: false,
             groups: Groups::ALL,
             margin: 0.0,
         }

@@ -70,6 +70,7 @@ impl World {
         shrink_column(&mut self.shape, slots);
         shrink_column(&mut self.translation, slots);
         shrink_column(&mut self.margin, slots);
+        shrink_column(&mut self.rounded, slots);
         shrink_column(&mut self.groups, slots);
         let shapes = self.shape_numbers();
         shrink_column(&mut self.shapes, shapes);

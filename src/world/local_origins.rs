@@ -12,6 +12,7 @@ use super::region::{PlacedBody, Region};
 use super::regions::{Regions, regions};
 use super::{World, WorldError, offset};
 use crate::bodies::contract::is_within_limit;
+use crate::rounding::narrow::turn_error;
 use crate::simd::{CACHE_LINE, prefetch};
 
 /// The number of changed bodies by which prefetching is ahead.
@@ -180,11 +181,15 @@ impl World {
         })
     }
 
-    /// The translation of the vertices of the body in a slot, and the bound of its error.
+    /// The translation of the vertices of the body in a slot, and a bound on what its rounding and
+    /// that of the rotation move.
     #[inline]
     fn composed(&self, slot: usize) -> ([f64; 3], f64) {
-        let offset = self.shapes[self.shape[slot] as usize].pose_offset;
-        offset::compose(self.bodies.rotation[slot], self.translation[slot], offset)
+        let shape = &self.shapes[self.shape[slot] as usize];
+        let (rotation, offset) = (self.bodies.rotation[slot], shape.pose_offset);
+        let (place, error) = offset::compose(rotation, self.translation[slot], offset);
+        let reach = offset::reach_about_pose(shape.reach.into(), offset);
+        (place, error + turn_error(self.is_rounded(slot), reach))
     }
 }
 

@@ -93,10 +93,10 @@ pub(crate) use self::ids::{Ids, shrink_column};
 pub(crate) use self::live_pairs::LivePairs;
 pub(crate) use self::movers::Movers;
 #[cfg(feature = "shapes")]
-pub(crate) use self::shape_volumes::{ShapeVolumes, compose};
+pub(crate) use self::shape_volumes::{ShapeVolumes, compose, reach_about_pose};
 #[cfg(feature = "serde")]
 pub(crate) use self::snapshot_parts::{
-    IdsSnapshot, PairsSnapshot, Version, check_length, resting_column, resting_slots,
+    IdsSnapshot, PairsSnapshot, Version, check_length, flag_column, flagged_slots,
     restored_excluded,
 };
 #[cfg(feature = "shapes")]
@@ -146,6 +146,8 @@ pub struct World {
     shape: Vec<u32>,
     translation: Vec<[f64; 3]>,
     margin: Vec<f32>,
+    /// Whether each slot's rotation was rounded from f64; slots beyond its end have none.
+    rounded: Vec<bool>,
     groups: Vec<Groups>,
     margins: Margins,
     interest: Vec<BodyId>,
@@ -199,6 +201,7 @@ impl World {
             shape: Vec::new(),
             translation: Vec::new(),
             margin: Vec::new(),
+            rounded: Vec::new(),
             groups: Vec::new(),
             margins: Margins::default(),
             interest: Vec::new(),
@@ -292,6 +295,7 @@ impl World {
     pub(crate) fn set_checked(&mut self, slot: usize, body: Body) {
         let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.bodies.dynamic[slot]);
         let is_same = self.is_at(slot, body.rotation, body.translation)
+            && body.rounded == self.is_rounded(slot)
             && body.margin.to_bits() == self.margin[slot].to_bits()
             && body.shape == self.shape[slot]
             && is_dynamic == was_dynamic
@@ -316,16 +320,55 @@ impl World {
         rotation: impl Into<[f32; 4]>,
         translation: impl Into<[f64; 3]>,
     ) -> Result<(), WorldError> {
-        let (rotation, translation) = (rotation.into(), translation.into());
+        self.pose(id, (rotation.into(), false), translation.into())
+    }
+
+    /// [`Self::set_pose`] with a rotation in f64 ([`Body::turned`]): if f32 doesn't hold it, the
+    /// body is grown by what rounding may move its points.
+    ///
+    /// # Errors
+    /// As [`Self::set_pose`].
+    pub fn set_pose_f64(
+        &mut self,
+        id: BodyId,
+        rotation: impl Into<[f64; 4]>,
+        translation: impl Into<[f64; 3]>,
+    ) -> Result<(), WorldError> {
+        let Body { rotation, rounded, .. } = Body::default().turned(rotation);
+        self.pose(id, (rotation, rounded), translation.into())
+    }
+
+    fn pose(
+        &mut self,
+        id: BodyId,
+        (rotation, rounded): ([f32; 4], bool),
+        translation: [f64; 3],
+    ) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
         in_default_mode(|| check_pose(slot, &rotation, &translation))?;
-        if !self.is_at(slot, rotation, translation) {
+        if !self.is_at(slot, rotation, translation) || self.is_rounded(slot) != rounded {
             self.replaced |= !self.bodies.dynamic[slot];
             self.movers.note(slot, &self.ids);
             self.bodies.rotation[slot] = rotation;
             self.translation[slot] = translation;
+            self.set_rounded(slot, rounded);
         }
         Ok(())
+    }
+
+    /// Whether the rotation of the body in a slot was rounded from f64.
+    #[inline]
+    fn is_rounded(&self, slot: usize) -> bool {
+        self.rounded.get(slot).is_some_and(|rounded| *rounded)
+    }
+
+    fn set_rounded(&mut self, slot: usize, rounded: bool) {
+        if rounded && self.rounded.len() <= slot {
+            self.rounded.resize(slot + 1, false);
+        }
+        if let Some(is_rounded) = self.rounded.get_mut(slot) {
+            *is_rounded = rounded;
+        }
     }
 
     /// Puts a body to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
@@ -419,6 +462,7 @@ impl World {
         self.bodies.dynamic[slot] = body.motion.is_dynamic();
         self.resting[slot] = body.motion == Motion::Resting;
         self.bodies.rotation[slot] = body.rotation;
+        self.set_rounded(slot, body.rounded);
         self.shape[slot] = body.shape;
         self.translation[slot] = body.translation;
         self.groups[slot] = body.groups;
@@ -431,6 +475,7 @@ impl World {
             motion: Motion::of(self.bodies.dynamic[slot], self.resting[slot]),
             rotation: self.bodies.rotation[slot],
             translation: self.translation[slot],
+            rounded: self.is_rounded(slot),
             groups: self.groups[slot],
             margin: self.margin[slot],
         }

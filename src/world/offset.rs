@@ -17,6 +17,13 @@ pub(crate) fn compose(q: [f32; 4], t: [f64; 3], offset: [f64; 3]) -> ([f64; 3], 
     (std::array::from_fn(|i| turned[i] + t[i]), size * OFFSET_ERROR)
 }
 
+/// A bound on the distance of a shape's points from the point that poses place, of their distance
+/// from the origin of the vertices.
+#[inline]
+pub(crate) fn reach_about_pose(reach: f64, offset: [f64; 3]) -> f64 {
+    reach + offset.iter().map(|x| x.abs()).sum::<f64>()
+}
+
 #[cfg(test)]
 mod tests {
     use rand_chacha::ChaCha8Rng;

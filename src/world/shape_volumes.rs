@@ -4,7 +4,7 @@ use super::World;
 use crate::update::ShapeFrame;
 use crate::volume::OrDop;
 
-pub(crate) use super::offset::compose;
+pub(crate) use super::offset::{compose, reach_about_pose};
 
 /// The volumes of a shape.
 #[derive(Clone, Copy)]

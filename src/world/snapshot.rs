@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 use super::local_origins::Origins;
 use super::shapes::{ShapeSlot, check_shape};
 use super::snapshot_parts::{
-    IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged, resting_column,
-    resting_slots, restored_excluded,
+    IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged, flag_column,
+    flagged_slots, restored_excluded,
 };
 use super::{BodyId, Groups, LivePairs, World, check_margin, check_pose};
 use crate::bodies::Bodies;
@@ -42,6 +42,9 @@ pub struct WorldSnapshot {
     answers: Vec<([u32; 2], u32)>,
     #[serde(default)]
     excluded: Vec<[u32; 2]>,
+    /// Slots of bodies whose rotation was rounded from f64, sorted.
+    #[serde(default)]
+    rounded: Vec<u32>,
 }
 
 /// A shape that a snapshot's bodies may have.
@@ -83,7 +86,7 @@ impl World {
             ids: IdsSnapshot::of(&self.ids),
             shape: self.shape.clone(),
             dynamic: self.bodies.dynamic.clone(),
-            resting: resting_slots(&self.resting),
+            resting: flagged_slots(&self.resting),
             rotation: self.bodies.rotation.iter().map(|q| q.map(bits)).collect(),
             translation: self.translation.iter().map(|t| t.map(f64::to_bits)).collect(),
             margin: self.margin.iter().copied().map(bits).collect(),
@@ -92,6 +95,7 @@ impl World {
             pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
             answers: self.culler.answers().0,
             excluded: self.culler.excluded().sorted(),
+            rounded: flagged_slots(&self.rounded),
         }
     }
 
@@ -138,7 +142,11 @@ impl World {
             }
         }
         let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
-        let resting = resting_column(&snapshot.resting, slots)?;
+        let resting = flag_column(&snapshot.resting, slots, "at rest")?;
+        let rounded = match &snapshot.rounded[..] {
+            [] => Vec::new(),
+            rounded => flag_column(rounded, slots, "rounded")?,
+        };
         let answers = checked(&snapshot.answers, slots)?;
         let excluded = restored_excluded(&snapshot.excluded, &ids)?;
 
@@ -149,6 +157,7 @@ impl World {
             translation: vec![[0.0; 3]; slots],
         };
         (self.ids, self.log, self.resting) = (ids, log, resting);
+        self.rounded = rounded;
         (self.shape, self.translation, self.margin) = (snapshot.shape.clone(), translation, margin);
         let groups = snapshot.groups.iter();
         self.groups = groups.map(|&[member, mask]| Groups { member, mask }).collect();

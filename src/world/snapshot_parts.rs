@@ -85,23 +85,27 @@ pub(crate) fn restored_excluded(
     damaged("excluded pairs that there can't be")
 }
 
-/// The slots of bodies at rest, sorted.
-pub(crate) fn resting_slots(resting: &[bool]) -> Vec<u32> {
-    let slots = (0..).zip(resting);
-    let at_rest = slots.filter(|(_, is_resting)| **is_resting);
-    at_rest.map(|(slot, _)| slot).collect()
+/// The slots of bodies with a flag, such as those at rest, sorted.
+pub(crate) fn flagged_slots(flags: &[bool]) -> Vec<u32> {
+    let slots = (0..).zip(flags);
+    let flagged = slots.filter(|(_, is_flagged)| **is_flagged);
+    flagged.map(|(slot, _)| slot).collect()
 }
 
-/// Whether the body in each slot is at rest.
-pub(crate) fn resting_column(at_rest: &[u32], slots: usize) -> Result<Vec<bool>, SnapshotError> {
-    let mut resting = vec![false; slots];
-    for &slot in at_rest {
-        match resting.get_mut(slot as usize) {
-            Some(is_resting) => *is_resting = true,
-            None => return damaged(format!("slot {slot} of {slots} is at rest")),
+/// Whether the body in each slot has a flag, which `name` describes.
+pub(crate) fn flag_column(
+    flagged: &[u32],
+    slots: usize,
+    name: &str,
+) -> Result<Vec<bool>, SnapshotError> {
+    let mut flags = vec![false; slots];
+    for &slot in flagged {
+        match flags.get_mut(slot as usize) {
+            Some(is_flagged) => *is_flagged = true,
+            None => return damaged(format!("slot {slot} of {slots} is {name}")),
         }
     }
-    Ok(resting)
+    Ok(flags)
 }
 
 /// The version of a snapshot, which comes first in it. Other versions are rejected.

@@ -188,7 +188,7 @@ static void prepare(Caller *it) {
     const uint32_t triangles[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     check(it, sdop_shape_new(vertices, 4, triangles, 4, NULL, &shape));
     const SdopShape *const shapes[] = {shape};
-    const SdopPart parts[] = {{0, {0, 0, 0, 1}, {0, 0, 0}}, {0, {0, 0, 0, 1}, {1.5, 0, 0}}};
+    const SdopPart parts[] = {{0, {0, 0, 0, 1}, {0, 0, 0}, false}, {0, {0, 0, 0, 1}, {1.5, 0, 0}, false}};
     check(it, sdop_compound_new("the-arm", shapes, 1, parts, 2, &compound));
     check(it, sdop_pair_test_new(0, &pair_test));
     uint32_t number;

@@ -58,6 +58,7 @@ impl TurnedParts {
             shape: part as u32,
             rotation: rotations[part].map(|x| x as f32),
             translation: real(moved[part], SQUARE).map(|x| x * STEP),
+            ..Part::default()
         });
         let place = |part: usize, corner: [i64; 3]| {
             let turned = apply(turn(rotations[part]), corner);

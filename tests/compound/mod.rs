@@ -120,6 +120,7 @@ fn tree(count: usize, shapes: usize, random: &mut Random) -> Vec<Part> {
                 _ => [(); 4].map(|()| random.within(1.0)),
             },
             translation: [0, 1, 2].map(|axis| from[axis] + way[axis] as f64 * STEP),
+            rounded: false,
         });
     }
     parts

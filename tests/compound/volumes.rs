@@ -36,6 +36,7 @@ fn shape_contains_all_parts() {
                     shape: random.below(shapes.len()) as u32,
                     rotation: [(); 4].map(|()| random.within(1.0)),
                     translation: [(); 3].map(|()| 4.0 / (0.7 + f64::from(random.unit())) - 4.0),
+                    rounded: false,
                 };
                 let parts: Vec<Part> = (0..count).map(|_| part(&mut random)).collect();
                 let compound = Compound::build("any", &shapes, &parts).unwrap();

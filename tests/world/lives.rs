@@ -80,6 +80,7 @@ fn default_body_is_dynamic() {
         motion: Motion::Dynamic,
         rotation: turn,
         translation: place,
+        rounded: false,
         groups: Groups::ALL,
         margin: 0.0,
     };

@@ -15,6 +15,7 @@ mod pair_test;
 mod regions;
 mod saves;
 mod single_changes;
+mod turned;
 
 use crate::forms;
 use std::collections::{BTreeSet, HashMap};
@@ -49,7 +50,7 @@ impl Random {
             rotation: [(); 4].map(|()| self.unit()),
             translation: [(); 3].map(|()| f64::from(self.unit() * 6.0)),
             groups: Groups { member: 1 << self.below(3), mask: 7 & !(1 << self.below(3)) },
-            margin: 0.0,
+            ..Body::default()
         }
     }
 }

@@ -102,7 +102,7 @@ pub fn read_bytes(
     let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
     let mesh = match triangles {
         Some(triangles) => {
-            TriangleMesh::from_f64(&points, &triangles).map_err(|error| error.problem)
+            TriangleMesh::rounded(&points, &triangles).map_err(|error| error.problem)
         }
         None => TriangleMesh::from_soup(&points),
     };

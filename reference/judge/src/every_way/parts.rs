@@ -44,5 +44,5 @@ pub(super) fn lists(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists
 
 fn part(part: &BodyPart) -> Part {
     let (rotation, translation) = part.rotation_and_translation();
-    Part { shape: part.shape, rotation, translation }
+    Part { shape: part.shape, rotation, translation, rounded: false }
 }

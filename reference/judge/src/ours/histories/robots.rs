@@ -171,6 +171,7 @@ fn draw_parts(count: u32, shapes: u32, below: &mut impl FnMut(u32) -> u32) -> Ve
             shape: below(shapes),
             rotation,
             translation: [0, 1, 2].map(|axis| from[axis] + way[axis] * SQUARE * STEP),
+            rounded: false,
         });
     }
     parts
