@@ -4,7 +4,8 @@ use std::ffi::c_char;
 
 use super::bodies::{SdopShape, shapes};
 use super::border::{
-    SdopIdPair, SdopStatus, call, column, fill, free, give, handle, put, shared, text,
+    Buffer, Out, SdopIdPair, SdopStatus, answer, call, column, free, handle, list, make, shared,
+    text,
 };
 use super::world::SdopWorld;
 use crate::compound::{Compound, Part, PartCuller, PartPair};
@@ -51,7 +52,8 @@ pub unsafe extern "C" fn sdop_compound_new(
     part_count: usize,
     out: *mut *mut SdopCompound,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let name = unsafe { text(name, "compound") }?;
         // SAFETY: the caller's promise.
@@ -59,8 +61,7 @@ pub unsafe extern "C" fn sdop_compound_new(
         // SAFETY: the caller's promise.
         let parts = unsafe { column(parts, part_count, "parts") }?;
         let compound = Compound::build(name, &shapes, parts)?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopCompound(compound)) }
+        Ok(SdopCompound(compound))
     })
 }
 
@@ -83,11 +84,11 @@ pub unsafe extern "C" fn sdop_compound_shape(
     compound: *const SdopCompound,
     out: *mut *mut SdopShape,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let compound = unsafe { shared(compound, "compound") }?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopShape(compound.0.shape().clone())) }
+        Ok(SdopShape(compound.0.shape().clone()))
     })
 }
 
@@ -98,7 +99,7 @@ pub unsafe extern "C" fn sdop_compound_shape(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_part_culler_new(out: *mut *mut SdopPartCuller) -> SdopStatus {
     // SAFETY: the caller's promise.
-    call(|| unsafe { give(out, SdopPartCuller(PartCuller::new())) })
+    make(unsafe { Out::new(out) }, || Ok(SdopPartCuller(PartCuller::new())))
 }
 
 /// Frees a culler of parts; null is fine.
@@ -144,12 +145,11 @@ pub unsafe extern "C" fn sdop_part_culler_cull(
     world: *const SdopWorld,
     pairs: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
         // SAFETY: the caller's promise.
         let (it, world) = unsafe { (handle(culler, "culler")?, shared(world, "world")?) };
-        let found = it.0.cull(&world.0)?.len();
-        // SAFETY: the caller's promise.
-        unsafe { put(pairs, found, "pairs") }
+        Ok(it.0.cull(&world.0)?.len())
     })
 }
 
@@ -165,12 +165,11 @@ pub unsafe extern "C" fn sdop_part_culler_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { shared(culler, "culler") }?;
-        let pairs = it.0.pairs().iter().map(SdopPartPair::from);
-        // SAFETY: the caller's promise.
-        unsafe { fill(pairs, buffer, capacity, count) }
+        Ok(it.0.pairs().iter().map(SdopPartPair::from))
     })
 }
 
@@ -186,11 +185,11 @@ pub unsafe extern "C" fn sdop_part_culler_body_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { shared(culler, "culler") }?;
         let pairs: Vec<_> = it.0.body_pairs().map(SdopIdPair::from).collect();
-        // SAFETY: the caller's promise.
-        unsafe { fill(pairs.into_iter(), buffer, capacity, count) }
+        Ok(pairs.into_iter())
     })
 }

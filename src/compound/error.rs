@@ -27,6 +27,9 @@ pub enum CompoundError {
     /// The parts reach farther from the body's origin than 2⁶⁰.
     #[error(transparent)]
     Volume(#[from] VolumeError),
+    /// The world's pairs are not those of its present bodies.
+    #[error("the world has changed since its last cull, or was culled in portions")]
+    NotCulled,
     /// The world has another shape under the number, or none.
     #[error("shape {shape} of the world is not the shape of compound `{compound}`")]
     OtherShape {
@@ -46,8 +49,11 @@ impl CompoundError {
             Self::Part { source, .. } => source.help(),
             Self::Mesh(error) => return error.help(),
             Self::Volume(error) => error.help(),
+            Self::NotCulled => {
+                "call `World::cull` first: before the first call, and after each change, `restore` and `cull_in_portions`"
+            }
             Self::OtherShape { .. } => {
-                "give the world `compound.shape()` under this number, or `remove_parts`"
+                "give the world `compound.shape()` under this number, or call `remove_parts`, or `set_parts` with the new compound"
             }
         };
         help.to_owned()

@@ -60,7 +60,7 @@ impl CullError {
                 "raise the limit, or take the pairs in portions with `cull_in_portions`"
             }
             Self::Changed { .. } => {
-                "call `Culler::refresh` after a change of the set, or keep the bodies in a `World`"
+                "call `Culler::refresh` after a change of the set or of a shape, or keep the bodies in a `World`"
             }
         }
     }

@@ -29,6 +29,7 @@ impl Culler {
     ) -> Result<u64, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
+        self.follow_static(bodies)?;
         let (mut reported, mut taking) = (0, Duration::ZERO);
         let mut sink = |portion: &mut PairList| {
             let start = Instant::now();

@@ -64,6 +64,11 @@ impl World {
         Ok(())
     }
 
+    /// Whether [`Self::pairs`] are those of the bodies as they are now.
+    pub(crate) fn has_present_pairs(&self) -> bool {
+        self.movers.has_present_pairs()
+    }
+
     /// The pairs of the last cull, the lower slot first, sorted by slots.
     pub fn pairs(&self) -> impl ExactSizeIterator<Item = [BodyId; 2]> + '_ {
         self.log.pairs(&self.ids).iter()
