@@ -100,7 +100,7 @@
 //! | `serde` | serialises settings, counters, and snapshots of worlds |
 //! | `c` | the interface for C and C++, `src/c/sdop.h` |
 //!
-//! Every error has a method `help`, which says how to mend the input.
+//! Every error prints what is wrong and how to mend the input; `problem` and `help` are its halves.
 //!
 //! # Related crates
 //!
@@ -133,6 +133,7 @@ pub mod settings;
 pub mod volume;
 pub mod world;
 
+mod problem;
 mod strategy;
 
 // Inner rooms, which the judge, tests and benches enter from outside: no promise is made about

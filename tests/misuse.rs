@@ -58,7 +58,7 @@ fn cullers(bodies: &Bodies) -> Vec<Culler> {
 
 /// What is wrong with a body, as an error states it.
 fn refused(result: Result<&sdop::PairList, CullError>) -> String {
-    result.map(sdop::PairList::len).unwrap_err().to_string()
+    result.map(sdop::PairList::len).unwrap_err().problem()
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn construction_names_what_is_wrong() {
     let refusal = |change: fn(&mut Bodies)| {
         let mut bodies = row(200);
         change(&mut bodies);
-        Culler::new(&shapes(), &bodies).unwrap_err().to_string()
+        Culler::new(&shapes(), &bodies).unwrap_err().problem()
     };
     assert_eq!(refusal(|b| b.shape[7] = 2), "body 7: shape 2 of 2");
     assert_eq!(refusal(|b| b.rotation[7] = [0.0; 4]), "body 7: rotation [0.0, 0.0, 0.0, 0.0]");
@@ -93,7 +93,7 @@ fn invalid_shape_is_named() {
     ];
     for (number, change) in sizes.into_iter().enumerate() {
         for size in [2f32.powi(60).next_up(), f32::INFINITY, f32::NAN] {
-            let told = outcome(change, size).unwrap_err().to_string();
+            let told = outcome(change, size).unwrap_err().problem();
             assert!(told.starts_with("body 0: shape box"), "{told}");
         }
         assert!(number == 2 || outcome(change, -1.0).is_err(), "{number}");
@@ -242,7 +242,7 @@ fn invalid_rotation_loses_no_pair() {
             turned.rotation[44] = turn;
             match culler.cull(&turned).map(sdop::PairList::sorted) {
                 Ok(now) => assert!(wanted.iter().all(|pair| now.contains(pair)), "{turn:?}"),
-                Err(error) => assert!(error.to_string().starts_with("body 44: rotation")),
+                Err(error) => assert!(error.problem().starts_with("body 44: rotation")),
             }
             assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
         }
@@ -275,7 +275,7 @@ fn static_poses_wait_for_refresh() {
         for frame in 0..40 {
             assert_eq!(culler.cull(&moved).unwrap().sorted(), wanted, "frame {frame}");
         }
-        let told = culler.refresh(&moved).unwrap_err().to_string();
+        let told = culler.refresh(&moved).unwrap_err().problem();
         assert_eq!(told, "body 44: shape 7 of 2");
         assert_eq!(culler.cull(&moved).unwrap().sorted(), wanted);
 
@@ -295,7 +295,7 @@ fn groups_have_one_entry_a_body() {
         let wanted = culler.cull(&bodies).unwrap().sorted();
         for length in [0, 199, 201] {
             let told = culler.set_groups(Some(vec![Groups::ALL; length]));
-            let told = told.unwrap_err().to_string();
+            let told = told.unwrap_err().problem();
             let expected = format!("groups has {length} entries for 200 bodies");
             assert!(told.ends_with(&expected), "{told}");
         }
@@ -327,7 +327,7 @@ fn groups_survive_equal_body_counts() {
 fn mixed_directions_are_rejected() {
     let mut unlike = shapes();
     unlike[1] = unlike[1].clone().with_directions(sdop::DirectionSet::K26);
-    let told = Culler::new(&unlike, &row(3)).unwrap_err().to_string();
+    let told = Culler::new(&unlike, &row(3)).unwrap_err().problem();
     assert_eq!(told, "shape `beside` has an or-DOP of k = 26, shapes before it have k = 18");
     let boxes = Culler::builder().strategy(Strategy::Obb);
     boxes.build(&unlike, &row(3)).unwrap();

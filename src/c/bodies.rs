@@ -208,7 +208,8 @@ pub unsafe extern "C" fn sdop_culler_free(culler: *mut SdopCuller) {
 }
 
 /// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
-/// stay where they were made. `pairs` gets their number; read them with `sdop_culler_pairs`.
+/// that have moved are found where they are now; such a frame takes about twice as long. `pairs`
+/// gets their number; read them with `sdop_culler_pairs`.
 ///
 /// # Safety
 /// `culler` is a handle; the columns have an entry for each body; `pairs` may be written.

@@ -114,7 +114,7 @@ macro_rules! refusals {
     ($($error:ty),+) => {
         $(impl From<$error> for Refusal {
             fn from(error: $error) -> Self {
-                let text = format!("{error}\nhelp: {}", error.help());
+                let text = format!("{}\nhelp: {}", error.problem(), error.help());
                 Self::new(SdopStatus::Refused, text)
             }
         })+

@@ -134,8 +134,8 @@ pub unsafe extern "C" fn sdop_part_culler_set_parts(
     })
 }
 
-/// Finds the pairs of parts in the pairs of the world's last cull: call it after each cull. `pairs`
-/// gets their number; read them with `sdop_part_culler_pairs`.
+/// Finds the pairs of parts in the pairs of the world's last cull: call it after each cull, before
+/// bodies change. `pairs` gets their number; read them with `sdop_part_culler_pairs`.
 ///
 /// # Safety
 /// `culler` and `world` are handles; `pairs` may be written.

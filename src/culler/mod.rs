@@ -287,7 +287,8 @@ impl Culler {
     ///
     /// # Errors
     /// A number of bodies other than the culler was built for; a `dynamic` flag or a shape that has
-    /// changed since the last [`Self::refresh`]; a pose that breaks the contract. [`Self::pairs`] is then empty, and the next frame is culled as if
+    /// changed since the last [`Self::refresh`]; a pose that breaks the contract; more pairs than
+    /// memory holds. [`Self::pairs`] is then empty, and the next frame is culled as if
     /// this one had not happened.
     ///
     /// One thing is not checked: the rotation of a body whose ball is centred at its origin, in
@@ -301,8 +302,9 @@ impl Culler {
         pairs.clear();
         let outcome = self.cull_into(bodies, Output::List(&mut pairs), start);
         self.counters.reported += pairs.len() as u64;
+        let whole = CullError::check_memory(&mut pairs);
         self.pairs = pairs;
-        outcome?;
+        outcome.and(whole)?;
         Ok(&self.pairs)
     }
 

@@ -94,6 +94,7 @@ impl QueryIndex {
     /// not that of the last update, all bodies are new.
     pub fn update(&mut self, world: &impl QuerySource) {
         self.is_updated = true;
+        self.threads.renew();
         in_default_mode(|| {
             world.bring(self);
             for tree in 0..TREES {

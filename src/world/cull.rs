@@ -16,7 +16,8 @@ impl World {
     ///
     /// # Errors
     /// Bodies can't be placed within 2⁶⁰ of an origin, which happens only if meshes are far from
-    /// their own origins. [`Self::pairs`] are still those of the cull before.
+    /// their own origins: [`Self::pairs`] are still those of the cull before. There are more pairs
+    /// than memory holds: then there are none.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         if !self.cull_changed(usize::MAX) {
             self.cull_all(|culler, bodies| culler.cull(bodies).map(|_| ()))?;

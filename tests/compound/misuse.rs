@@ -7,7 +7,7 @@ use super::*;
 fn refusal(parts: &[Part]) -> String {
     let error = Compound::build("arm", &shapes(DirectionSet::K18), parts).unwrap_err();
     assert!(!error.help().is_empty());
-    error.to_string()
+    error.problem()
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn other_shapes_are_refused() {
                 assert!(!is_right && matches!(error, CompoundError::OtherShape { .. }));
                 let wanted =
                     format!("shape {number} of the world is not the shape of compound `arm`");
-                assert_eq!(error.to_string(), wanted);
+                assert_eq!(error.problem(), wanted);
             }
             Ok(_) => assert!(is_right),
         }

@@ -306,7 +306,7 @@ fn invalid_queries_are_rejected() {
     let of_box = |min, max| QueryVolume::Box { min, max };
     let refused = |error: QueryError| {
         assert!(!error.help().is_empty());
-        error.to_string()
+        error.problem()
     };
     for (volume, message) in [
         (ball([0.0, f64::NAN, 0.0], 1.0), "query 1: centre [0.0, NaN, 0.0]"),
