@@ -197,7 +197,7 @@ pub use world::{Body, World};
 #[doc(inline)]
 pub use world::{BodyId, Event, Events, WorldError};
 
-/// The README's example compiles and runs.
+/// The README's example compiles; `.ci/run` runs it in a project of its own.
 #[cfg(all(doctest, feature = "readers"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

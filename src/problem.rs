@@ -1,7 +1,8 @@
 //! The text of errors: what is wrong, and then how to mend it.
 
-/// Gives errors with a `help` what their text needs: `Display` ends with it, `Debug` prints the same
-/// (`unwrap` prints that, and a `main` that returns an error), and `problem` is the text without it.
+/// Gives errors with a `help` what their text needs. `Display` ends with the help, `Debug` prints
+/// the same (for `unwrap`, and for a `main` that returns an error), and `problem` is the text
+/// without it.
 macro_rules! errors {
     ($($error:ty),+) => {$(
         impl $error {

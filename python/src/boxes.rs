@@ -6,11 +6,11 @@ use std::time::Instant;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use sdop::boxes::BoxBody;
-use sdop::{Aabb, BodyId, Finder, Groups, PairList};
+use sdop::{Aabb, BodyId, CullError, Finder, Groups, PairList};
 
 use super::arrays::{Rows, check_length, id_column, one_row, pairs, rows, whole_rows};
 use super::errors::{locked, refused};
-use super::ids::bits_of;
+use super::ids::{bits_of, collected};
 use super::world::Events;
 
 const ROUND: &str = "pass float32, or `sdop.rounded_outward(boxes)`, which misses none and may report boxes that all but touch";
@@ -20,8 +20,12 @@ fn boxes<'py>(given: &Bound<'py, PyAny>) -> PyResult<Rows<'py, 6>> {
 }
 
 /// Pairs as rows, sorted if `sort` is true.
-pub(super) fn list(found: &PairList, sort: bool) -> Vec<[u32; 2]> {
-    if sort { found.sorted() } else { found.iter().collect() }
+pub(super) fn list(found: &PairList, sort: bool) -> Result<Vec<[u32; 2]>, CullError> {
+    let mut rows = collected(found.iter())?;
+    if sort {
+        rows.sort_unstable();
+    }
+    Ok(rows)
 }
 
 /// Groups as two numbers: those that a body is in, and those that it collides with.
@@ -48,21 +52,24 @@ pub(super) fn groups(
 ///     Whether the rows are sorted. Otherwise equal boxes give an equal order.
 /// threads : int
 ///     Number of threads.
+/// limit : int, optional
+///     More pairs than that are an error, and memory for them is never allocated.
 ///
 /// Returns
 /// -------
 /// array of uint32, shape (m, 2)
 ///     Each pair i < j once: exactly those that share a point in exact arithmetic.
 #[pyfunction]
-#[pyo3(signature = (boxes, *, groups=None, sort=false, threads=1))]
+#[pyo3(signature = (boxes, *, groups=None, sort=false, threads=1, limit=None))]
 pub fn box_pairs<'py>(
     py: Python<'py>,
     boxes: &Bound<'py, PyAny>,
     groups: Option<&Bound<'py, PyAny>>,
     sort: bool,
     threads: usize,
+    limit: Option<usize>,
 ) -> PyResult<Bound<'py, PyArray2<u32>>> {
-    BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort)
+    BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort, limit)
 }
 
 /// Finds the boxes that meet, frame after frame. It is faster than `box_pairs`, since results of
@@ -97,13 +104,14 @@ impl BoxCuller {
 
     /// The pairs of this frame's boxes, in the form of `box_pairs`. The number of boxes may change
     /// from frame to frame.
-    #[pyo3(signature = (boxes, *, groups=None, sort=false))]
+    #[pyo3(signature = (boxes, *, groups=None, sort=false, limit=None))]
     fn cull<'py>(
         &self,
         py: Python<'py>,
         boxes: &Bound<'py, PyAny>,
         groups: Option<&Bound<'py, PyAny>>,
         sort: bool,
+        limit: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let given = self::boxes(boxes)?;
         let boxes = Aabb::from_rows(given.rows());
@@ -111,9 +119,12 @@ impl BoxCuller {
         let found = locked(py, &self.0, |TimedCuller { culler, seconds }| {
             culler.set_groups(groups);
             let start = Instant::now();
-            let found = culler.cull(boxes);
+            let found = match limit {
+                Some(limit) => culler.cull_up_to(boxes, limit),
+                None => culler.cull(boxes),
+            };
             *seconds = start.elapsed().as_secs_f64();
-            found.map(|found| list(found, sort))
+            found.and_then(|found| list(found, sort))
         });
         pairs(py, found.map_err(refused)?)
     }
@@ -206,21 +217,33 @@ impl BoxWorld {
         locked(py, &self.0, |world| world.set_many(&ids, boxes)).map_err(refused)
     }
 
-    /// Finds the pairs that meet now: ids of shape (m, 2), sorted.
-    fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let found = locked(py, &self.0, |world| world.cull().map(|found| bits_of(found.iter())));
+    /// Finds the pairs that meet now: ids of shape (m, 2), sorted. More than `limit` pairs are an
+    /// error.
+    #[pyo3(signature = (*, limit=None))]
+    fn cull<'py>(
+        &self,
+        py: Python<'py>,
+        limit: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let found = locked(py, &self.0, |world| {
+            let found = match limit {
+                Some(limit) => world.cull_up_to(limit)?,
+                None => world.cull()?,
+            };
+            Ok::<_, sdop::WorldError>(bits_of(found.iter())?)
+        });
         pairs(py, found.map_err(refused)?)
     }
 
     /// The pairs of the last cull.
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())))
+        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())).map_err(refused)?)
     }
 
     /// The pairs that began, persisted or ended between the last call of this method and the last
     /// cull.
-    fn events(&self, py: Python<'_>) -> Events {
-        locked(py, &self.0, |world| Events::new(&world.events()))
+    fn events(&self, py: Python<'_>) -> PyResult<Events> {
+        locked(py, &self.0, |world| Events::new(&world.events())).map_err(refused)
     }
 
     /// The world as bytes, for `restore`.

@@ -42,7 +42,7 @@ pub struct Culler(Mutex<State>);
 struct State {
     culler: sdop::Culler,
     bodies: Bodies,
-    /// Whether there was no frame yet, so that the poses of static bodies are unknown.
+    /// Whether there was no frame yet, so that the culler was built for other poses.
     is_new: bool,
     seconds: f64,
 }
@@ -93,23 +93,26 @@ impl Culler {
     ///     Position of each body's origin, in world coordinates.
     /// sort : bool
     ///     Whether the rows are sorted.
+    /// limit : int, optional
+    ///     More pairs than that are an error, and memory for them is never allocated.
     ///
     /// Returns
     /// -------
     /// array of uint32, shape (m, 2)
     ///     Each pair i < j once.
-    #[pyo3(signature = (rotations, translations, *, sort=false))]
+    #[pyo3(signature = (rotations, translations, *, sort=false, limit=None))]
     fn cull<'py>(
         &self,
         py: Python<'py>,
         rotations: &Bound<'py, PyAny>,
         translations: &Bound<'py, PyAny>,
         sort: bool,
+        limit: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let rotations = rows::<4>(rotations, "rotations", ROUND)?;
         let translations = rows::<3>(translations, "translations", ROUND)?;
         let (rotations, translations) = (rotations.rows(), translations.rows());
-        let found = locked(py, &self.0, |state| state.cull(rotations, translations, sort));
+        let found = locked(py, &self.0, |state| state.cull(rotations, translations, sort, limit));
         pairs(py, found?)
     }
 
@@ -136,15 +139,11 @@ impl State {
         rotations: &[[f32; 4]],
         translations: &[[f32; 3]],
         sort: bool,
+        limit: Option<usize>,
     ) -> PyResult<Vec<[u32; 2]>> {
         let n = self.bodies.len();
         check_length("rotations", rotations.len(), n)?;
         check_length("translations", translations.len(), n)?;
-        let fixed = (0..n).filter(|&i| !self.bodies.dynamic[i]);
-        let has_moved = |i: usize| {
-            self.bodies.rotation[i] != rotations[i] || self.bodies.translation[i] != translations[i]
-        };
-        self.is_new |= fixed.into_iter().any(has_moved);
         self.bodies.rotation.copy_from_slice(rotations);
         self.bodies.translation.copy_from_slice(translations);
         if self.is_new {
@@ -152,8 +151,11 @@ impl State {
             self.is_new = false;
         }
         let start = Instant::now();
-        let found = self.culler.cull(&self.bodies);
+        let found = match limit {
+            Some(limit) => self.culler.cull_up_to(&self.bodies, limit),
+            None => self.culler.cull(&self.bodies),
+        };
         self.seconds = start.elapsed().as_secs_f64();
-        found.map(|found| list(found, sort)).map_err(refused)
+        found.and_then(|found| list(found, sort)).map_err(refused)
     }
 }

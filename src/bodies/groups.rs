@@ -14,8 +14,8 @@ impl Groups {
     /// In all groups, and collides with all: the default.
     pub const ALL: Self = Self::of(u32::MAX);
 
-    /// In these groups, and collides with them. (As a call, [`Self::ALL`] is a constant that cbindgen
-    /// leaves to its configuration: what it makes of a literal isn't C++.)
+    /// In these groups, and collides with them. Made by a call, [`Self::ALL`] is a constant that
+    /// cbindgen leaves to its configuration: what it writes for a literal isn't C++.
     const fn of(bits: u32) -> Self {
         Self { member: bits, mask: bits }
     }

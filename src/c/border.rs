@@ -183,8 +183,8 @@ pub unsafe fn free<T>(handle: *mut T) {
 }
 
 /// Where a call writes its answer: null, or a pointer that may be written. [`answer`], [`make`] and
-/// [`list`] check it before they act, as [`call_back`] checks a callback: a call that is refused for
-/// a null pointer has changed nothing.
+/// [`list`] check it before they act, as [`call_back`] checks a callback: a call that is refused
+/// for a null pointer has changed nothing.
 pub struct Out<T>(*mut T);
 
 impl<T> Out<T> {

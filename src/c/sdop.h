@@ -315,7 +315,8 @@ SdopStatus sdop_culler_new(const SdopShape *const *shapes,
 void sdop_culler_free(SdopCuller *culler);
 
 // Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
-// that have moved are found where they are now; such a frame takes about twice as long. `pairs` gets their number; read them with `sdop_culler_pairs`.
+// that have moved are found where they are now; such a frame takes about twice as long. `pairs`
+// gets their number; read them with `sdop_culler_pairs`.
 //
 // # Safety
 // `culler` is a handle; the columns have an entry for each body; `pairs` may be written.

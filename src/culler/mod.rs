@@ -92,7 +92,7 @@ struct BodySet {
     /// static bodies were last found elsewhere.
     fixed: Bodies,
     /// Runs of static bodies, whose poses each frame compares with those in `fixed`. None for a
-    /// caller that tells which of them change ([`Culler::replace`]).
+    /// caller that replaces bodies itself ([`Culler::replace`]).
     watched: Vec<Range<usize>>,
     /// 0, 1, 2 …: the slots' names when pairs are refined after the first test.
     numbers: Vec<u32>,

@@ -32,7 +32,7 @@ impl Culler {
     }
 
     /// Replaces the set of bodies by those that are `present`, without using any knowledge of
-    /// earlier frames. From then on, the caller has to tell which static bodies change.
+    /// earlier frames. From then on, the caller has to do so when static bodies change.
     #[doc(hidden)]
     pub fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.take_places(bodies, present);

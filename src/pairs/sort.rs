@@ -146,8 +146,8 @@ impl PairList {
     #[cold]
     fn sort_in_place(&mut self) {
         for end in (0..2 * self.len).rev() {
-            // First pairs become a heap, from the last one that has children; then each largest
-            // pair of the heap moves behind it.
+            // First pairs become a heap, from the last one on; then the largest pair of the heap
+            // moves to its end, until none is left.
             let (mut at, end) = if end < self.len {
                 self.swap(0, end);
                 (0, end)
