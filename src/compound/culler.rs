@@ -133,7 +133,7 @@ impl PartCuller {
         let (mut first, mut second, mut placed) = (None, None, None);
         for ids in world.pairs() {
             let [Ok(a), Ok(b)] = ids.map(|id| world.body(id)) else {
-                continue; // not after a cull
+                continue; // removed since the cull
             };
             while let Some(gone) = former.next_if(|pair| pair.ids < ids) {
                 start = gone.end;
