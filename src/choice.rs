@@ -4,8 +4,8 @@
 use thiserror::Error;
 
 /// The error for an unknown name.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("unknown {what} `{given}`")]
+#[derive(Clone, PartialEq, Eq, Error)]
+#[error("unknown {what} `{given}`; {help}", help = self.help())]
 pub struct UnknownChoice {
     /// The kind of choice, for example "strategy".
     pub what: &'static str,
@@ -14,6 +14,8 @@ pub struct UnknownChoice {
     /// How to mend it.
     pub hint: String,
 }
+
+crate::problem::errors!(UnknownChoice);
 
 impl UnknownChoice {
     /// How to mend it.

@@ -105,7 +105,7 @@
 //! | `serde` | serialises settings, counters, and snapshots of worlds |
 //! | `c` | the interface for C and C++, `src/c/sdop.h` |
 //!
-//! Every error has a method `help`, which says how to mend the input.
+//! Every error prints what is wrong and how to mend the input; `problem` and `help` are its halves.
 //!
 //! # Related crates
 //!
@@ -138,6 +138,7 @@ pub mod settings;
 pub mod volume;
 pub mod world;
 
+mod problem;
 mod strategy;
 
 // Inner rooms, which the judge, tests and benches enter from outside: no promise is made about
@@ -201,7 +202,7 @@ pub use world::{Body, World};
 #[doc(inline)]
 pub use world::{BodyId, Event, Events, WorldError};
 
-/// The README's example compiles and runs.
+/// The README's example compiles; `.ci/run` runs it in a project of its own.
 #[cfg(all(doctest, feature = "readers"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

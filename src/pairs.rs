@@ -20,7 +20,12 @@ fn bytes<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()
 }
 
-/// A list of body pairs, stored as two columns. It grows as needed: no pair is ever dropped.
+/// Up to this number of pairs, a list that can't get its memory ends the process, as other small
+/// allocations do. Longer lists are lost: blocks and portions are shorter, and so never are.
+const LEAST_LOST: usize = 1 << 18;
+
+/// A list of body pairs, stored as two columns. It grows as needed: no pair is dropped, unless the
+/// system refuses memory, which then makes the frame an error.
 ///
 /// Kernels write a whole vector and advance by the lanes they keep, so the columns always have
 /// capacity for [`MAX_WIDTH`] elements after the last pair.
@@ -29,6 +34,7 @@ pub struct PairList {
     first: Vec<u32>,
     second: Vec<u32>,
     len: usize,
+    is_lost: bool,
 }
 
 impl PairList {
@@ -77,7 +83,24 @@ impl PairList {
 
     /// Empties the list and keeps its memory.
     pub fn clear(&mut self) {
-        self.len = 0;
+        (self.len, self.is_lost) = (0, false);
+    }
+
+    /// Whether pairs were dropped since the list was cleared, because there was no memory for them.
+    pub(crate) fn is_lost(&self) -> bool {
+        self.is_lost
+    }
+
+    /// Drops the pairs, and counts as lost, if the list on which this one depends is lost.
+    pub(crate) fn lose_with(&mut self, other: &Self) {
+        if other.is_lost {
+            self.lose();
+        }
+    }
+
+    /// Drops the pairs, since there is no memory for them or for their use.
+    pub(crate) fn lose(&mut self) {
+        (self.len, self.is_lost) = (0, true);
     }
 
     /// Appends the pair i < j.
@@ -95,12 +118,10 @@ impl PairList {
     /// Appends other lists in order, with one allocation at most.
     pub(crate) fn append_all<'a>(&mut self, others: impl Iterator<Item = &'a Self> + Clone) {
         let pairs = others.clone().map(Self::len).sum::<usize>();
-        if pairs == 0 {
-            return;
-        }
+        others.clone().for_each(|other| self.lose_with(other));
         let needed = self.len + pairs + MAX_WIDTH;
-        if needed > self.first.len() {
-            self.resize(needed);
+        if pairs == 0 || self.is_lost || needed > self.first.len() && !self.resize(needed) {
+            return;
         }
         for other in others {
             let n = other.len;
@@ -137,7 +158,7 @@ impl PairList {
     #[cfg(feature = "shapes")]
     pub(crate) fn rename(&mut self, start: usize, names: &[u32]) {
         for column in [&mut self.first, &mut self.second] {
-            for index in &mut column[start..self.len] {
+            for index in &mut column[start.min(self.len)..self.len] {
                 *index = names[*index as usize];
             }
         }
@@ -145,7 +166,7 @@ impl PairList {
 
     /// Drops the pairs from number `start` on for which `keep` is false.
     pub(crate) fn keep_from(&mut self, start: usize, keep: impl Fn([u32; 2]) -> bool) {
-        let mut kept = start;
+        let mut kept = start.min(self.len); // fewer if the list was lost meanwhile
         for at in start..self.len {
             let pair = [self.first[at], self.second[at]];
             if keep(pair) {
@@ -173,17 +194,33 @@ impl PairList {
         debug_assert!(self.len + MAX_WIDTH <= self.first.len());
     }
 
-    /// Grows by at least an eighth, so that a list that grows pair by pair is rarely copied.
+    /// Grows by at least an eighth, so that a list that grows pair by pair is rarely copied. If
+    /// there is no memory for that, the pairs so far are lost.
     #[cold]
     fn grow(&mut self, needed: usize) {
-        self.resize(needed.max(self.first.len() / 8 * 9).max(LEAST_CAPACITY));
+        let (eighth, room) = (self.first.len() / 8 * 9, needed - self.len);
+        if !self.resize(needed.max(eighth).max(LEAST_CAPACITY)) && room > self.first.len() {
+            self.resize(room);
+        }
     }
 
-    fn resize(&mut self, size: usize) {
-        for column in [&mut self.first, &mut self.second] {
-            column.reserve_exact(size.saturating_sub(column.len()));
-            column.resize(size, 0);
+    /// Whether there is memory for columns of this size. If not, the list is lost.
+    fn resize(&mut self, size: usize) -> bool {
+        let mut columns = [&mut self.first, &mut self.second];
+        let reserved = columns.iter_mut().try_for_each(|column| {
+            let more = size.saturating_sub(column.len());
+            if size > LEAST_LOST {
+                return column.try_reserve_exact(more);
+            }
+            column.reserve_exact(more);
+            Ok(())
+        });
+        if reserved.is_ok() {
+            columns.into_iter().for_each(|column| column.resize(size, 0));
+        } else {
+            self.lose();
         }
+        reserved.is_ok()
     }
 }
 

@@ -25,7 +25,32 @@ pub const MOST_THREADS: usize = 1024;
 
 /// The caller's thread, alone or with a pool of others.
 #[derive(Debug, Default)]
-pub struct Threads(Option<ThreadPool>);
+pub struct Threads(Option<OwnPool>);
+
+/// A pool, and the process that has its threads: they don't exist in a child that was forked from
+/// it, where work given to them would never end.
+#[derive(Debug)]
+struct OwnPool {
+    /// `None` only while it is dropped.
+    pool: Option<ThreadPool>,
+    process: u32,
+    threads: usize,
+}
+
+impl OwnPool {
+    /// The pool, in the process that has its threads.
+    fn get(&self) -> Option<&ThreadPool> {
+        self.pool.as_ref().filter(|_| self.process == std::process::id())
+    }
+}
+
+impl Drop for OwnPool {
+    fn drop(&mut self) {
+        if self.get().is_none() {
+            std::mem::forget(self.pool.take()); // it would wake its threads, and may wait for them
+        }
+    }
+}
 
 impl Clone for Threads {
     /// Starts as many threads as the original has, so that both can be used at the same time. If
@@ -79,6 +104,9 @@ impl FrameThreads {
     /// Sets the expected work of the coming frame, estimated from the last one.
     pub fn expect(&mut self, work: FrameWork) {
         self.wakes = work.nanoseconds() >= self.worth_waking;
+        if self.wakes {
+            self.all.renew();
+        }
     }
 
     /// The threads for this frame.
@@ -98,12 +126,14 @@ pub struct Executor<'a> {
 }
 
 /// The error for threads that can't be started: more than 1,024, or refused by the system.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("cannot start {threads} threads: {reason}")]
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+#[error("cannot start {threads} threads: {reason}; {help}", help = self.help())]
 pub struct ThreadsError {
     threads: usize,
     reason: String,
 }
+
+crate::problem::errors!(ThreadsError);
 
 impl ThreadsError {
     /// How to mend it.
@@ -133,7 +163,9 @@ impl Threads {
         let others = threads - 1;
         let pool = ThreadPoolBuilder::new().num_threads(others).build();
         match pool {
-            Ok(pool) => Ok(Self(Some(pool))),
+            Ok(pool) => {
+                Ok(Self(Some(OwnPool { pool: Some(pool), process: std::process::id(), threads })))
+            }
             Err(error) => Err(ThreadsError { threads, reason: error.to_string() }),
         }
     }
@@ -147,8 +179,18 @@ impl Threads {
     /// Number of threads.
     #[must_use]
     pub fn threads(&self) -> usize {
-        let others = self.0.as_ref().map_or(0, ThreadPool::current_num_threads);
-        others + 1
+        self.0.as_ref().map_or(1, |own| own.threads)
+    }
+
+    /// Starts the threads in this process, if it was forked from the one that has them. Until then,
+    /// or if the system refuses to start them, work runs on the caller's thread; results are the
+    /// same.
+    pub fn renew(&mut self) {
+        if self.0.as_ref().is_some_and(|own| own.get().is_none())
+            && let Ok(renewed) = Self::new(self.threads())
+        {
+            *self = renewed;
+        }
     }
 
     /// Calls `work` once for each item, with its index.
@@ -218,9 +260,10 @@ impl Threads {
         items: impl Iterator<Item = T> + Send,
         work: impl Fn(T) + Sync,
     ) {
-        match &self.0 {
-            Some(pool) if is_worth_waking => distribute(pool, items, work),
-            _ => items.for_each(work),
+        let own = self.0.as_ref().filter(|_| is_worth_waking);
+        match own.and_then(OwnPool::get) {
+            Some(pool) => distribute(pool, items, work),
+            None => items.for_each(work),
         }
     }
 }
@@ -300,10 +343,33 @@ mod tests {
     #[test]
     fn too_many_threads_are_rejected() {
         for threads in [MOST_THREADS + 1, 5_000, usize::MAX] {
-            let refused = Threads::new(threads).unwrap_err().to_string();
+            let refused = Threads::new(threads).unwrap_err().problem();
             let wanted = format!("cannot start {threads} threads: at most 1024 can be asked for");
             assert_eq!(refused, wanted);
         }
+    }
+
+    /// A forked child has no threads of its parent's pool: it works alone until it has its own.
+    #[test]
+    fn forked_child_gets_new_threads() {
+        let mut threads = FrameThreads::new(Threads::new(3).unwrap(), 0);
+        let caller = thread::current().id();
+        let workers = |threads: &Threads| {
+            let (all, mut ids) = (Barrier::new(3), vec![caller; 3]);
+            let is_alone = threads.0.as_ref().unwrap().get().is_none();
+            threads.each(&mut ids, |_, id| {
+                if !is_alone {
+                    all.wait();
+                }
+                *id = thread::current().id();
+            });
+            ids.iter().filter(|id| **id != caller).count()
+        };
+        assert_eq!(workers(&threads.all), 2);
+        threads.all.0.as_mut().unwrap().process += 1; // as if this process were another
+        assert_eq!((workers(&threads.all), threads.all.threads()), (0, 3));
+        threads.expect(FrameWork::default());
+        assert_eq!((workers(&threads.all), threads.all.threads()), (2, 3));
     }
 
     /// Covers pools that were started in another mode, and callers that run in one.
@@ -365,7 +431,7 @@ mod tests {
         let job = || {
             assert!(!BUSY.replace(true), "a job on top of another");
             let (both, threads) = (Barrier::new(2), Threads::new(2).unwrap());
-            let pool = threads.0.as_ref().unwrap();
+            let pool = threads.0.as_ref().unwrap().get().unwrap();
             threads.each(&mut [(); 2], |_, ()| {
                 both.wait();
                 if pool.current_thread_index().is_some() {

@@ -7,8 +7,9 @@
 //! | a `dynamic` flag toggled between frames | `CullError::Changed`, naming the body |
 //! | a translation that is infinite, NaN or beyond 2⁶⁰ in a frame | `CullError::Contract`, naming the body; the next frame is culled as usual |
 //! | a rotation that is zero or not finite in a frame | the same; but if balls are tested first and the body's ball is centred at its origin, all pairs whose balls meet are reported |
-//! | a shape number changed between frames, out of range or not | no effect before `Culler::refresh`, which checks it |
-//! | a static body moved between frames | has no effect before `Culler::refresh`, with every finder |
+//! | a shape number changed between frames, out of range or not | `CullError::Changed`, naming the body |
+//! | a static body moved between frames | it is found where it is, with every finder |
+//! | a method called too early, or after a change | `misuse/calls.rs` has the table |
 //! | shapes whose or-DOPs have different directions | `CullError::Shape`, naming the shape |
 //! | a column of groups of another length | `CullError::Contract`; the groups stay as they were |
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -17,6 +18,9 @@ use sdop::{
     Bodies, CullError, Culler, Finder, Groups, Origin, ProceduralShape, Shape, ShapeSpec, Strategy,
     TriangleMesh,
 };
+
+#[path = "misuse/calls.rs"]
+mod calls;
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
@@ -58,7 +62,7 @@ fn cullers(bodies: &Bodies) -> Vec<Culler> {
 
 /// What is wrong with a body, as an error states it.
 fn refused(result: Result<&sdop::PairList, CullError>) -> String {
-    result.map(sdop::PairList::len).unwrap_err().to_string()
+    result.map(sdop::PairList::len).unwrap_err().problem()
 }
 
 #[test]
@@ -66,7 +70,7 @@ fn construction_names_what_is_wrong() {
     let refusal = |change: fn(&mut Bodies)| {
         let mut bodies = row(200);
         change(&mut bodies);
-        Culler::new(&shapes(), &bodies).unwrap_err().to_string()
+        Culler::new(&shapes(), &bodies).unwrap_err().problem()
     };
     assert_eq!(refusal(|b| b.shape[7] = 2), "body 7: shape 2 of 2");
     assert_eq!(refusal(|b| b.rotation[7] = [0.0; 4]), "body 7: rotation [0.0, 0.0, 0.0, 0.0]");
@@ -93,7 +97,7 @@ fn invalid_shape_is_named() {
     ];
     for (number, change) in sizes.into_iter().enumerate() {
         for size in [2f32.powi(60).next_up(), f32::INFINITY, f32::NAN] {
-            let told = outcome(change, size).unwrap_err().to_string();
+            let told = outcome(change, size).unwrap_err().problem();
             assert!(told.starts_with("body 0: shape box"), "{told}");
         }
         assert!(number == 2 || outcome(change, -1.0).is_err(), "{number}");
@@ -242,7 +246,7 @@ fn invalid_rotation_loses_no_pair() {
             turned.rotation[44] = turn;
             match culler.cull(&turned).map(sdop::PairList::sorted) {
                 Ok(now) => assert!(wanted.iter().all(|pair| now.contains(pair)), "{turn:?}"),
-                Err(error) => assert!(error.to_string().starts_with("body 44: rotation")),
+                Err(error) => assert!(error.problem().starts_with("body 44: rotation")),
             }
             assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
         }
@@ -261,31 +265,71 @@ fn invalid_rotation_loses_no_pair() {
     }
 }
 
-/// Shapes and static poses are those of the last refresh.
+/// Static bodies are found where each frame has them, also if that is nowhere.
 #[test]
-fn static_poses_wait_for_refresh() {
+fn moved_static_bodies_are_followed() {
+    let bodies = row(200);
+    let mut moved = bodies.clone();
+    for (body, place) in [(0, [1000.0; 3]), (50, [44.5, 0.5, 0.0]), (190, [0.25, 0.0, 0.0])] {
+        (moved.translation[body], moved.rotation[body]) = (place, [1.0, 0.0, 0.0, 2.0]);
+    }
+    for (mut culler, mut other) in cullers(&bodies).into_iter().zip(cullers(&moved)) {
+        let wanted = [&bodies, &moved].map(|bodies| other_set(&mut other, bodies));
+        assert!(wanted[0] != wanted[1] && wanted[1].contains(&[44, 50]));
+        // Long enough for the grid to put its bodies into another order.
+        for frame in 0..40 {
+            let at = usize::from(frame % 7 > 2);
+            let found = culler.cull([&bodies, &moved][at]).unwrap().sorted();
+            assert_eq!(found, wanted[at], "frame {frame}, {:?}", culler.finder());
+        }
+        let mut lost = moved.clone();
+        lost.translation[50][2] = f32::NAN;
+        let told = refused(culler.cull(&lost));
+        assert!(told.starts_with("body 50: translation ["), "{told}");
+        assert_eq!(culler.cull(&moved).unwrap().sorted(), wanted[1]);
+    }
+}
+
+/// What a culler finds of bodies that it reads anew.
+fn other_set(culler: &mut Culler, bodies: &Bodies) -> Vec<[u32; 2]> {
+    culler.refresh(bodies).unwrap();
+    culler.cull(bodies).unwrap().sorted()
+}
+
+/// A changed shape is an error until refresh.
+#[test]
+fn changed_shape_needs_refresh() {
     let bodies = row(200);
     for mut culler in cullers(&bodies) {
         let wanted = culler.cull(&bodies).unwrap().sorted();
-        let mut moved = bodies.clone();
-        moved.shape[44] = 7;
-        moved.shape[45] = 1;
-        moved.translation[50] = [1000.0, 0.0, 0.0];
-        // Long enough for the grid to put its bodies into another order.
-        for frame in 0..40 {
-            assert_eq!(culler.cull(&moved).unwrap().sorted(), wanted, "frame {frame}");
-        }
-        let told = culler.refresh(&moved).unwrap_err().to_string();
+        let mut changed = bodies.clone();
+        (changed.shape[44], changed.shape[45]) = (7, 1);
+        let told = refused(culler.cull(&changed));
+        assert!(told.starts_with("body 44 has shape 7 in place of 0"), "{told}");
+        let told = culler.refresh(&changed).unwrap_err().problem();
         assert_eq!(told, "body 44: shape 7 of 2");
-        assert_eq!(culler.cull(&moved).unwrap().sorted(), wanted);
+        assert_eq!(culler.cull(&bodies).unwrap().sorted(), wanted);
 
-        moved.shape[44] = 0;
-        culler.refresh(&moved).unwrap();
-        let now = culler.cull(&moved).unwrap().sorted();
-        let gone = |pair: &[u32; 2]| pair.contains(&50);
-        assert!(!now.iter().any(gone) && wanted.iter().any(gone));
+        changed.shape[44] = 0;
+        culler.refresh(&changed).unwrap();
+        let now = culler.cull(&changed).unwrap().sorted();
         assert!(now.contains(&[45, 47]) || now.contains(&[45, 48]) || now.contains(&[45, 49]));
     }
+}
+
+/// `?`, `unwrap`, and `main` print what is wrong and the rule.
+#[test]
+fn errors_print_value_and_rule() {
+    let mut bodies = row(2);
+    bodies.rotation[0] = [0.0; 4];
+    let error = Culler::new(&shapes(), &bodies).unwrap_err();
+    let rule = "a quaternion (x, y, z, w) has a finite norm above zero";
+    assert_eq!(
+        (error.problem().as_str(), error.help()),
+        ("body 0: rotation [0.0, 0.0, 0.0, 0.0]", rule)
+    );
+    assert_eq!(error.to_string(), format!("{}; {rule}", error.problem()));
+    assert_eq!(format!("{error:?}"), error.to_string());
 }
 
 #[test]
@@ -295,7 +339,7 @@ fn groups_have_one_entry_a_body() {
         let wanted = culler.cull(&bodies).unwrap().sorted();
         for length in [0, 199, 201] {
             let told = culler.set_groups(Some(vec![Groups::ALL; length]));
-            let told = told.unwrap_err().to_string();
+            let told = told.unwrap_err().problem();
             let expected = format!("groups has {length} entries for 200 bodies");
             assert!(told.ends_with(&expected), "{told}");
         }
@@ -327,7 +371,7 @@ fn groups_survive_equal_body_counts() {
 fn mixed_directions_are_rejected() {
     let mut unlike = shapes();
     unlike[1] = unlike[1].clone().with_directions(sdop::DirectionSet::K26);
-    let told = Culler::new(&unlike, &row(3)).unwrap_err().to_string();
+    let told = Culler::new(&unlike, &row(3)).unwrap_err().problem();
     assert_eq!(told, "shape `beside` has an or-DOP of k = 26, shapes before it have k = 18");
     let boxes = Culler::builder().strategy(Strategy::Obb);
     boxes.build(&unlike, &row(3)).unwrap();

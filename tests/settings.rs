@@ -25,7 +25,7 @@ fn names_read_back() {
 #[test]
 fn an_unknown_name_suggests_the_nearest() {
     let error = "s-dop-sequentail".parse::<Strategy>().unwrap_err();
-    assert_eq!(error.to_string(), "unknown strategy `s-dop-sequentail`");
+    assert_eq!(error.problem(), "unknown strategy `s-dop-sequentail`");
     assert_eq!(error.hint, "did you mean `s-dop-sequential`?");
     assert_eq!("two_sided".parse::<Overlap>().unwrap_err().hint, "did you mean `two-sided`?");
     assert_eq!(
@@ -57,7 +57,7 @@ fn invalid_settings_are_rejected() {
     let problem = |change: fn(&mut CullSettings)| {
         let mut settings = CullSettings::all_pairs();
         change(&mut settings);
-        settings.check(10).unwrap_err().to_string()
+        settings.check(10).unwrap_err().problem()
     };
     assert_eq!(
         problem(|s| s.strategy = Strategy::SDopObjectOfInterest),
@@ -74,7 +74,7 @@ fn invalid_settings_are_rejected() {
     let cone = |text: &str| {
         let text = format!("interest = {text}");
         let settings: CullSettings = toml::from_str(&text).unwrap();
-        settings.check(10).unwrap_err().to_string()
+        settings.check(10).unwrap_err().problem()
     };
     assert_eq!(cone("{ direction = [0, 0, 1], half_angle = 30 }"), "interest: a cone has one apex");
     assert_eq!(

@@ -2,7 +2,7 @@
 //! which the program prints.
 
 use std::error::Error;
-use std::fmt::Display;
+use std::fmt::{self, Display, Formatter};
 
 use miette::{Diagnostic, Result};
 
@@ -10,6 +10,9 @@ use miette::{Diagnostic, Result};
 pub trait Remedy: Error + Send + Sync + 'static {
     /// How to mend it.
     fn remedy(&self) -> Option<String>;
+
+    /// What is wrong, without the remedy.
+    fn problem(&self) -> String;
 }
 
 /// Errors whose `help` is always there.
@@ -18,6 +21,10 @@ macro_rules! always {
         $(impl Remedy for $error {
             fn remedy(&self) -> Option<String> {
                 Some(self.help().to_string())
+            }
+
+            fn problem(&self) -> String {
+                self.problem()
             }
         })+
     };
@@ -43,13 +50,27 @@ impl Remedy for sdop_judge::record::RecordError {
     fn remedy(&self) -> Option<String> {
         self.help().map(str::to_owned)
     }
+
+    fn problem(&self) -> String {
+        self.to_string()
+    }
 }
 
-/// An error with its remedy, as a diagnostic that prints the same message and the remedy as its
-/// help.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(transparent)]
-pub struct WithRemedy<E: Remedy>(#[from] pub E);
+/// An error with its remedy, as a diagnostic that prints what is wrong, and the remedy as its help.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WithRemedy<E: Remedy>(pub E);
+
+impl<E: Remedy> Display for WithRemedy<E> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.problem())
+    }
+}
+
+impl<E: Remedy> Error for WithRemedy<E> {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.0.source()
+    }
+}
 
 impl<E: Remedy> Diagnostic for WithRemedy<E> {
     fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
@@ -57,6 +78,18 @@ impl<E: Remedy> Diagnostic for WithRemedy<E> {
         Some(Box::new(help))
     }
 }
+
+/// Converts errors to variants that print them and their remedy apart.
+macro_rules! held_with_remedy {
+    ($holder:ty, $($variant:ident($error:ty)),+) => {
+        $(impl From<$error> for $holder {
+            fn from(error: $error) -> Self {
+                Self::$variant(error)
+            }
+        })+
+    };
+}
+pub(crate) use held_with_remedy;
 
 /// Results whose error becomes a report with its remedy.
 pub trait OrReport<T> {
@@ -84,7 +117,7 @@ mod tests {
     #[test]
     fn reports_keep_message_and_remedy() {
         let report = Threads::new(5000).or_report().unwrap_err();
-        assert!(report.to_string().contains("5000 threads"));
+        assert!(report.to_string().ends_with("at most 1024 can be asked for"));
         assert_eq!(report.help().unwrap().to_string(), "ask for fewer threads");
     }
 }

@@ -98,6 +98,7 @@ void a_world(const SdopShape *shape) {
     assert(pairs_of(world.get()).size() == 1);
     SdopBody asleep = sdop_body_at(0, 1000000031.5, 0, 0);
     asleep.resting = true;
+    asleep.groups = SdopGroups_ALL; // as it was
     check(sdop_world_set(world.get(), ids[0], &asleep));
     assert(pairs_of(world.get()).size() == 1);
     assert(sdop_world_exclude(world.get(), ids[0], ids[0] + 1000) == SDOP_STATUS_REFUSED);

@@ -6,11 +6,11 @@ use std::time::Instant;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use sdop::boxes::BoxBody;
-use sdop::{Aabb, BodyId, Finder, Groups, PairList};
+use sdop::{Aabb, BodyId, CullError, Finder, Groups, PairList};
 
 use super::arrays::{Rows, check_length, id_column, matrix, one_row, pairs, rows, whole_rows};
 use super::errors::{locked, refused};
-use super::ids::bits_of;
+use super::ids::{bits_of, collected};
 use super::world::Events;
 
 const ROUND: &str = "pass float32, or leave `exact` out: boxes are then rounded as by `sdop.rounded_outward`, which misses none and may report boxes that all but touch";
@@ -53,8 +53,12 @@ pub fn rounded_outward<'py>(boxes: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Py
 }
 
 /// Pairs as rows, sorted if `sort` is true.
-pub(super) fn list(found: &PairList, sort: bool) -> Vec<[u32; 2]> {
-    if sort { found.sorted() } else { found.iter().collect() }
+pub(super) fn list(found: &PairList, sort: bool) -> Result<Vec<[u32; 2]>, CullError> {
+    let mut rows = collected(found.iter())?;
+    if sort {
+        rows.sort_unstable();
+    }
+    Ok(rows)
 }
 
 /// Groups as two numbers: those that a body is in, and those that it collides with.
@@ -83,6 +87,8 @@ pub(super) fn groups(
 ///     Number of threads.
 /// exact : bool
 ///     Whether boxes that float32 can't hold are rejected.
+/// limit : int, optional
+///     More pairs than that are an error, and memory for them is never allocated.
 ///
 /// Returns
 /// -------
@@ -90,7 +96,7 @@ pub(super) fn groups(
 ///     Each pair i < j once: exactly those that share a point in exact arithmetic. If boxes were
 ///     rounded, some may be reported that all but touch.
 #[pyfunction]
-#[pyo3(signature = (boxes, *, groups=None, sort=false, threads=1, exact=false))]
+#[pyo3(signature = (boxes, *, groups=None, sort=false, threads=1, exact=false, limit=None))]
 pub fn box_pairs<'py>(
     py: Python<'py>,
     boxes: &Bound<'py, PyAny>,
@@ -98,8 +104,9 @@ pub fn box_pairs<'py>(
     sort: bool,
     threads: usize,
     exact: bool,
+    limit: Option<usize>,
 ) -> PyResult<Bound<'py, PyArray2<u32>>> {
-    BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort, exact)
+    BoxCuller::new("auto", threads)?.cull(py, boxes, groups, sort, exact, limit)
 }
 
 /// Finds the boxes that meet, frame after frame. It is faster than `box_pairs`, since results of
@@ -134,7 +141,7 @@ impl BoxCuller {
 
     /// The pairs of this frame's boxes, in the form of `box_pairs`. The number of boxes may change
     /// from frame to frame.
-    #[pyo3(signature = (boxes, *, groups=None, sort=false, exact=false))]
+    #[pyo3(signature = (boxes, *, groups=None, sort=false, exact=false, limit=None))]
     fn cull<'py>(
         &self,
         py: Python<'py>,
@@ -142,6 +149,7 @@ impl BoxCuller {
         groups: Option<&Bound<'py, PyAny>>,
         sort: bool,
         exact: bool,
+        limit: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let given = self::boxes(boxes, exact)?;
         let boxes = aabbs(&given);
@@ -149,9 +157,12 @@ impl BoxCuller {
         let found = locked(py, &self.0, |TimedCuller { culler, seconds }| {
             culler.set_groups(groups);
             let start = Instant::now();
-            let found = culler.cull(boxes);
+            let found = match limit {
+                Some(limit) => culler.cull_up_to(boxes, limit),
+                None => culler.cull(boxes),
+            };
             *seconds = start.elapsed().as_secs_f64();
-            found.map(|found| list(found, sort))
+            found.and_then(|found| list(found, sort))
         });
         pairs(py, found.map_err(refused)?)
     }
@@ -254,21 +265,33 @@ impl BoxWorld {
         locked(py, &self.0, |world| world.set_many(&ids, boxes)).map_err(refused)
     }
 
-    /// Finds the pairs that meet now: ids of shape (m, 2), sorted.
-    fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let found = locked(py, &self.0, |world| world.cull().map(|found| bits_of(found.iter())));
+    /// Finds the pairs that meet now: ids of shape (m, 2), sorted. More than `limit` pairs are an
+    /// error.
+    #[pyo3(signature = (*, limit=None))]
+    fn cull<'py>(
+        &self,
+        py: Python<'py>,
+        limit: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let found = locked(py, &self.0, |world| {
+            let found = match limit {
+                Some(limit) => world.cull_up_to(limit)?,
+                None => world.cull()?,
+            };
+            Ok::<_, sdop::WorldError>(bits_of(found.iter())?)
+        });
         pairs(py, found.map_err(refused)?)
     }
 
     /// The pairs of the last cull.
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())))
+        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())).map_err(refused)?)
     }
 
     /// The pairs that began, persisted or ended between the last call of this method and the last
     /// cull.
-    fn events(&self, py: Python<'_>) -> Events {
-        locked(py, &self.0, |world| Events::new(&world.events()))
+    fn events(&self, py: Python<'_>) -> PyResult<Events> {
+        locked(py, &self.0, |world| Events::new(&world.events())).map_err(refused)
     }
 
     /// The world as bytes, for `restore`.

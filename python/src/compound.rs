@@ -8,7 +8,7 @@ use sdop::compound::{CompoundError, Part};
 
 use super::arrays::{check_length, pairs, rows, whole_column, wide_rows};
 use super::errors::{lock, locked, refused};
-use super::ids::bits_of;
+use super::ids::{bits_of, collected};
 use super::shape::{Shape, built};
 use super::world::{ROUND, World};
 
@@ -103,7 +103,8 @@ impl PartCuller {
         locked(py, &self.0, |culler| culler.remove_parts(shape));
     }
 
-    /// The pairs of parts in the pairs of the world's last `cull`: call it after each.
+    /// The pairs of parts in the pairs of the world's last `cull`: call it after each, before
+    /// bodies change.
     ///
     /// Returns
     /// -------
@@ -116,15 +117,15 @@ impl PartCuller {
         let found: Result<_, CompoundError> = locked(py, &self.0, |culler| {
             let found = culler.cull(&lock(world))?;
             let bodies = bits_of(found.iter().map(|pair| pair.bodies));
-            Ok((bodies, found.iter().map(|pair| pair.parts).collect()))
+            Ok((bodies, collected(found.iter().map(|pair| pair.parts))))
         });
         let (bodies, parts) = found.map_err(refused)?;
-        Ok((pairs(py, bodies)?, pairs(py, parts)?))
+        Ok((pairs(py, bodies.map_err(refused)?)?, pairs(py, parts.map_err(refused)?)?))
     }
 
     /// The pairs of bodies of which some parts may touch: ids of shape (m, 2), sorted.
     fn body_pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
         let found = locked(py, &self.0, |culler| bits_of(culler.body_pairs()));
-        pairs(py, found)
+        pairs(py, found.map_err(refused)?)
     }
 }

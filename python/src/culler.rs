@@ -11,6 +11,7 @@ use sdop::{Bodies, Body, BodyId, Groups, Interest, World};
 use super::arrays::{check_length, flags, pairs, rows, whole_column};
 use super::boxes::{groups, list};
 use super::errors::{locked, refused};
+use super::ids::collected;
 use super::shape::{Shape, built};
 use super::world::builder;
 
@@ -45,7 +46,7 @@ pub struct Culler(Mutex<State>);
 struct State {
     culler: sdop::Culler,
     bodies: Bodies,
-    /// Whether there was no frame yet, so that the poses of static bodies are unknown.
+    /// Whether there was no frame yet, so that the culler was built for other poses.
     is_new: bool,
     seconds: f64,
     /// What culls poses of float64 that float32 can't hold, since the first of them.
@@ -117,12 +118,14 @@ impl Culler {
     ///     Whether the rows are sorted.
     /// exact : bool
     ///     Whether poses that float32 can't hold are rejected.
+    /// limit : int, optional
+    ///     More pairs than that are an error, and memory for them is never allocated.
     ///
     /// Returns
     /// -------
     /// array of uint32, shape (m, 2)
     ///     Each pair i < j once.
-    #[pyo3(signature = (rotations, translations, *, sort=false, exact=false))]
+    #[pyo3(signature = (rotations, translations, *, sort=false, exact=false, limit=None))]
     fn cull<'py>(
         &self,
         py: Python<'py>,
@@ -130,16 +133,17 @@ impl Culler {
         translations: &Bound<'py, PyAny>,
         sort: bool,
         exact: bool,
+        limit: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let rotations = rows::<4>(rotations, "rotations", exact, ROUND)?;
         let translations = rows::<3>(translations, "translations", exact, ROUND)?;
         let found = match (rotations.narrow(), translations.narrow()) {
             (Some(rotations), Some(translations)) => {
-                locked(py, &self.0, |state| state.cull(rotations, translations, sort))
+                locked(py, &self.0, |state| state.cull(rotations, translations, sort, limit))
             }
             _ => {
                 let (rotations, translations) = (rotations.wide(), translations.wide());
-                locked(py, &self.0, |state| state.cull_wide(&rotations, &translations))
+                locked(py, &self.0, |state| state.cull_wide(&rotations, &translations, limit))
             }
         };
         pairs(py, found?)
@@ -168,6 +172,7 @@ impl State {
         &mut self,
         rotations: &[[f64; 4]],
         translations: &[[f64; 3]],
+        limit: Option<usize>,
     ) -> PyResult<Vec<[u32; 2]>> {
         let n = self.bodies.len();
         check_length("rotations", rotations.len(), n)?;
@@ -183,9 +188,13 @@ impl State {
         for ((&id, &q), &t) in ids.iter().zip(rotations).zip(translations) {
             world.set_pose_f64(id, q, t).map_err(refused)?;
         }
-        let found = world.cull().map_err(refused)?;
+        let found = match limit {
+            Some(limit) => world.cull_up_to(limit),
+            None => world.cull(),
+        };
+        let found = found.map_err(refused)?;
         self.seconds = start.elapsed().as_secs_f64();
-        Ok(found.iter().map(|pair| pair.map(|id| id.slot() as u32)).collect())
+        collected(found.iter().map(|pair| pair.map(|id| id.slot() as u32))).map_err(refused)
     }
 
     /// A world of the bodies, at the origin.
@@ -209,15 +218,11 @@ impl State {
         rotations: &[[f32; 4]],
         translations: &[[f32; 3]],
         sort: bool,
+        limit: Option<usize>,
     ) -> PyResult<Vec<[u32; 2]>> {
         let n = self.bodies.len();
         check_length("rotations", rotations.len(), n)?;
         check_length("translations", translations.len(), n)?;
-        let fixed = (0..n).filter(|&i| !self.bodies.dynamic[i]);
-        let has_moved = |i: usize| {
-            self.bodies.rotation[i] != rotations[i] || self.bodies.translation[i] != translations[i]
-        };
-        self.is_new |= fixed.into_iter().any(has_moved);
         self.bodies.rotation.copy_from_slice(rotations);
         self.bodies.translation.copy_from_slice(translations);
         if self.is_new {
@@ -225,8 +230,11 @@ impl State {
             self.is_new = false;
         }
         let start = Instant::now();
-        let found = self.culler.cull(&self.bodies);
+        let found = match limit {
+            Some(limit) => self.culler.cull_up_to(&self.bodies, limit),
+            None => self.culler.cull(&self.bodies),
+        };
         self.seconds = start.elapsed().as_secs_f64();
-        found.map(|found| list(found, sort)).map_err(refused)
+        found.and_then(|found| list(found, sort)).map_err(refused)
     }
 }

@@ -24,8 +24,8 @@ create_exception!(
 /// An error of the library.
 pub fn refused(error: impl Remedy) -> PyErr {
     match error.remedy() {
-        Some(help) => with_help(&error, help),
-        None => SdopError::new_err(error.to_string()),
+        Some(help) => with_help(error.problem(), help),
+        None => SdopError::new_err(error.problem()),
     }
 }
 

@@ -10,7 +10,7 @@ use sdop::{Body, BodyId, Finder, Groups};
 
 use super::arrays::{check_length, id_column, matrix, one_row, pairs, rows, wide_rows};
 use super::errors::{locked, refused, with_help};
-use super::ids::bits_of;
+use super::ids::{bits_of, collected};
 use super::shape::{Shape, built};
 use super::world::{ROUND, body, builder, motion, named, pose};
 
@@ -18,8 +18,8 @@ use super::world::{ROUND, body, builder, motion, named, pose};
 type PeriodicPairs<'py> = (Bound<'py, PyArray2<u64>>, Bound<'py, PyArray2<i32>>);
 
 fn arrays<'py>(py: Python<'py>, found: &[PeriodicPair]) -> PyResult<PeriodicPairs<'py>> {
-    let images: Vec<[i32; 3]> = found.iter().map(|pair| pair.image).collect();
-    let ids = bits_of(found.iter().map(|pair| pair.bodies));
+    let images = collected(found.iter().map(|pair| pair.image)).map_err(refused)?;
+    let ids = bits_of(found.iter().map(|pair| pair.bodies)).map_err(refused)?;
     Ok((pairs(py, ids)?, matrix(py, &images)?))
 }
 

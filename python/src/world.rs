@@ -6,7 +6,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sdop::culler::CullerBuilder;
-use sdop::{Body, BodyId, Finder, Groups, Motion, Strategy};
+use sdop::{Body, BodyId, CullError, Finder, Groups, Motion, Strategy};
 
 use super::arrays::{check_length, id_column, one_row, pairs, rows, wide_rows};
 use super::errors::{locked, refused, with_help};
@@ -173,21 +173,33 @@ impl World {
         named(py, &body)
     }
 
-    /// Finds the pairs that might touch now: ids of shape (m, 2), sorted.
-    fn cull<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let found = locked(py, &self.0, |world| world.cull().map(|found| bits_of(found.iter())));
+    /// Finds the pairs that might touch now: ids of shape (m, 2), sorted. More than `limit` pairs
+    /// are an error.
+    #[pyo3(signature = (*, limit=None))]
+    fn cull<'py>(
+        &self,
+        py: Python<'py>,
+        limit: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+        let found = locked(py, &self.0, |world| {
+            let found = match limit {
+                Some(limit) => world.cull_up_to(limit)?,
+                None => world.cull()?,
+            };
+            Ok::<_, sdop::WorldError>(bits_of(found.iter())?)
+        });
         pairs(py, found.map_err(refused)?)
     }
 
     /// The pairs of the last cull.
     fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())))
+        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())).map_err(refused)?)
     }
 
     /// The pairs that began, persisted or ended between the last call of this method and the last
     /// cull.
-    fn events(&self, py: Python<'_>) -> Events {
-        locked(py, &self.0, |world| Events::new(&world.events()))
+    fn events(&self, py: Python<'_>) -> PyResult<Events> {
+        locked(py, &self.0, |world| Events::new(&world.events())).map_err(refused)
     }
 
     /// The world as bytes, for `restore` here or elsewhere: bodies, ids, pairs and events, without
@@ -287,12 +299,12 @@ pub struct Events {
 }
 
 impl Events {
-    pub(super) fn new(events: &sdop::Events) -> Self {
-        Self {
-            begun: bits_of(events.begun()),
-            persisting: bits_of(events.persisting()),
-            ended: bits_of(events.ended()),
-        }
+    pub(super) fn new(events: &sdop::Events) -> Result<Self, CullError> {
+        Ok(Self {
+            begun: bits_of(events.begun())?,
+            persisting: bits_of(events.persisting())?,
+            ended: bits_of(events.ended())?,
+        })
     }
 }
 

@@ -1,6 +1,10 @@
 """Boxes: the pairs that numpy finds by brute force, and what is refused."""
 
 import hashlib
+import os
+import signal
+import subprocess
+import sys
 import time
 
 import numpy as np
@@ -166,3 +170,41 @@ def test_the_time_of_a_call_is_kept():
     start = time.perf_counter()
     culler.cull(np.zeros((1000, 6), np.float32))
     assert 0 < culler.seconds < time.perf_counter() - start
+
+
+def test_a_forked_child_has_its_own_threads():
+    crowd = boxes(60_000, extent=60.0)  # enough work to wake threads
+    culler = sdop.BoxCuller(threads=2)
+    pairs = len(culler.cull(crowd))
+    assert len(culler.cull(crowd)) == pairs
+    child = os.fork()
+    if child == 0:
+        signal.alarm(60)  # a child that hangs is ended
+        found = [len(culler.cull(crowd)) for _ in range(3)]
+        os._exit(0 if found == [pairs] * 3 else 1)
+    assert os.waitpid(child, 0)[1] == 0
+
+
+CROWD = """
+import resource, numpy, sdop
+crowd = numpy.tile(numpy.float32([0, 0, 0, 1, 1, 1]), (20_000, 1))
+assert len(sdop.box_pairs(crowd[:1000])) == 1000 * 999 // 2
+resource.setrlimit(resource.RLIMIT_AS, (1_500_000 * 1024,) * 2)
+world = sdop.BoxWorld()
+for box in crowd:
+    world.insert(box)
+for call in [lambda: sdop.box_pairs(crowd), world.cull, lambda: world.cull(limit=9)]:
+    try:
+        call()
+    except sdop.SdopError as error:
+        print(error)
+"""
+
+
+def test_pairs_beyond_memory_or_limit_are_an_error():
+    done = subprocess.run([sys.executable, "-P", "-c", CROWD], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("there is no memory for the frame's pairs\nhelp: ") == 2
+    assert "the frame has 199990000 pairs, but at most 9 are allowed" in done.stdout
+    with pytest.raises(sdop.SdopError, match="at most 3 are allowed"):
+        sdop.box_pairs(boxes(1000), limit=3)

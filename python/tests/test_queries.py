@@ -115,8 +115,12 @@ def test_shapes_at_poses_miss_no_body():
     ],
 )
 def test_what_is_wrong_with_a_query_is_said(ask, error, text):
+    index = sdop.QueryIndex()
+    with pytest.raises(sdop.SdopError, match="never been updated\nhelp: call `update`"):
+        index.touching_balls([[0, 0, 0]], [1])
+    index.update(sdop.BoxWorld())
     with pytest.raises(error, match=text):
-        ask(sdop.QueryIndex())
+        ask(index)
 
 
 def test_no_queries_have_no_answers():
@@ -177,6 +181,13 @@ def test_what_is_wrong_with_a_compound_is_said():
             sdop.Compound([shape], part_shapes, rotations, np.zeros((len(part_shapes), 3)), name="arm")
     world = sdop.World([shape])
     culler = sdop.PartCuller()
+    culler.set_parts(2**32 - 1, arm())  # takes no memory
+    with pytest.raises(sdop.SdopError, match="changed since its last cull.*\nhelp: call `World::cull`"):
+        culler.cull(world)
+    world.cull()
+    with pytest.raises(sdop.SdopError, match="shape 4294967295 of the world"):
+        culler.cull(world)
+    culler.remove_parts(2**32 - 1)
     culler.set_parts(0, arm())
     with pytest.raises(sdop.SdopError, match="shape 0 of the world is not the shape of compound `arm`\nhelp: "):
         culler.cull(world)

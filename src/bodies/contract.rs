@@ -20,8 +20,8 @@ pub(crate) use poses::{
 pub use poses::{check_bodies, check_pose, check_poses, check_vectors};
 
 /// The error for a body that breaks the contract.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("body {body}: {quantity} {value}")]
+#[derive(Clone, PartialEq, Error)]
+#[error("body {body}: {quantity} {value}; {help}", help = self.help())]
 pub struct ContractError {
     /// The body's index.
     pub body: usize,
@@ -32,6 +32,8 @@ pub struct ContractError {
     /// How to mend it.
     pub hint: &'static str,
 }
+
+crate::problem::errors!(ContractError);
 
 impl ContractError {
     /// How to mend it.
@@ -94,7 +96,7 @@ mod tests {
     fn body_limit_is_enforced() {
         assert_eq!(check_number(0), Ok(()));
         assert_eq!(check_number(MOST_BODIES), Ok(()));
-        let told = check_number(MOST_BODIES + 1).map_err(|error| error.to_string());
+        let told = check_number(MOST_BODIES + 1).map_err(|error| error.problem());
         let [more, most] = [MOST_BODIES + 1, MOST_BODIES];
         assert_eq!(told, Err(format!("body {most}: number {more} of {most} at most")));
     }

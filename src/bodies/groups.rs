@@ -12,7 +12,13 @@ pub struct Groups {
 
 impl Groups {
     /// In all groups, and collides with all: the default.
-    pub const ALL: Self = Self { member: u32::MAX, mask: u32::MAX };
+    pub const ALL: Self = Self::of(u32::MAX);
+
+    /// In these groups, and collides with them. Made by a call, [`Self::ALL`] is a constant that
+    /// cbindgen leaves to its configuration: what it writes for a literal isn't C++.
+    const fn of(bits: u32) -> Self {
+        Self { member: bits, mask: bits }
+    }
 
     /// Whether each of two bodies is in a group that the other collides with.
     #[inline(always)]

@@ -39,6 +39,7 @@ impl BoxWorld {
         }
         let mut kept = self.log.take(&self.ids);
         let pairs = self.cull_by_slots(|portion| kept.append_up_to(portion, limit))?;
+        CullError::check_memory(&mut kept)?;
         if kept.len() as u64 != pairs {
             return Err(CullError::TooManyPairs { pairs, limit }.into());
         }

@@ -134,14 +134,16 @@ impl BoxCuller {
     ///
     /// # Errors
     /// An end is infinite or NaN, a lower end is above the upper one, there are more boxes than can
-    /// be numbered, or the column of groups has another length. Then [`Self::pairs`] is empty, and
+    /// be numbered, the column of groups has another length, or there are more pairs than memory
+    /// holds. Then [`Self::pairs`] is empty, and
     /// the next frame is culled as usual.
     pub fn cull(&mut self, boxes: &[Aabb]) -> Result<&PairList, CullError> {
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
         let outcome = self.cull_into(boxes, Output::List(&mut pairs));
+        let whole = CullError::check_memory(&mut pairs);
         self.pairs = pairs;
-        outcome.map(|()| &self.pairs)
+        outcome.and(whole).map(|()| &self.pairs)
     }
 
     /// Culls one frame as [`Self::cull`] does and passes its pairs to `take`, about 65,000 at a
@@ -176,6 +178,7 @@ impl BoxCuller {
         let mut kept = std::mem::take(&mut self.pairs);
         kept.clear();
         let outcome = self.cull_in_portions(boxes, |portion| kept.append_up_to(portion, limit));
+        CullError::check_memory(&mut kept)?;
         self.pairs = kept;
         match outcome {
             Ok(pairs) if pairs == self.pairs.len() as u64 => Ok(&self.pairs),

@@ -5,6 +5,7 @@ use super::frame::BoxFrames;
 use crate::bodies::contract::check_number;
 use crate::bodies::{Aabb, ExcludedPairs, Groups, Motion, PairFilter};
 use crate::counters::{RestCounters, VolumeCounters};
+use crate::culler::CullError;
 use crate::strategy::Output;
 use crate::threads::Threads;
 use crate::world::{BodyId, Events, Ids, LivePairs, Movers, WorldError, WorldPairs};
@@ -251,11 +252,13 @@ impl BoxWorld {
     /// independent of the finder, of threads and of earlier calls.
     ///
     /// # Errors
-    /// Never: invalid boxes are rejected when they are inserted or set.
+    /// There are more pairs than memory holds: then there are none. Invalid boxes are rejected when
+    /// they are inserted or set.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         if !self.cull_changed(usize::MAX) {
             let mut list = self.log.take(&self.ids);
             self.cull_into(Output::List(&mut list))?;
+            CullError::check_memory(&mut list)?;
             self.log.put(list, &self.ids);
             self.movers.all_found();
         }

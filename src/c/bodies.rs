@@ -3,8 +3,8 @@
 use std::ffi::c_char;
 
 use super::border::{
-    Refusal, SdopPair, SdopStatus, call, column, fill, free, give, handle, optional, pairs, put,
-    shared, text,
+    Buffer, Out, Refusal, SdopPair, SdopStatus, answer, column, free, handle, list, make, optional,
+    pairs, shared, text,
 };
 use crate::bodies::{Bodies, Groups};
 use crate::culler::{Culler, CullerBuilder};
@@ -69,7 +69,8 @@ pub unsafe extern "C" fn sdop_shape_new(
     spec: *const SdopShapeSpec,
     out: *mut *mut SdopShape,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let vertices = unsafe { column(vertices, vertex_count, "vertices") }?;
         // SAFETY: the caller's promise.
@@ -77,8 +78,7 @@ pub unsafe extern "C" fn sdop_shape_new(
         let mesh = TriangleMesh::from_f64(vertices, triangles)?;
         // SAFETY: the caller's promise.
         let shape = Shape::build(&mesh, &unsafe { self::spec(spec) }?)?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopShape(shape)) }
+        Ok(SdopShape(shape))
     })
 }
 
@@ -175,7 +175,8 @@ pub unsafe extern "C" fn sdop_culler_new(
     options: *const SdopOptions,
     out: *mut *mut SdopCuller,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let (shapes, given) =
             unsafe { (self::shapes(shapes, shape_count)?, shared(bodies, "bodies")?) };
@@ -193,8 +194,7 @@ pub unsafe extern "C" fn sdop_culler_new(
         let (builder, groups) = unsafe { (builder(options)?, optional(given.groups, n)) };
         let mut culler = builder.build(&shapes, &bodies)?;
         culler.set_groups(groups.map(<[Groups]>::to_vec))?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopCuller { culler, bodies }) }
+        Ok(SdopCuller { culler, bodies })
     })
 }
 
@@ -209,7 +209,8 @@ pub unsafe extern "C" fn sdop_culler_free(culler: *mut SdopCuller) {
 }
 
 /// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
-/// stay where they were made. `pairs` gets their number; read them with `sdop_culler_pairs`.
+/// that have moved are found where they are now; such a frame takes about twice as long. `pairs`
+/// gets their number; read them with `sdop_culler_pairs`.
 ///
 /// # Safety
 /// `culler` is a handle; the columns have an entry for each body; `pairs` may be written.
@@ -220,7 +221,8 @@ pub unsafe extern "C" fn sdop_culler_cull(
     translation: *const [f32; 3],
     pairs: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
         // SAFETY: the caller's promise.
         let it = unsafe { handle(culler, "culler") }?;
         let n = it.bodies.len();
@@ -229,9 +231,7 @@ pub unsafe extern "C" fn sdop_culler_cull(
             unsafe { (column(rotation, n, "rotation")?, column(translation, n, "translation")?) };
         it.bodies.rotation.copy_from_slice(rotation);
         it.bodies.translation.copy_from_slice(translation);
-        let found = it.culler.cull(&it.bodies)?.len();
-        // SAFETY: the caller's promise.
-        unsafe { put(pairs, found, "pairs") }
+        Ok(it.culler.cull(&it.bodies)?.len())
     })
 }
 
@@ -247,10 +247,10 @@ pub unsafe extern "C" fn sdop_culler_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { handle(culler, "culler") }?;
-        // SAFETY: the caller's promise.
-        unsafe { fill(pairs(it.culler.pairs()), buffer, capacity, count) }
+        Ok(pairs(it.culler.pairs()))
     })
 }

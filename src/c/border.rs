@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr::NonNull;
 use std::slice;
 
 use crate::bodies::contract::ContractError;
@@ -113,7 +114,7 @@ macro_rules! refusals {
     ($($error:ty),+) => {
         $(impl From<$error> for Refusal {
             fn from(error: $error) -> Self {
-                let text = format!("{error}\nhelp: {}", error.help());
+                let text = format!("{}\nhelp: {}", error.problem(), error.help());
                 Self::new(SdopStatus::Refused, text)
             }
         })+
@@ -181,26 +182,88 @@ pub unsafe fn free<T>(handle: *mut T) {
     }
 }
 
-/// Hands a new handle out.
-///
-/// # Safety
-/// `out` is null or may be written.
-pub unsafe fn give<T>(out: *mut *mut T, value: T) -> Result<(), Refusal> {
-    // SAFETY: the caller's promise.
-    unsafe { put(out, Box::into_raw(Box::new(value)), "out") }
+/// Where a call writes its answer: null, or a pointer that may be written. [`answer`], [`make`] and
+/// [`list`] check it before they act, as [`call_back`] checks a callback: a call that is refused
+/// for a null pointer has changed nothing.
+pub struct Out<T>(*mut T);
+
+impl<T> Out<T> {
+    /// # Safety
+    /// The pointer is null, or may be written for as long as the call lasts.
+    pub unsafe fn new(pointer: *mut T) -> Self {
+        Self(pointer)
+    }
+
+    /// The pointer, unless it is null.
+    pub fn checked(self, what: &str) -> Result<NonNull<T>, Refusal> {
+        NonNull::new(self.0).ok_or_else(|| null(what))
+    }
 }
 
-/// Writes one value.
-///
-/// # Safety
-/// `out` is null or may be written.
-pub unsafe fn put<T>(out: *mut T, value: T, what: &str) -> Result<(), Refusal> {
-    if out.is_null() {
-        return Err(null(what));
+/// Carries out a call that writes one value.
+pub fn answer<T>(out: Out<T>, what: &str, run: impl FnOnce() -> Result<T, Refusal>) -> SdopStatus {
+    call(|| {
+        let out = out.checked(what)?;
+        let value = run()?;
+        // SAFETY: not null, so it may be written, by the promise of `Out::new`.
+        unsafe { out.write(value) };
+        Ok(())
+    })
+}
+
+/// Carries out a call that hands a new handle out.
+pub fn make<T>(out: Out<*mut T>, run: impl FnOnce() -> Result<T, Refusal>) -> SdopStatus {
+    answer(out, "out", || run().map(|value| Box::into_raw(Box::new(value))))
+}
+
+/// Carries out a call that calls back.
+pub fn call_back<F>(take: Option<F>, run: impl FnOnce(F) -> Result<(), Refusal>) -> SdopStatus {
+    call(|| run(take.ok_or_else(|| null("take"))?))
+}
+
+/// A caller's buffer, and where the number of values goes, whether they fit or not.
+pub struct Buffer<T> {
+    first: *mut T,
+    capacity: usize,
+    count: Out<usize>,
+}
+
+impl<T> Buffer<T> {
+    /// # Safety
+    /// `capacity` entries from `first` on may be written, if there are any; `count` is null or may
+    /// be written.
+    pub unsafe fn new(first: *mut T, capacity: usize, count: *mut usize) -> Self {
+        Self { first, capacity, count: Out(count) }
     }
-    // SAFETY: not null, and writable by the caller's promise.
-    unsafe { out.write(value) };
-    Ok(())
+}
+
+/// Carries out a call that copies values into a caller's buffer.
+pub fn list<T, I: ExactSizeIterator<Item = T>>(
+    buffer: Buffer<T>,
+    run: impl FnOnce() -> Result<I, Refusal>,
+) -> SdopStatus {
+    call(|| {
+        let Buffer { first, capacity, count } = buffer;
+        let count = count.checked("count")?;
+        if capacity > 0 && first.is_null() {
+            return Err(null("buffer"));
+        }
+        let values = run()?;
+        let needed = values.len();
+        // SAFETY: not null, so it may be written, by the promise of `Buffer::new`.
+        unsafe { count.write(needed) };
+        if needed > capacity {
+            let text = format!(
+                "{needed} entries don't fit into a buffer of {capacity}\nhelp: pass a larger buffer"
+            );
+            return Err(Refusal::new(SdopStatus::TooSmall, text));
+        }
+        for (at, value) in values.enumerate() {
+            // SAFETY: below `capacity`, so writable by the promise of `Buffer::new`.
+            unsafe { first.add(at).write(value) };
+        }
+        Ok(())
+    })
 }
 
 /// A column of `count` entries.
@@ -241,36 +304,6 @@ pub unsafe fn text(text: *const c_char, default: &str) -> Result<&str, Refusal> 
     text.to_str().map_err(refused)
 }
 
-/// Copies values into a caller's buffer; `count` gets their number, whether they fit or not.
-///
-/// # Safety
-/// `capacity` entries after `buffer` may be written, if there are any; `count` is null or may be
-/// written.
-pub unsafe fn fill<T>(
-    values: impl ExactSizeIterator<Item = T>,
-    buffer: *mut T,
-    capacity: usize,
-    count: *mut usize,
-) -> Result<(), Refusal> {
-    let needed = values.len();
-    // SAFETY: the caller's promise.
-    unsafe { put(count, needed, "count") }?;
-    if needed > capacity {
-        let text = format!(
-            "{needed} entries don't fit into a buffer of {capacity}\nhelp: pass a larger buffer"
-        );
-        return Err(Refusal::new(SdopStatus::TooSmall, text));
-    }
-    if needed > 0 && buffer.is_null() {
-        return Err(null("buffer"));
-    }
-    for (at, value) in values.enumerate() {
-        // SAFETY: below `capacity`, so writable by the caller's promise.
-        unsafe { buffer.add(at).write(value) };
-    }
-    Ok(())
-}
-
 /// A snapshot as bytes.
 pub fn saved(snapshot: &impl serde::Serialize) -> Result<Vec<u8>, Refusal> {
     let refused =
@@ -303,12 +336,14 @@ impl User {
     ///
     /// # Safety
     /// The callback may be called with this pointer.
-    pub unsafe fn take(&self, take: SdopTakePairs, list: &PairList) {
+    pub unsafe fn take(
+        &self,
+        take: unsafe extern "C" fn(*mut c_void, *const SdopPair, usize),
+        list: &PairList,
+    ) {
         let pairs: Vec<SdopPair> = pairs(list).collect();
-        if let Some(take) = take {
-            // SAFETY: the caller's promise.
-            unsafe { take(self.0, pairs.as_ptr(), pairs.len()) };
-        }
+        // SAFETY: the caller's promise.
+        unsafe { take(self.0, pairs.as_ptr(), pairs.len()) };
     }
 }
 
@@ -318,10 +353,9 @@ impl User {
 /// The callback may be called with this pointer.
 pub unsafe fn pass_events(
     events: &Events,
-    take: SdopTakeEvent,
+    take: unsafe extern "C" fn(*mut c_void, SdopEvent),
     user: *mut c_void,
-) -> Result<(), Refusal> {
-    let take = take.ok_or_else(|| null("take"))?;
+) {
     for event in events.iter() {
         let (kind, pair) = match event {
             Event::Begun(pair) => (SdopEventKind::Begun, pair),
@@ -332,5 +366,4 @@ pub unsafe fn pass_events(
         // SAFETY: the caller's promise.
         unsafe { take(user, SdopEvent { kind, pair }) };
     }
-    Ok(())
 }

@@ -3,8 +3,8 @@
 use std::ffi::{c_char, c_void};
 
 use super::border::{
-    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, pass_events,
-    put, read_back, saved, shared,
+    Buffer, Out, SdopIdPair, SdopStatus, SdopTakeEvent, answer, call, call_back, column, free,
+    handle, list, make, pass_events, read_back, saved, shared,
 };
 use super::boxes::builder;
 use crate::bodies::{Aabb, Groups, Motion};
@@ -55,11 +55,11 @@ pub unsafe extern "C" fn sdop_box_world_new(
     threads: usize,
     out: *mut *mut SdopBoxWorld,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let world = BoxWorld::with(&unsafe { builder(finder, threads) }?)?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopBoxWorld(world)) }
+        Ok(SdopBoxWorld(world))
     })
 }
 
@@ -83,12 +83,11 @@ pub unsafe extern "C" fn sdop_box_world_insert(
     body: *const SdopBoxBody,
     id: *mut u64,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(id) }, "id", || {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
-        let inserted = it.0.insert(BoxBody::from(body))?;
-        // SAFETY: the caller's promise.
-        unsafe { put(id, inserted.to_bits(), "id") }
+        Ok(it.0.insert(BoxBody::from(body))?.to_bits())
     })
 }
 
@@ -185,11 +184,10 @@ pub unsafe extern "C" fn sdop_box_world_cull(
     world: *mut SdopBoxWorld,
     pairs: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
         // SAFETY: the caller's promise.
-        let found = unsafe { handle(world, "world") }?.0.cull()?.len();
-        // SAFETY: the caller's promise.
-        unsafe { put(pairs, found, "pairs") }
+        Ok(unsafe { handle(world, "world") }?.0.cull()?.len())
     })
 }
 
@@ -205,11 +203,11 @@ pub unsafe extern "C" fn sdop_box_world_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { handle(world, "world") }?;
-        // SAFETY: the caller's promise.
-        unsafe { fill(it.0.pairs().map(SdopIdPair::from), buffer, capacity, count) }
+        Ok(it.0.pairs().map(SdopIdPair::from))
     })
 }
 
@@ -224,11 +222,12 @@ pub unsafe extern "C" fn sdop_box_world_events(
     take: SdopTakeEvent,
     user: *mut c_void,
 ) -> SdopStatus {
-    call(|| {
+    call_back(take, |take| {
         // SAFETY: the caller's promise.
-        let it = unsafe { handle(world, "world") }?;
+        let events = unsafe { handle(world, "world") }?.0.events();
         // SAFETY: the caller's promise.
-        unsafe { pass_events(&it.0.events(), take, user) }
+        unsafe { pass_events(&events, take, user) };
+        Ok(())
     })
 }
 
@@ -244,11 +243,11 @@ pub unsafe extern "C" fn sdop_box_world_snapshot(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let bytes = saved(&unsafe { handle(world, "world") }?.0.snapshot())?;
-        // SAFETY: the caller's promise.
-        unsafe { fill(bytes.into_iter(), buffer, capacity, count) }
+        Ok(bytes.into_iter())
     })
 }
 

@@ -3,8 +3,8 @@
 use std::ffi::{c_char, c_void};
 
 use super::border::{
-    Refusal, SdopPair, SdopStatus, SdopTakePairs, User, call, column, fill, free, give, handle,
-    optional, pairs, put, text,
+    Buffer, Out, Refusal, SdopPair, SdopStatus, SdopTakePairs, User, answer, call_back, column,
+    free, handle, list, make, optional, pairs, text,
 };
 use crate::bodies::{Aabb, Groups};
 use crate::boxes::{BoxCuller, BoxCullerBuilder};
@@ -59,11 +59,11 @@ pub unsafe extern "C" fn sdop_box_culler_new(
     threads: usize,
     out: *mut *mut SdopBoxCuller,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let culler = unsafe { builder(finder, threads) }?.build()?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopBoxCuller(culler)) }
+        Ok(SdopBoxCuller(culler))
     })
 }
 
@@ -89,10 +89,9 @@ impl SdopBoxCuller {
         count: usize,
     ) -> Result<&'a [Aabb], Refusal> {
         // SAFETY: the caller's promise.
-        let groups = unsafe { optional(groups, count) };
+        let (boxes, groups) = unsafe { (column(boxes, count, "boxes")?, optional(groups, count)) };
         self.0.set_groups(groups.map(<[Groups]>::to_vec));
-        // SAFETY: the caller's promise.
-        unsafe { column(boxes, count, "boxes") }
+        Ok(boxes)
     }
 }
 
@@ -110,14 +109,13 @@ pub unsafe extern "C" fn sdop_box_culler_cull(
     count: usize,
     pairs: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
         // SAFETY: the caller's promise.
         let it = unsafe { handle(culler, "culler") }?;
         // SAFETY: the caller's promise.
         let boxes = unsafe { it.take(boxes, groups, count) }?;
-        let found = it.0.cull(boxes)?.len();
-        // SAFETY: the caller's promise.
-        unsafe { put(pairs, found, "pairs") }
+        Ok(it.0.cull(boxes)?.len())
     })
 }
 
@@ -133,11 +131,11 @@ pub unsafe extern "C" fn sdop_box_culler_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { handle(culler, "culler") }?;
-        // SAFETY: the caller's promise.
-        unsafe { fill(pairs(it.0.pairs()), buffer, capacity, count) }
+        Ok(pairs(it.0.pairs()))
     })
 }
 
@@ -156,7 +154,7 @@ pub unsafe extern "C" fn sdop_box_culler_cull_each(
     take: SdopTakePairs,
     user: *mut c_void,
 ) -> SdopStatus {
-    call(|| {
+    call_back(take, |take| {
         // SAFETY: the caller's promise.
         let it = unsafe { handle(culler, "culler") }?;
         // SAFETY: the caller's promise.

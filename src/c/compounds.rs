@@ -4,7 +4,8 @@ use std::ffi::c_char;
 
 use super::bodies::{SdopShape, shapes};
 use super::border::{
-    SdopIdPair, SdopStatus, call, column, fill, free, give, handle, put, shared, text,
+    Buffer, Out, SdopIdPair, SdopStatus, answer, call, column, free, handle, list, make, shared,
+    text,
 };
 use super::world::SdopWorld;
 use crate::compound::{Compound, Part, PartCuller, PartPair};
@@ -58,7 +59,8 @@ pub unsafe extern "C" fn sdop_compound_new(
     part_count: usize,
     out: *mut *mut SdopCompound,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let name = unsafe { text(name, "compound") }?;
         // SAFETY: the caller's promise.
@@ -66,8 +68,7 @@ pub unsafe extern "C" fn sdop_compound_new(
         // SAFETY: the caller's promise.
         let parts = unsafe { column(parts, part_count, "parts") }?;
         let compound = Compound::build(name, &shapes, parts)?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopCompound(compound)) }
+        Ok(SdopCompound(compound))
     })
 }
 
@@ -90,11 +91,11 @@ pub unsafe extern "C" fn sdop_compound_shape(
     compound: *const SdopCompound,
     out: *mut *mut SdopShape,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let compound = unsafe { shared(compound, "compound") }?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopShape(compound.0.shape().clone())) }
+        Ok(SdopShape(compound.0.shape().clone()))
     })
 }
 
@@ -105,7 +106,7 @@ pub unsafe extern "C" fn sdop_compound_shape(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_part_culler_new(out: *mut *mut SdopPartCuller) -> SdopStatus {
     // SAFETY: the caller's promise.
-    call(|| unsafe { give(out, SdopPartCuller(PartCuller::new())) })
+    make(unsafe { Out::new(out) }, || Ok(SdopPartCuller(PartCuller::new())))
 }
 
 /// Frees a culler of parts; null is fine.
@@ -140,8 +141,8 @@ pub unsafe extern "C" fn sdop_part_culler_set_parts(
     })
 }
 
-/// Finds the pairs of parts in the pairs of the world's last cull: call it after each cull. `pairs`
-/// gets their number; read them with `sdop_part_culler_pairs`.
+/// Finds the pairs of parts in the pairs of the world's last cull: call it after each cull, before
+/// bodies change. `pairs` gets their number; read them with `sdop_part_culler_pairs`.
 ///
 /// # Safety
 /// `culler` and `world` are handles; `pairs` may be written.
@@ -151,12 +152,11 @@ pub unsafe extern "C" fn sdop_part_culler_cull(
     world: *const SdopWorld,
     pairs: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
         // SAFETY: the caller's promise.
         let (it, world) = unsafe { (handle(culler, "culler")?, shared(world, "world")?) };
-        let found = it.0.cull(&world.0)?.len();
-        // SAFETY: the caller's promise.
-        unsafe { put(pairs, found, "pairs") }
+        Ok(it.0.cull(&world.0)?.len())
     })
 }
 
@@ -172,12 +172,11 @@ pub unsafe extern "C" fn sdop_part_culler_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { shared(culler, "culler") }?;
-        let pairs = it.0.pairs().iter().map(SdopPartPair::from);
-        // SAFETY: the caller's promise.
-        unsafe { fill(pairs, buffer, capacity, count) }
+        Ok(it.0.pairs().iter().map(SdopPartPair::from))
     })
 }
 
@@ -193,11 +192,11 @@ pub unsafe extern "C" fn sdop_part_culler_body_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { shared(culler, "culler") }?;
         let pairs: Vec<_> = it.0.body_pairs().map(SdopIdPair::from).collect();
-        // SAFETY: the caller's promise.
-        unsafe { fill(pairs.into_iter(), buffer, capacity, count) }
+        Ok(pairs.into_iter())
     })
 }

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::bodies::SdopShape;
-use super::border::{SdopStatus, call, free, give, handle, put, shared};
+use super::border::{Out, SdopStatus, answer, free, handle, make, shared};
 use crate::settings::DirectionSet;
 use crate::world::PairTest;
 
@@ -17,13 +17,13 @@ pub struct SdopPairTest(PairTest);
 /// `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_pair_test_new(k: u32, out: *mut *mut SdopPairTest) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         let directions = match k {
             0 => DirectionSet::K18,
             k => k.to_string().parse()?,
         };
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopPairTest(PairTest::new(directions))) }
+        Ok(SdopPairTest(PairTest::new(directions)))
     })
 }
 
@@ -48,12 +48,11 @@ pub unsafe extern "C" fn sdop_pair_test_add(
     shape: *const SdopShape,
     number: *mut u32,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(number) }, "number", || {
         // SAFETY: the caller's promise.
         let (test, shape) = unsafe { (handle(test, "test")?, shared(shape, "shape")?) };
-        let added = test.0.add(&shape.0)?;
-        // SAFETY: the caller's promise.
-        unsafe { put(number, added, "number") }
+        Ok(test.0.add(&shape.0)?)
     })
 }
 
@@ -69,11 +68,10 @@ pub unsafe extern "C" fn sdop_pair_test_grow(
     margin: f32,
     number: *mut u32,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(number) }, "number", || {
         // SAFETY: the caller's promise.
-        let added = unsafe { handle(test, "test") }?.0.grown(shape, margin)?;
-        // SAFETY: the caller's promise.
-        unsafe { put(number, added, "number") }
+        Ok(unsafe { handle(test, "test") }?.0.grown(shape, margin)?)
     })
 }
 

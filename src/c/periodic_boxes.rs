@@ -3,8 +3,8 @@
 use std::ffi::{c_char, c_void};
 
 use super::border::{
-    Refusal, SdopEventKind, SdopIdPair, SdopStatus, call, column, fill, free, give, handle, null,
-    put, shared,
+    Buffer, Out, Refusal, SdopEventKind, SdopIdPair, SdopStatus, answer, call, call_back, column,
+    free, handle, list, make, shared,
 };
 use super::boxes::builder;
 use crate::bodies::{Groups, Motion};
@@ -115,12 +115,12 @@ pub unsafe extern "C" fn sdop_periodic_boxes_new(
     threads: usize,
     out: *mut *mut SdopPeriodicBoxes,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let (periods, culler) = unsafe { (self::periods(periods)?, builder(finder, threads)?) };
         let boxes = PeriodicBoxes::with(&culler, periods)?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopPeriodicBoxes(boxes)) }
+        Ok(SdopPeriodicBoxes(boxes))
     })
 }
 
@@ -161,12 +161,11 @@ pub unsafe extern "C" fn sdop_periodic_boxes_insert(
     body: *const SdopPeriodicBox,
     id: *mut u64,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(id) }, "id", || {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
-        let inserted = it.0.insert(PeriodicBox::from(body))?;
-        // SAFETY: the caller's promise.
-        unsafe { put(id, inserted.to_bits(), "id") }
+        Ok(it.0.insert(PeriodicBox::from(body))?.to_bits())
     })
 }
 
@@ -258,11 +257,10 @@ pub unsafe extern "C" fn sdop_periodic_boxes_cull(
     world: *mut SdopPeriodicBoxes,
     pairs: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
         // SAFETY: the caller's promise.
-        let found = unsafe { handle(world, "world") }?.0.cull()?.len();
-        // SAFETY: the caller's promise.
-        unsafe { put(pairs, found, "pairs") }
+        Ok(unsafe { handle(world, "world") }?.0.cull()?.len())
     })
 }
 
@@ -278,12 +276,11 @@ pub unsafe extern "C" fn sdop_periodic_boxes_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { shared(world, "world") }?;
-        let pairs = it.0.pairs().iter().map(SdopPeriodicPair::from);
-        // SAFETY: the caller's promise.
-        unsafe { fill(pairs, buffer, capacity, count) }
+        Ok(it.0.pairs().iter().map(SdopPeriodicPair::from))
     })
 }
 
@@ -298,11 +295,12 @@ pub unsafe extern "C" fn sdop_periodic_boxes_events(
     take: SdopTakePeriodicEvent,
     user: *mut c_void,
 ) -> SdopStatus {
-    call(|| {
+    call_back(take, |take| {
         // SAFETY: the caller's promise.
-        let it = unsafe { handle(world, "world") }?;
+        let events = unsafe { handle(world, "world") }?.0.events();
         // SAFETY: the caller's promise.
-        unsafe { pass_periodic_events(&it.0.events(), take, user) }
+        unsafe { pass_periodic_events(&events, take, user) };
+        Ok(())
     })
 }
 
@@ -312,10 +310,9 @@ pub unsafe extern "C" fn sdop_periodic_boxes_events(
 /// The callback may be called with this pointer.
 pub(super) unsafe fn pass_periodic_events(
     events: &PeriodicEvents,
-    take: SdopTakePeriodicEvent,
+    take: unsafe extern "C" fn(*mut c_void, SdopPeriodicEvent),
     user: *mut c_void,
-) -> Result<(), Refusal> {
-    let take = take.ok_or_else(|| null("take"))?;
+) {
     let kinds = [
         (SdopEventKind::Begun, events.begun()),
         (SdopEventKind::Persisting, events.persisting()),
@@ -327,5 +324,4 @@ pub(super) unsafe fn pass_periodic_events(
             unsafe { take(user, SdopPeriodicEvent { kind, pair }) };
         }
     }
-    Ok(())
 }

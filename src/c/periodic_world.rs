@@ -3,7 +3,9 @@
 use std::ffi::c_void;
 
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
-use super::border::{SdopStatus, call, column, fill, free, give, handle, put, shared};
+use super::border::{
+    Buffer, Out, SdopStatus, answer, call, call_back, column, free, handle, list, make, shared,
+};
 use super::periodic_boxes::{
     SdopPeriodicPair, SdopTakePeriodicEvent, pass_periodic_events, periods,
 };
@@ -30,14 +32,14 @@ pub unsafe extern "C" fn sdop_periodic_world_new(
     options: *const SdopOptions,
     out: *mut *mut SdopPeriodicWorld,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let (shapes, periods, culler) = unsafe {
             (self::shapes(shapes, shape_count)?, self::periods(periods)?, builder(options)?)
         };
         let world = PeriodicWorld::with(shapes, &culler, periods)?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopPeriodicWorld(world)) }
+        Ok(SdopPeriodicWorld(world))
     })
 }
 
@@ -78,12 +80,11 @@ pub unsafe extern "C" fn sdop_periodic_world_insert(
     body: *const SdopBody,
     id: *mut u64,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(id) }, "id", || {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
-        let inserted = it.0.insert(Body::from(body))?;
-        // SAFETY: the caller's promise.
-        unsafe { put(id, inserted.to_bits(), "id") }
+        Ok(it.0.insert(Body::from(body))?.to_bits())
     })
 }
 
@@ -175,11 +176,10 @@ pub unsafe extern "C" fn sdop_periodic_world_cull(
     world: *mut SdopPeriodicWorld,
     pairs: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
         // SAFETY: the caller's promise.
-        let found = unsafe { handle(world, "world") }?.0.cull()?.len();
-        // SAFETY: the caller's promise.
-        unsafe { put(pairs, found, "pairs") }
+        Ok(unsafe { handle(world, "world") }?.0.cull()?.len())
     })
 }
 
@@ -195,12 +195,11 @@ pub unsafe extern "C" fn sdop_periodic_world_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { shared(world, "world") }?;
-        let pairs = it.0.pairs().iter().map(SdopPeriodicPair::from);
-        // SAFETY: the caller's promise.
-        unsafe { fill(pairs, buffer, capacity, count) }
+        Ok(it.0.pairs().iter().map(SdopPeriodicPair::from))
     })
 }
 
@@ -215,10 +214,11 @@ pub unsafe extern "C" fn sdop_periodic_world_events(
     take: SdopTakePeriodicEvent,
     user: *mut c_void,
 ) -> SdopStatus {
-    call(|| {
+    call_back(take, |take| {
         // SAFETY: the caller's promise.
-        let it = unsafe { handle(world, "world") }?;
+        let events = unsafe { handle(world, "world") }?.0.events();
         // SAFETY: the caller's promise.
-        unsafe { pass_periodic_events(&it.0.events(), take, user) }
+        unsafe { pass_periodic_events(&events, take, user) };
+        Ok(())
     })
 }

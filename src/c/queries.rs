@@ -1,6 +1,6 @@
 //! Queries about the bodies of a world: those that may touch a volume or meet a segment.
 
-use super::border::{Refusal, SdopStatus, call, fill, free, give, handle, put, shared};
+use super::border::{Buffer, Out, SdopStatus, answer, call, free, handle, list, make, shared};
 use super::box_world::SdopBoxWorld;
 use super::world::SdopWorld;
 use crate::query::{Line, LineHit, QueryIndex, QueryVolume};
@@ -51,7 +51,7 @@ impl From<LineHit> for SdopHit {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_new(out: *mut *mut SdopQueryIndex) -> SdopStatus {
     // SAFETY: the caller's promise.
-    call(|| unsafe { give(out, SdopQueryIndex(QueryIndex::new())) })
+    make(unsafe { Out::new(out) }, || Ok(SdopQueryIndex(QueryIndex::new())))
 }
 
 /// Frees an index; null is fine.
@@ -99,24 +99,6 @@ pub unsafe extern "C" fn sdop_query_index_update_boxes(
     })
 }
 
-/// The ids of the bodies that may touch a volume, in a caller's buffer.
-///
-/// # Safety
-/// `index` is a handle or null; `capacity` entries of `buffer` and `count` may be written.
-unsafe fn touching(
-    index: *const SdopQueryIndex,
-    volume: &QueryVolume<'_>,
-    buffer: *mut u64,
-    capacity: usize,
-    count: *mut usize,
-) -> Result<(), Refusal> {
-    // SAFETY: the caller's promise.
-    let found = unsafe { shared(index, "index") }?.0.touching(volume)?;
-    let ids = found.into_iter().map(BodyId::to_bits);
-    // SAFETY: the caller's promise.
-    unsafe { fill(ids, buffer, capacity, count) }
-}
-
 /// Writes the ids of the bodies that may touch a box on the world's axes into `buffer`, sorted by
 /// slots. No body that has a point in common with it is missed. If they don't fit, `count` says how
 /// many there are.
@@ -133,12 +115,13 @@ pub unsafe extern "C" fn sdop_query_index_touching_box(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
-        let (min, max) = unsafe { (*shared(min, "min")?, *shared(max, "max")?) };
-        let volume = QueryVolume::Box { min, max };
-        // SAFETY: the caller's promise.
-        unsafe { touching(index, &volume, buffer, capacity, count) }
+        let (it, min, max) =
+            unsafe { (shared(index, "index")?, *shared(min, "min")?, *shared(max, "max")?) };
+        let found = it.0.touching(&QueryVolume::Box { min, max })?;
+        Ok(found.into_iter().map(BodyId::to_bits))
     })
 }
 
@@ -156,12 +139,12 @@ pub unsafe extern "C" fn sdop_query_index_touching_ball(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
-        let centre = unsafe { *shared(centre, "centre")? };
-        let volume = QueryVolume::Ball { centre, radius };
-        // SAFETY: the caller's promise.
-        unsafe { touching(index, &volume, buffer, capacity, count) }
+        let (it, centre) = unsafe { (shared(index, "index")?, *shared(centre, "centre")?) };
+        let found = it.0.touching(&QueryVolume::Ball { centre, radius })?;
+        Ok(found.into_iter().map(BodyId::to_bits))
     })
 }
 
@@ -177,15 +160,18 @@ pub unsafe extern "C" fn sdop_query_index_first(
     hit: *mut SdopHit,
     found: *mut bool,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    let (hit, found) = unsafe { (Out::new(hit), Out::new(found)) };
+    answer(found, "found", || {
+        let hit = hit.checked("hit")?;
         // SAFETY: the caller's promise.
         let (it, segment) = unsafe { (shared(index, "index")?, *shared(segment, "segment")?) };
         let first = it.0.first(&segment.into())?;
-        // SAFETY: the caller's promise.
-        unsafe { put(found, first.is_some(), "found") }?;
-        let Some(first) = first else { return Ok(()) };
-        // SAFETY: the caller's promise.
-        unsafe { put(hit, first.into(), "hit") }
+        if let Some(first) = first {
+            // SAFETY: not null, so it may be written, by the caller's promise.
+            unsafe { hit.write(first.into()) };
+        }
+        Ok(first.is_some())
     })
 }
 
@@ -203,12 +189,11 @@ pub unsafe extern "C" fn sdop_query_index_along(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let (it, segment) = unsafe { (shared(index, "index")?, *shared(segment, "segment")?) };
         let hits = it.0.along(&segment.into())?;
-        let hits = hits.into_iter().map(SdopHit::from);
-        // SAFETY: the caller's promise.
-        unsafe { fill(hits, buffer, capacity, count) }
+        Ok(hits.into_iter().map(SdopHit::from))
     })
 }

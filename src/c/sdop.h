@@ -9,6 +9,13 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+/* In all groups, and collides with all. */
+#ifdef __cplusplus
+#define SdopGroups_ALL (SdopGroups{UINT32_MAX, UINT32_MAX})
+#else
+#define SdopGroups_ALL ((SdopGroups){.member = UINT32_MAX, .mask = UINT32_MAX})
+#endif
+
 // How a pair has changed.
 typedef enum {
   // Reported now and not before.
@@ -90,8 +97,6 @@ typedef struct {
   // The groups that it collides with.
   uint32_t mask;
 } SdopGroups;
-// In all groups, and collides with all: the default.
-#define SdopGroups_ALL (SdopGroups){ .member = UINT32_MAX, .mask = UINT32_MAX }
 
 // Bodies as columns of `count` entries.
 typedef struct {
@@ -317,7 +322,8 @@ SdopStatus sdop_culler_new(const SdopShape *const *shapes,
 void sdop_culler_free(SdopCuller *culler);
 
 // Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
-// stay where they were made. `pairs` gets their number; read them with `sdop_culler_pairs`.
+// that have moved are found where they are now; such a frame takes about twice as long. `pairs`
+// gets their number; read them with `sdop_culler_pairs`.
 //
 // # Safety
 // `culler` is a handle; the columns have an entry for each body; `pairs` may be written.
@@ -520,8 +526,8 @@ void sdop_part_culler_free(SdopPartCuller *culler);
 // `culler` is a handle, `compound` a handle or null.
 SdopStatus sdop_part_culler_set_parts(SdopPartCuller *culler, uint32_t shape, const SdopCompound *compound);
 
-// Finds the pairs of parts in the pairs of the world's last cull: call it after each cull. `pairs`
-// gets their number; read them with `sdop_part_culler_pairs`.
+// Finds the pairs of parts in the pairs of the world's last cull: call it after each cull, before
+// bodies change. `pairs` gets their number; read them with `sdop_part_culler_pairs`.
 //
 // # Safety
 // `culler` and `world` are handles; `pairs` may be written.

@@ -4,8 +4,8 @@ use std::ffi::c_void;
 
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
 use super::border::{
-    SdopIdPair, SdopStatus, SdopTakeEvent, call, column, fill, free, give, handle, pass_events,
-    put, read_back, saved, shared,
+    Buffer, Out, SdopIdPair, SdopStatus, SdopTakeEvent, answer, call, call_back, column, free,
+    handle, list, make, pass_events, read_back, saved, shared,
 };
 use crate::bodies::{Groups, Motion};
 use crate::world::{Body, BodyId, World, WorldError};
@@ -88,12 +88,12 @@ pub unsafe extern "C" fn sdop_world_new(
     options: *const SdopOptions,
     out: *mut *mut SdopWorld,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    make(unsafe { Out::new(out) }, || {
         // SAFETY: the caller's promise.
         let (shapes, builder) = unsafe { (self::shapes(shapes, shape_count)?, builder(options)?) };
         let world = World::with(shapes, &builder)?;
-        // SAFETY: the caller's promise.
-        unsafe { give(out, SdopWorld(world)) }
+        Ok(SdopWorld(world))
     })
 }
 
@@ -117,12 +117,11 @@ pub unsafe extern "C" fn sdop_world_add_shape(
     shape: *const SdopShape,
     number: *mut u32,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(number) }, "number", || {
         // SAFETY: the caller's promise.
         let (it, shape) = unsafe { (handle(world, "world")?, shared(shape, "shape")?) };
-        let added = it.0.add_shape(shape.0.clone())?;
-        // SAFETY: the caller's promise.
-        unsafe { put(number, added, "number") }
+        Ok(it.0.add_shape(shape.0.clone())?)
     })
 }
 
@@ -146,12 +145,11 @@ pub unsafe extern "C" fn sdop_world_insert(
     body: *const SdopBody,
     id: *mut u64,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(id) }, "id", || {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
-        let inserted = it.0.insert(body.into())?;
-        // SAFETY: the caller's promise.
-        unsafe { put(id, inserted.to_bits(), "id") }
+        Ok(it.0.insert(body.into())?.to_bits())
     })
 }
 
@@ -282,11 +280,10 @@ pub unsafe extern "C" fn sdop_world_include(world: *mut SdopWorld, a: u64, b: u6
 /// `world` is a handle; `pairs` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_cull(world: *mut SdopWorld, pairs: *mut usize) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
         // SAFETY: the caller's promise.
-        let found = unsafe { handle(world, "world") }?.0.cull()?.len();
-        // SAFETY: the caller's promise.
-        unsafe { put(pairs, found, "pairs") }
+        Ok(unsafe { handle(world, "world") }?.0.cull()?.len())
     })
 }
 
@@ -302,11 +299,11 @@ pub unsafe extern "C" fn sdop_world_pairs(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let it = unsafe { handle(world, "world") }?;
-        // SAFETY: the caller's promise.
-        unsafe { fill(it.0.pairs().map(SdopIdPair::from), buffer, capacity, count) }
+        Ok(it.0.pairs().map(SdopIdPair::from))
     })
 }
 
@@ -321,11 +318,12 @@ pub unsafe extern "C" fn sdop_world_events(
     take: SdopTakeEvent,
     user: *mut c_void,
 ) -> SdopStatus {
-    call(|| {
+    call_back(take, |take| {
         // SAFETY: the caller's promise.
-        let it = unsafe { handle(world, "world") }?;
+        let events = unsafe { handle(world, "world") }?.0.events();
         // SAFETY: the caller's promise.
-        unsafe { pass_events(&it.0.events(), take, user) }
+        unsafe { pass_events(&events, take, user) };
+        Ok(())
     })
 }
 
@@ -341,11 +339,11 @@ pub unsafe extern "C" fn sdop_world_snapshot(
     capacity: usize,
     count: *mut usize,
 ) -> SdopStatus {
-    call(|| {
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
         // SAFETY: the caller's promise.
         let bytes = saved(&unsafe { handle(world, "world") }?.0.snapshot())?;
-        // SAFETY: the caller's promise.
-        unsafe { fill(bytes.into_iter(), buffer, capacity, count) }
+        Ok(bytes.into_iter())
     })
 }
 

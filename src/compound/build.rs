@@ -8,7 +8,7 @@ use crate::rounding::narrow::{narrow, turn_error};
 use crate::rounding::up;
 use crate::simd::in_default_mode;
 use crate::volume::{Shape, ShapeSpec};
-use crate::world::{compose, reach_about_pose};
+use crate::world::{compose, digest_of, reach_about_pose};
 
 /// A shape in the frame of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,8 @@ impl Part {
 #[derive(Clone, Debug)]
 pub struct Compound {
     shape: Shape,
+    /// By which a world's shape is recognised as this one's.
+    pub(super) digest: u64,
     pub(super) parts: PartSet,
 }
 
@@ -77,7 +79,8 @@ impl Compound {
                 ..ShapeSpec::default()
             };
             let mesh = mesh_of(shapes, parts)?.named(name);
-            Ok(Self { shape: Shape::build(&mesh, &spec)?, parts: PartSet::new(shapes, parts) })
+            let shape = Shape::build(&mesh, &spec)?;
+            Ok(Self { digest: digest_of(&shape), shape, parts: PartSet::new(shapes, parts) })
         })
     }
 

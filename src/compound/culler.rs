@@ -1,5 +1,7 @@
 //! Finds the pairs of parts within a world's pairs.
 
+use std::collections::BTreeMap;
+
 use super::part_set::{PartSet, PosedParts};
 use super::{Compound, CompoundError};
 use crate::query::{QueryShape, renew};
@@ -22,7 +24,8 @@ pub struct PartPair {
 /// comparison for each other pair.
 #[derive(Clone, Debug, Default)]
 pub struct PartCuller {
-    compounds: Vec<Option<Compound>>,
+    /// By the number of the world's shape.
+    compounds: BTreeMap<u32, Compound>,
     /// The world's shapes at the last call.
     shapes: Vec<Option<QueryShape>>,
     /// The parts of each shape number.
@@ -52,30 +55,24 @@ impl PartCuller {
     /// Sets the parts of a shape of the world. The world's shape of that number has to be
     /// [`Compound::shape`].
     pub fn set_parts(&mut self, shape: u32, compound: Compound) {
-        let number = shape as usize;
-        if self.compounds.len() <= number {
-            self.compounds.resize(number + 1, None);
-        }
-        self.compounds[number] = Some(compound);
+        self.compounds.insert(shape, compound);
         self.are_found = false;
     }
 
     /// From now on, the world's shape of that number is one part. Use it before a compound is
     /// replaced by another shape.
     pub fn remove_parts(&mut self, shape: u32) {
-        if let Some(compound) = self.compounds.get_mut(shape as usize) {
-            *compound = None;
-            self.are_found = false;
-        }
+        self.are_found &= self.compounds.remove(&shape).is_none();
     }
 
-    /// Finds the pairs of parts in the pairs of the world's last [`cull`](World::cull), with its
-    /// bodies as they are now: call it after each cull. Returns them sorted by the slots of the
+    /// Finds the pairs of parts in the pairs of the world's last [`cull`](World::cull): call it
+    /// after each cull, before bodies change. Returns them sorted by the slots of the
     /// bodies and then by parts. Two bodies that are one part each are tested by the world alone.
     ///
     /// # Errors
-    /// A shape of the world isn't that of its compound. [`Self::pairs`] are those of the call
-    /// before.
+    /// The world's pairs are not those of its present bodies, because it was changed, restored or
+    /// culled in portions since its last cull; or a shape of the world isn't that of its compound.
+    /// [`Self::pairs`] are those of the call before.
     pub fn cull(&mut self, world: &World) -> Result<&[PartPair], CompoundError> {
         in_default_mode(|| self.bring_shapes(world).map(|()| self.find(world)))?;
         Ok(&self.pairs)
@@ -96,24 +93,23 @@ impl PartCuller {
 
     /// Brings the parts of each shape number up to date.
     fn bring_shapes(&mut self, world: &World) -> Result<(), CompoundError> {
+        if !world.has_present_pairs() {
+            return Err(CompoundError::NotCulled);
+        }
+        let is_other = |(number, compound): &(&u32, &Compound)| {
+            world.shape_digest(**number) != Some(compound.digest)
+        };
+        if let Some((&shape, compound)) = self.compounds.iter().find(is_other) {
+            let compound = compound.shape().name.clone();
+            return Err(CompoundError::OtherShape { shape, compound });
+        }
         let renewed = renew(&mut self.shapes, world);
         self.are_found &= !renewed.contains(&true);
         if self.are_found {
             return Ok(());
         }
-        for (number, compound) in (0..).zip(&self.compounds) {
-            let Some(compound) = compound else { continue };
-            let shape = self.shapes.get(number as usize).and_then(Option::as_ref);
-            if shape.is_none_or(|shape| !shape.has_size_of(compound.shape())) {
-                return Err(CompoundError::OtherShape {
-                    shape: number,
-                    compound: compound.shape().name.clone(),
-                });
-            }
-        }
-        let compound = |number: usize| self.compounds.get(number).and_then(Option::as_ref);
-        let numbered = self.shapes.iter().enumerate();
-        let sets = numbered.map(|(number, shape)| match compound(number) {
+        let numbered = (0..).zip(&self.shapes);
+        let sets = numbered.map(|(number, shape)| match self.compounds.get(&number) {
             Some(compound) => Some(compound.parts.clone()),
             None => shape.clone().map(PartSet::alone),
         });

@@ -5,16 +5,16 @@ use crate::mesh::MeshError;
 use crate::volume::VolumeError;
 
 /// Why a compound can't be built or its parts can't be culled.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum CompoundError {
     /// A compound without parts.
-    #[error("compound `{compound}` has no parts")]
+    #[error("compound `{compound}` has no parts; {help}", help = self.help())]
     NoParts {
         /// The compound's name.
         compound: String,
     },
     /// The shape or the pose of a part is invalid.
-    #[error("part {} of compound `{compound}`: {} {}", .source.body, .source.quantity, .source.value)]
+    #[error("part {} of compound `{compound}`: {} {}; {help}", .source.body, .source.quantity, .source.value, help = self.help())]
     Part {
         /// The compound's name.
         compound: String,
@@ -27,8 +27,11 @@ pub enum CompoundError {
     /// The parts reach farther from the body's origin than 2⁶⁰.
     #[error(transparent)]
     Volume(#[from] VolumeError),
+    /// The world's pairs are not those of its present bodies.
+    #[error("the world has changed since its last cull, or was culled in portions; {help}", help = self.help())]
+    NotCulled,
     /// The world has another shape under the number, or none.
-    #[error("shape {shape} of the world is not the shape of compound `{compound}`")]
+    #[error("shape {shape} of the world is not the shape of compound `{compound}`; {help}", help = self.help())]
     OtherShape {
         /// The number of the shape.
         shape: u32,
@@ -36,6 +39,8 @@ pub enum CompoundError {
         compound: String,
     },
 }
+
+crate::problem::errors!(CompoundError);
 
 impl CompoundError {
     /// How to mend it.
@@ -46,8 +51,11 @@ impl CompoundError {
             Self::Part { source, .. } => source.help(),
             Self::Mesh(error) => return error.help(),
             Self::Volume(error) => error.help(),
+            Self::NotCulled => {
+                "call `World::cull` first: before the first call, and after each change, `restore` and `cull_in_portions`"
+            }
             Self::OtherShape { .. } => {
-                "give the world `compound.shape()` under this number, or `remove_parts`"
+                "give the world `compound.shape()` under this number, or call `remove_parts`, or `set_parts` with the new compound"
             }
         };
         help.to_owned()

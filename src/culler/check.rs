@@ -1,10 +1,13 @@
 //! What must not change between two frames of a culler, and the checks that it has not changed.
 //!
-//! The number of bodies and the `dynamic` flags are compared in every frame. Shapes and the poses
-//! of static bodies are copied at construction, so that changing them has no effect before
-//! [`Culler::refresh`]. Translations are checked where they are read for the volumes.
+//! The number of bodies, the `dynamic` flags and the shapes are compared in every frame: a change
+//! before [`Culler::refresh`] is an error. The poses of static bodies are compared, too, and the
+//! culler follows those that have changed. Translations are checked where they are read for the
+//! volumes.
 
-use super::{CullError, Culler};
+use std::ops::Range;
+
+use super::{BodySet, CullError, Culler};
 use crate::bodies::Bodies;
 use crate::bodies::contract::{check_columns, check_numbers, check_poses, has_sound_size};
 use crate::settings::{CullSettings, DirectionSet};
@@ -19,6 +22,25 @@ pub(super) fn fixed(bodies: &Bodies) -> Bodies {
     }
     Bodies { shape: bodies.shape.clone(), dynamic: bodies.dynamic.clone(), ..Bodies::default() }
 }
+
+/// The runs of static bodies.
+pub(super) fn static_runs(bodies: &Bodies) -> Vec<Range<usize>> {
+    let mut end = 0;
+    let runs = bodies.dynamic.chunk_by(|a, b| a == b).map(|run| {
+        end += run.len();
+        (run[0], end - run.len()..end)
+    });
+    runs.filter(|(moves, _)| !moves).map(|(_, run)| run).collect()
+}
+
+/// Whether two columns differ in a bit. It has no early exit, so that the compiler vectorises it.
+fn differ<const N: usize>(now: &[[f32; N]], then: &[[f32; N]]) -> bool {
+    let numbers = now.as_flattened().iter().zip(then.as_flattened());
+    numbers.fold(0, |bits, (now, then)| bits | (now.to_bits() ^ then.to_bits())) != 0
+}
+
+/// Bodies whose poses one thread compares at a time.
+const BODIES_PER_TASK: usize = 1 << 12;
 
 /// How to mend a shape that is far from its origin.
 pub(crate) const FAR_SHAPE_HELP: &str = "keep its bodies in a `World`, whose translations are f64; or move the mesh's vertices near its \
@@ -90,11 +112,12 @@ impl Culler {
                 self.set.groups = None;
             }
             self.replace(bodies, &vec![true; bodies.len()]);
+            self.set.watched = static_runs(bodies);
             Ok(())
         })
     }
 
-    /// Checks that the number of bodies and the `dynamic` flags have not changed.
+    /// Checks that the number of bodies, the `dynamic` flags and the shapes have not changed.
     pub(super) fn check_set(&self, bodies: &Bodies) -> Result<(), CullError> {
         check_columns(bodies)?;
         let (made_for, given) = (self.set.fixed.len(), bodies.len());
@@ -105,10 +128,38 @@ impl Culler {
             let body = flags.position(|(now, then)| now != then).unwrap_or(0);
             let now = if bodies.dynamic[body] { "dynamic" } else { "static" };
             format!("body {body} has become {now}")
+        } else if bodies.shape != self.set.fixed.shape {
+            let mut shapes = bodies.shape.iter().zip(&self.set.fixed.shape);
+            let body = shapes.position(|(now, then)| now != then).unwrap_or(0);
+            let [now, then] = [bodies, &self.set.fixed].map(|bodies| bodies.shape[body]);
+            format!("body {body} has shape {now} in place of {then}")
         } else {
             return Ok(());
         };
         Err(CullError::Changed { what })
+    }
+
+    /// Takes the static bodies to where they are now, if that isn't where they were.
+    pub(super) fn follow_static(&mut self, bodies: &Bodies) -> Result<(), CullError> {
+        let BodySet { watched, fixed, .. } = &self.set;
+        let stays = |run: Range<usize>| {
+            !differ(&bodies.rotation[run.clone()], &fixed.rotation[run.clone()])
+                && !differ(&bodies.translation[run.clone()], &fixed.translation[run])
+        };
+        let pool = self.threads.get();
+        let stay = |run: &Range<usize>| {
+            let part = |part: Range<usize>| run.start + part.start..run.start + part.end;
+            pool.all(run.len(), BODIES_PER_TASK, |range| stays(part(range)))
+        };
+        if watched.iter().all(stay) {
+            return Ok(());
+        }
+        in_default_mode(|| {
+            let mut runs = self.set.watched.iter();
+            runs.try_for_each(|run| check_poses(bodies, run.clone()))?;
+            self.exchange(bodies, &vec![true; bodies.len()]);
+            Ok(())
+        })
     }
 
     /// Finds the body whose pose breaks the contract, and resets what the next frame would sort by.

@@ -37,7 +37,7 @@ pub use error::CullError;
 pub(crate) use sample::FoundPairs;
 
 #[cfg(feature = "shapes")]
-use std::time::Instant;
+use std::{ops::Range, time::Instant};
 
 #[cfg(feature = "shapes")]
 use self::{models::Models, needs::VolumeNeeds, sample::Sample};
@@ -88,8 +88,12 @@ struct BodySet {
     places: Places,
     groups: Option<Vec<Groups>>,
     excluded: ExcludedPairs,
-    /// What doesn't change between two frames, as it was at the last [`Culler::refresh`].
+    /// What doesn't change between two frames, as it was at the last [`Culler::refresh`], or when
+    /// static bodies were last found elsewhere.
     fixed: Bodies,
+    /// Runs of static bodies, whose poses each frame compares with those in `fixed`. None for a
+    /// caller that replaces bodies itself ([`Culler::replace`]).
+    watched: Vec<Range<usize>>,
     /// 0, 1, 2 …: the slots' names when pairs are refined after the first test.
     numbers: Vec<u32>,
     order: Vec<u32>,
@@ -158,6 +162,7 @@ impl Culler {
                 groups: None,
                 excluded: ExcludedPairs::default(),
                 fixed: check::fixed(bodies),
+                watched: check::static_runs(bodies),
                 numbers: (0..n as u32).collect(),
                 order: Vec::new(),
                 finder,
@@ -277,12 +282,13 @@ impl Culler {
     /// Culls one frame and returns the reported pairs: i < j, not both static, each once. Their
     /// order depends only on the finder and on earlier frames.
     ///
-    /// Shapes and the poses of static bodies are not read here: they are those of the construction
-    /// or the last [`Self::refresh`].
+    /// Poses of static bodies are compared with those of the frame before. A frame in which one of
+    /// them differs takes about twice as long.
     ///
     /// # Errors
-    /// A number of bodies other than the culler was built for; a changed `dynamic` flag; a pose
-    /// that breaks the contract. [`Self::pairs`] is then empty, and the next frame is culled as if
+    /// A number of bodies other than the culler was built for; a `dynamic` flag or a shape that has
+    /// changed since the last [`Self::refresh`]; a pose that breaks the contract; more pairs than
+    /// memory holds. [`Self::pairs`] is then empty, and the next frame is culled as if
     /// this one had not happened.
     ///
     /// One thing is not checked: the rotation of a body whose ball is centred at its origin, in
@@ -291,12 +297,14 @@ impl Culler {
     pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
+        self.follow_static(bodies)?;
         let mut pairs = std::mem::take(&mut self.pairs);
         pairs.clear();
         let outcome = self.cull_into(bodies, Output::List(&mut pairs), start);
         self.counters.reported += pairs.len() as u64;
+        let whole = CullError::check_memory(&mut pairs);
         self.pairs = pairs;
-        outcome?;
+        outcome.and(whole)?;
         Ok(&self.pairs)
     }
 

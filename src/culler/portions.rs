@@ -29,9 +29,13 @@ impl Culler {
     ) -> Result<u64, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
-        let (mut reported, mut taking) = (0, Duration::ZERO);
+        self.follow_static(bodies)?;
+        let (mut reported, mut taking, mut whole) = (0, Duration::ZERO, Ok(()));
         let mut sink = |portion: &mut PairList| {
             let start = Instant::now();
+            if portion.is_lost() {
+                whole = Err(CullError::OutOfMemory);
+            }
             reported += portion.len() as u64;
             take(portion);
             taking += start.elapsed();
@@ -41,7 +45,7 @@ impl Culler {
         self.counters.reported += reported;
         self.seconds.pair_finding -= taking.as_secs_f64();
         self.seconds.total -= taking.as_secs_f64();
-        outcome?;
+        outcome.and(whole)?;
         Ok(reported)
     }
 
@@ -56,6 +60,7 @@ impl Culler {
         kept.clear();
         let outcome = self.cull_in_portions(bodies, |portion| kept.append_up_to(portion, limit));
         let pairs = outcome?;
+        CullError::check_memory(&mut kept)?;
         let is_whole = kept.len() as u64 == pairs;
         self.pairs = kept;
         if is_whole {

@@ -32,12 +32,13 @@ impl Culler {
     }
 
     /// Replaces the set of bodies by those that are `present`, without using any knowledge of
-    /// earlier frames.
+    /// earlier frames. From then on, the caller has to do so when static bodies change.
     #[doc(hidden)]
     pub fn replace(&mut self, bodies: &Bodies, present: &[bool]) {
         self.take_places(bodies, present);
         let population = needs::population(self.setup.scheme, &self.models, &self.set.places);
         self.set.finder = PairFinder::new(self.setup.settings.pairs, &population);
+        self.set.watched.clear();
         self.begin(bodies);
     }
 

@@ -3,8 +3,8 @@
 use super::MAX_COORDINATE;
 
 /// Why a mesh was rejected. It prints as `file:line: problem`; the help text says how to fix it.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {problem}", place(.file, *.line))]
+#[derive(thiserror::Error)]
+#[error("{}: {problem}; {help}", place(.file, *.line), help = self.help())]
 pub struct MeshError {
     /// The file as the caller named it, or the mesh's name when it came from no file.
     pub file: String,
@@ -14,6 +14,8 @@ pub struct MeshError {
     /// text.
     pub problem: Problem,
 }
+
+crate::problem::errors!(MeshError);
 
 impl MeshError {
     /// How to mend it.

@@ -118,7 +118,9 @@ impl PairList {
             start += std::mem::replace(place, start);
         }
         let size = self.first.len();
-        second.reserve_exact(size.saturating_sub(second.len()));
+        if second.try_reserve_exact(size.saturating_sub(second.len())).is_err() {
+            return self.sort_in_place();
+        }
         second.resize(size, 0);
         for [i, j] in self.iter() {
             let place = &mut places[i as usize];
@@ -136,6 +138,35 @@ impl PairList {
             }
             start = end;
         }
+    }
+}
+
+impl PairList {
+    /// Sorts by a heap, which takes long and no memory.
+    #[cold]
+    fn sort_in_place(&mut self) {
+        for end in (0..2 * self.len).rev() {
+            // First pairs become a heap, from the last one on; then the largest pair of the heap
+            // moves to its end, until none is left.
+            let (mut at, end) = if end < self.len {
+                self.swap(0, end);
+                (0, end)
+            } else {
+                (end - self.len, self.len)
+            };
+            while let Some(child) =
+                (2 * at + 1..end.min(2 * at + 3)).max_by_key(|&at| self.key_at(at))
+                && self.key_at(at) < self.key_at(child)
+            {
+                self.swap(at, child);
+                at = child;
+            }
+        }
+    }
+
+    fn swap(&mut self, a: usize, b: usize) {
+        self.first.swap(a, b);
+        self.second.swap(a, b);
     }
 }
 
@@ -226,6 +257,9 @@ mod tests {
             let mut draw = || random.next_u32() % numbers;
             let mut list: PairList = (0..count).map(|_| [draw(), draw()]).collect();
             let wanted = list.sorted();
+            let mut in_place = list.clone();
+            in_place.sort_in_place();
+            assert!(in_place.iter().eq(wanted.iter().copied()));
             for _ in 0..2 {
                 list.sort(numbers as usize, &mut sorter);
                 assert!(list.iter().eq(wanted.iter().copied()), "{numbers}, {count}");

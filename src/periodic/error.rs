@@ -7,10 +7,10 @@ use crate::rounding::period::MOST_PERIODS;
 use crate::world::WorldError;
 
 /// The error of a request that a periodic world can't carry out. The world stays unchanged.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum PeriodicError {
     /// A period that is not a length, or is out of range.
-    #[error("the period along {axis} is {period}")]
+    #[error("the period along {axis} is {period}; {help}", help = self.help())]
     Period {
         /// The axis: x, y or z.
         axis: char,
@@ -19,7 +19,7 @@ pub enum PeriodicError {
     },
     /// A body of half of a period or more, which might meet two images of another.
     #[error(
-        "body {body} measures {size} along {axis}, but less than {} is allowed, half of the period", 0.5 * .period
+        "body {body} measures {size} along {axis}, but less than {} is allowed, half of the period; {help}", 0.5 * .period, help = self.help()
     )]
     Size {
         /// The body's slot.
@@ -33,7 +33,7 @@ pub enum PeriodicError {
     },
     /// A body too many periods away from the origin.
     #[error(
-        "body {body} is at {position} along {axis}, farther away than {MOST_PERIODS} periods of {period}"
+        "body {body} is at {position} along {axis}, farther away than {MOST_PERIODS} periods of {period}; {help}", help = self.help()
     )]
     Far {
         /// The body's slot.
@@ -49,6 +49,8 @@ pub enum PeriodicError {
     #[error(transparent)]
     World(#[from] WorldError),
 }
+
+crate::problem::errors!(PeriodicError);
 
 impl From<ContractError> for PeriodicError {
     fn from(error: ContractError) -> Self {

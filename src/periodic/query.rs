@@ -112,8 +112,9 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
     ///
     /// # Errors
     /// A volume outside of the contract ([`QueryVolume`]), longer than 16 periods, or farther than
-    /// 2²⁸ periods from the origin.
+    /// 2²⁸ periods from the origin; or an index that was never updated.
     pub fn touching(&self, volume: &QueryVolume<'_>) -> Result<Vec<PeriodicHit>, QueryError> {
+        self.index.check_updated()?;
         self.check(0, volume)?;
         let mut found = Vec::new();
         in_default_mode(|| self.touch(volume, &mut found));
@@ -128,6 +129,7 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
         &self,
         volumes: &[QueryVolume<'_>],
     ) -> Result<Answers<PeriodicHit>, QueryError> {
+        self.index.check_updated()?;
         for (query, volume) in volumes.iter().enumerate() {
             self.check(query, volume)?;
         }

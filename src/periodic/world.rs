@@ -4,6 +4,7 @@ use super::borders::Borders;
 use super::images::{Image, ImageWorld, PlacedBody, Placement};
 use super::periods::Periods;
 use super::{PeriodicError, PeriodicEvents};
+use crate::culler::CullError;
 use crate::simd::in_default_mode;
 use crate::world::{BodyId, WorldError};
 
@@ -384,6 +385,8 @@ impl<W: ImageWorld> Periodic<W> {
         let found = self.world.cull_images()?;
         self.pairs.clear();
         self.across.clear();
+        // Those across borders are few, and are merged into them.
+        self.pairs.try_reserve(found.len()).map_err(|_| CullError::OutOfMemory)?;
         for [a, b] in found {
             let [one, two] = [a, b].map(|id| &self.images[id.slot()]);
             // Two images that are moved along one axis are found without that, too.

@@ -132,8 +132,9 @@ impl QueryIndex {
     /// The bodies that may touch a volume, sorted by slot.
     ///
     /// # Errors
-    /// A volume outside of the contract ([`QueryVolume`]).
+    /// A volume outside of the contract ([`QueryVolume`]), or an index that was never updated.
     pub fn touching(&self, volume: &QueryVolume<'_>) -> Result<Vec<BodyId>, QueryError> {
+        self.check_updated()?;
         volume.check(0)?;
         let mut found = Vec::new();
         in_default_mode(|| self.touch(volume, &mut found));
@@ -143,8 +144,9 @@ impl QueryIndex {
     /// [`Self::touching`] for many volumes, on all threads.
     ///
     /// # Errors
-    /// The first volume outside of the contract.
+    /// As [`Self::touching`], for the first such volume.
     pub fn touching_all(&self, volumes: &[QueryVolume<'_>]) -> Result<Answers<BodyId>, QueryError> {
+        self.check_updated()?;
         for (query, volume) in volumes.iter().enumerate() {
             volume.check(query)?;
         }

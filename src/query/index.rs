@@ -3,6 +3,7 @@
 use super::shape::{PosedBodies, PosedShape};
 use super::source::QuerySource;
 use super::tree::Tree;
+use super::volume::QueryError;
 use crate::bodies::Aabb;
 use crate::rounding::{down, up};
 use crate::simd::{Tier, in_default_mode};
@@ -27,6 +28,7 @@ pub struct QueryIndex {
     homes: Vec<TreePlace>,
     pub(super) ids: Vec<BodyId>,
     pub(super) posed: Option<PosedBodies>,
+    is_updated: bool,
 }
 
 /// The place of a slot's box.
@@ -76,6 +78,7 @@ impl QueryIndex {
             homes: Vec::new(),
             ids: Vec::new(),
             posed: None,
+            is_updated: false,
         }
     }
 
@@ -90,6 +93,8 @@ impl QueryIndex {
     /// comparison per body, and changes to the trees for those that have changed. If the world is
     /// not that of the last update, all bodies are new.
     pub fn update(&mut self, world: &impl QuerySource) {
+        self.is_updated = true;
+        self.threads.renew();
         in_default_mode(|| {
             world.bring(self);
             for tree in 0..TREES {
@@ -99,6 +104,15 @@ impl QueryIndex {
                 self.trees[tree].settle();
             }
         });
+    }
+
+    /// Checks that there was an update: until then, an answer would be about no world.
+    pub(crate) fn check_updated(&self) -> Result<(), QueryError> {
+        if self.is_updated {
+            return Ok(());
+        }
+        let problem = "has never been updated".to_owned();
+        Err(QueryError::new(0, "index", problem, "call `update` with the world before any query"))
     }
 
     /// Number of bodies.

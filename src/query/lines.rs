@@ -82,8 +82,9 @@ impl QueryIndex {
     /// The bodies that a line may meet, sorted by parameter, and by slot at equal parameters.
     ///
     /// # Errors
-    /// A line outside of the contract ([`Line`]).
+    /// A line outside of the contract ([`Line`]), or an index that was never updated.
     pub fn along(&self, line: &Line) -> Result<Vec<LineHit>, QueryError> {
+        self.check_updated()?;
         line.check(0)?;
         let mut found = Vec::new();
         in_default_mode(|| self.follow(line, &mut found));
@@ -93,8 +94,9 @@ impl QueryIndex {
     /// [`Self::along`] for many lines, on all threads.
     ///
     /// # Errors
-    /// The first line outside of the contract.
+    /// As [`Self::along`], for the first such line.
     pub fn along_all(&self, lines: &[Line]) -> Result<Answers<LineHit>, QueryError> {
+        self.check_updated()?;
         for (query, line) in lines.iter().enumerate() {
             line.check(query)?;
         }
@@ -115,6 +117,7 @@ impl QueryIndex {
     /// # Errors
     /// As [`Self::along_all`].
     pub fn first_all(&self, lines: &[Line]) -> Result<Answers<LineHit>, QueryError> {
+        self.check_updated()?;
         for (query, line) in lines.iter().enumerate() {
             line.check(query)?;
         }
@@ -135,6 +138,7 @@ impl QueryIndex {
         line: &Line,
         judge: impl FnMut(LineHit) -> Option<f64>,
     ) -> Result<Option<LineHit>, QueryError> {
+        self.check_updated()?;
         line.check(0)?;
         Ok(in_default_mode(|| self.find_first(line, judge)))
     }
@@ -238,7 +242,9 @@ impl<T: FnMut(LineHit, f64) -> f64> LineSearch<'_, T> {
         }
         let at = match self.index.solid(tree, place) {
             SolidBody::Box(_) => Some(enters),
-            SolidBody::Shape(body) => body.crossed_by(&self.track),
+            // A body is not met before its box is. Without that, whether a body is reached before
+            // the limit would depend on the order in which boxes are searched.
+            SolidBody::Shape(body) => body.crossed_by(&self.track).map(|at| larger(at, enters)),
         };
         if let Some(at) = at.filter(|at| at <= limit) {
             let body = self.index.id_at(tree, place);

@@ -1,5 +1,6 @@
 //! Finds the pairs of bodies between two sets.
 
+use super::QueryError;
 use super::index::{QueryIndex, SolidBody, TREES, moved};
 use super::tree::{BOXES_PER_GROUP, BoxGroup, lanes_of};
 use crate::bodies::Aabb;
@@ -13,8 +14,12 @@ impl QueryIndex {
     /// The pairs of a body of this set and one of another that may touch, sorted by the slot of the
     /// first and of the second. It uses all threads of this index. Both sets may come from the same
     /// world, and from worlds of either kind.
-    #[must_use]
-    pub fn pairs_with(&self, other: &Self) -> Vec<[BodyId; 2]> {
+    ///
+    /// # Errors
+    /// One of the indices was never updated.
+    pub fn pairs_with(&self, other: &Self) -> Result<Vec<[BodyId; 2]>, QueryError> {
+        self.check_updated()?;
+        other.check_updated()?;
         let mut tasks = Vec::new();
         for tree in 0..TREES {
             let groups = self.trees[tree].groups().len();
@@ -37,7 +42,7 @@ impl QueryIndex {
         pairs.sort_unstable_by_key(|[one, other]: &[BodyId; 2]| {
             (one.slot() as u64) << 32 | other.slot() as u64
         });
-        pairs
+        Ok(pairs)
     }
 }
 

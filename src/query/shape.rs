@@ -83,14 +83,6 @@ impl QueryShape {
             && self.pose_offset == volumes.pose_offset
     }
 
-    /// Whether it has the ball, reach and place of a shape, whose slabs may have other axes.
-    pub(crate) fn has_size_of(&self, shape: &Shape) -> bool {
-        self.centre == shape.ball.centre.map(f64::from)
-            && self.radius == f64::from(shape.ball.radius)
-            && self.reach == f64::from(shape.reach)
-            && self.pose_offset == shape.pose_offset
-    }
-
     /// No point is farther from the origin of the vertices.
     pub(super) fn reach(&self) -> f64 {
         self.reach

@@ -91,8 +91,8 @@ pub enum Line {
 }
 
 /// The error of a query outside of the contract. No query was answered.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("query {query}: {quantity} {value}")]
+#[derive(Clone, PartialEq, Error)]
+#[error("query {query}: {quantity} {value}; {help}", help = self.help())]
 pub struct QueryError {
     /// The query's number in its batch, from 0.
     pub query: usize,
@@ -102,6 +102,8 @@ pub struct QueryError {
     pub value: String,
     hint: &'static str,
 }
+
+crate::problem::errors!(QueryError);
 
 impl QueryError {
     pub(crate) fn new(

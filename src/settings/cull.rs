@@ -171,10 +171,10 @@ impl Default for CullSettings {
 }
 
 /// The error for invalid settings.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum SettingsError {
     /// The strategy needs a budget or an interest that is not set.
-    #[error("strategy {strategy} needs `{key}`")]
+    #[error("strategy {strategy} needs `{key}`; {help}", help = self.help())]
     Missing {
         /// The strategy.
         strategy: &'static str,
@@ -184,7 +184,7 @@ pub enum SettingsError {
         hint: &'static str,
     },
     /// An interest in a body that doesn't exist, or an invalid cone.
-    #[error("interest: {problem}")]
+    #[error("interest: {problem}; {help}", help = self.help())]
     Interest {
         /// What is wrong.
         problem: String,
@@ -192,6 +192,8 @@ pub enum SettingsError {
         hint: &'static str,
     },
 }
+
+crate::problem::errors!(SettingsError);
 
 impl SettingsError {
     /// How to mend it.

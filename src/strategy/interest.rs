@@ -55,6 +55,7 @@ impl InterestFilter<'_> {
     /// Lists the pairs that are to be refined.
     pub fn select(&self, selected: &mut PairList) {
         selected.clear();
+        selected.lose_with(self.pairs);
         for ([i, j], _, of_interest) in self.classified() {
             if of_interest {
                 selected.push(i, j);
@@ -65,6 +66,8 @@ impl InterestFilter<'_> {
     /// Appends, as pairs of bodies, those that are not refined and those that `passed`, in their
     /// common order. The list must not depend on where blocks, and therefore threads, begin.
     pub fn merge(&self, passed: &PairList, out: &mut PairList) {
+        out.lose_with(self.pairs);
+        out.lose_with(passed);
         let mut passed = passed.iter().peekable();
         for (_, [a, b], of_interest) in self.classified() {
             if !of_interest || passed.next_if_eq(&[a, b]).is_some() {

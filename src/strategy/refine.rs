@@ -125,6 +125,7 @@ impl<'a> Refiner<'a> {
     /// Tests all pairs of a list and appends the survivors to `out`; on all threads if `tasks` are
     /// given.
     pub fn refine(&mut self, list: &PairList, tasks: Option<&mut Tasks>, out: &mut PairList) {
+        out.lose_with(list);
         let Some(tasks) = tasks else {
             return self.refine_range(list, 0..list.len(), out);
         };

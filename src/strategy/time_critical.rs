@@ -78,13 +78,19 @@ pub(super) fn flow(
         }
         output => {
             let listed = list(inputs, PairNames::Places, tasks, Output::List(candidates));
-            if is_sorted {
+            if is_sorted && !candidates.is_lost() {
                 arrange(inputs, history, candidates);
             }
             let all = 0..candidates.len();
             match output {
-                Output::List(out) => spender.report(candidates, all, out),
+                Output::List(out) => {
+                    out.lose_with(candidates);
+                    spender.report(candidates, all, out);
+                }
                 Output::Portions(sink) => {
+                    if candidates.is_lost() {
+                        sink(candidates);
+                    }
                     for start in all.step_by(PAIRS_PER_PORTION) {
                         portion.clear();
                         let end = candidates.len().min(start + PAIRS_PER_PORTION);
@@ -166,6 +172,9 @@ fn arrange(inputs: Inputs<'_>, history: &mut History, candidates: &mut PairList)
         Order::OldestAnswer => refined.get(&bodies).copied().unwrap_or(0),
     };
     ranked.clear();
+    if ranked.try_reserve(candidates.len()).is_err() {
+        return candidates.lose();
+    }
     ranked.extend(candidates.iter().map(|places| {
         let bodies = places.map(|place| body[place as usize]);
         RankedPair { rank: rank(bodies, places), bodies, places }

@@ -254,16 +254,16 @@ impl ShapePlacement {
 }
 
 /// Why a shape can't be built from a mesh.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum VolumeError {
     /// No vertices.
-    #[error("shape `{shape}` has no vertices")]
+    #[error("shape `{shape}` has no vertices; {help}", help = self.help())]
     Empty {
         /// The mesh's name.
         shape: String,
     },
     /// A coordinate is NaN or infinite.
-    #[error("vertex {vertex} of shape `{shape}` is not finite")]
+    #[error("vertex {vertex} of shape `{shape}` is not finite; {help}", help = self.help())]
     NotFinite {
         /// The mesh's name.
         shape: String,
@@ -271,7 +271,7 @@ pub enum VolumeError {
         vertex: usize,
     },
     /// The requested radius is not a positive number within the limit.
-    #[error("radius {radius} of shape `{shape}` is not in 0 < radius ≤ 2⁶⁰")]
+    #[error("radius {radius} of shape `{shape}` is not in 0 < radius ≤ 2⁶⁰; {help}", help = self.help())]
     Radius {
         /// The mesh's name.
         shape: String,
@@ -279,7 +279,7 @@ pub enum VolumeError {
         radius: f32,
     },
     /// The mesh is a single point, which can't be scaled.
-    #[error("shape `{shape}` is a single point and can't be scaled to radius {radius}")]
+    #[error("shape `{shape}` is a single point and can't be scaled to radius {radius}; {help}", help = self.help())]
     NoExtent {
         /// The mesh's name.
         shape: String,
@@ -287,7 +287,7 @@ pub enum VolumeError {
         radius: f32,
     },
     /// Vertices too far from the body origin for the culler's f32 arithmetic.
-    #[error("shape `{shape}` reaches {reach:e} from its origin, beyond the limit of 2⁶⁰ ≈ 1.15e18")]
+    #[error("shape `{shape}` reaches {reach:e} from its origin, beyond the limit of 2⁶⁰ ≈ 1.15e18; {help}", help = self.help())]
     TooLarge {
         /// The mesh's name.
         shape: String,
@@ -295,6 +295,8 @@ pub enum VolumeError {
         reach: f32,
     },
 }
+
+crate::problem::errors!(VolumeError);
 
 impl VolumeError {
     /// How to mend it.

@@ -16,7 +16,8 @@ impl World {
     ///
     /// # Errors
     /// Bodies can't be placed within 2⁶⁰ of an origin, which happens only if meshes are far from
-    /// their own origins. [`Self::pairs`] are still those of the cull before.
+    /// their own origins: [`Self::pairs`] are still those of the cull before. There are more pairs
+    /// than memory holds: then there are none.
     pub fn cull(&mut self) -> Result<WorldPairs<'_>, WorldError> {
         if !self.cull_changed(usize::MAX) {
             self.cull_all(|culler, bodies| culler.cull(bodies).map(|_| ()))?;
@@ -62,6 +63,11 @@ impl World {
         }
         self.ids.settle();
         Ok(())
+    }
+
+    /// Whether [`Self::pairs`] are those of the bodies as they are now.
+    pub(crate) fn has_present_pairs(&self) -> bool {
+        self.movers.has_present_pairs()
     }
 
     /// The pairs of the last cull, the lower slot first, sorted by slots.

@@ -1,4 +1,5 @@
-//! Digests by which a restored world recognises its shapes, the same on every machine.
+//! Digests by which a restored world recognises its shapes, and a compound its own, the same on
+//! every machine.
 
 use crate::volume::Shape;
 
@@ -18,7 +19,7 @@ impl Digest {
 }
 
 /// The digest of all numbers of a shape that decide its pairs, and of its triangles.
-pub(super) fn of(shape: &Shape) -> u64 {
+pub(crate) fn of(shape: &Shape) -> u64 {
     let mut digest = Digest(0xcbf2_9ce4_8422_2325);
     digest.word(shape.vertices.len() as u32);
     for vertex in &shape.vertices {

@@ -7,10 +7,10 @@ use crate::bodies::contract::ContractError;
 use crate::culler::CullError;
 
 /// The error of a request that a world can't carry out. The world stays unchanged.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum WorldError {
     /// The body has been removed.
-    #[error("body {0} is no longer in this world")]
+    #[error("body {0} is no longer in this world; {help}", help = self.help())]
     Gone(BodyId),
     /// A number of the body is outside of the contract.
     #[error(transparent)]
@@ -19,10 +19,10 @@ pub enum WorldError {
     #[error(transparent)]
     Cull(#[from] CullError),
     /// Bodies are too far from each other to be culled about one origin.
-    #[error("bodies lie farther apart than 2^60: {0} is out of reach of the others")]
+    #[error("bodies lie farther apart than 2^60: {0} is out of reach of the others; {help}", help = self.help())]
     Apart(BodyId),
     /// A shape that a body uses can't be removed.
-    #[error("shape {shape} (`{name}`) is the shape of body {body}")]
+    #[error("shape {shape} (`{name}`) is the shape of body {body}; {help}", help = self.help())]
     ShapeInUse {
         /// The shape's number.
         shape: u32,
@@ -32,9 +32,11 @@ pub enum WorldError {
         body: BodyId,
     },
     /// No shape has this number.
-    #[error("no shape of this world has the number {0}")]
+    #[error("no shape of this world has the number {0}; {help}", help = self.help())]
     NoShape(u32),
 }
+
+crate::problem::errors!(WorldError);
 
 impl WorldError {
     /// How to mend it.

@@ -39,7 +39,7 @@ mod changed_bodies;
 mod crowds;
 #[cfg(feature = "shapes")]
 mod cull;
-#[cfg(all(feature = "shapes", feature = "serde"))]
+#[cfg(feature = "shapes")]
 mod digest;
 mod error;
 mod events;
@@ -89,6 +89,8 @@ pub use snapshot::WorldSnapshot;
 #[cfg(feature = "serde")]
 pub use snapshot_parts::SnapshotError;
 
+#[cfg(feature = "shapes")]
+pub(crate) use self::digest::of as digest_of;
 pub(crate) use self::ids::{Ids, shrink_column};
 pub(crate) use self::live_pairs::LivePairs;
 pub(crate) use self::movers::Movers;

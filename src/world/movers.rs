@@ -159,6 +159,12 @@ impl Movers {
         !self.are_many && (self.pause == 0 || self.changed.is_empty())
     }
 
+    /// Whether no body has changed since a cull whose pairs are known.
+    #[cfg(feature = "shapes")]
+    pub fn has_present_pairs(&self) -> bool {
+        !self.are_many && self.changed.is_empty()
+    }
+
     /// The counters of a cull that searches only for the partners of the changed bodies.
     pub fn counters(&self, ids: &Ids) -> RestCounters {
         let is_present = |&&slot: &&u32| ids.present()[slot as usize];

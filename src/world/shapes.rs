@@ -20,7 +20,6 @@ pub(super) struct ShapeSlot {
     /// Number of bodies with this shape.
     pub bodies: usize,
     pub is_present: bool,
-    #[cfg(feature = "serde")]
     pub digest: u64,
 }
 
@@ -35,7 +34,6 @@ impl ShapeSlot {
             ball: (centre, ball.radius.into()),
             bodies: 0,
             is_present: true,
-            #[cfg(feature = "serde")]
             digest: super::digest::of(shape),
         }
     }
@@ -131,6 +129,11 @@ impl World {
     pub fn shapes(&self) -> impl Iterator<Item = u32> + '_ {
         let slots = (0..).zip(&self.shapes);
         slots.filter(|(_, slot)| slot.is_present).map(|(number, _)| number)
+    }
+
+    /// The digest of a present shape.
+    pub(crate) fn shape_digest(&self, number: u32) -> Option<u64> {
+        self.shape_at(number).ok().map(|at| self.shapes[at].digest)
     }
 
     /// One more than the largest shape number.

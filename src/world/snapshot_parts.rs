@@ -16,19 +16,19 @@ use crate::pairs::PairList;
 const VERSION: u32 = 1;
 
 /// The error of a snapshot that can't be restored. The world stays unchanged.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 pub enum SnapshotError {
     /// The snapshot is inconsistent.
-    #[error("the snapshot is damaged: {problem}")]
+    #[error("the snapshot is damaged: {problem}; {help}", help = self.help())]
     Damaged {
         /// The problem.
         problem: String,
     },
     /// A body is outside of the contract.
-    #[error("the snapshot is damaged")]
+    #[error("the snapshot is damaged: {}; {help}", .0.problem(), help = self.help())]
     Contract(#[from] ContractError),
     /// The world lacks a shape of the snapshot.
-    #[error("shape {shape} of the snapshot is `{name}`, but {found}")]
+    #[error("shape {shape} of the snapshot is `{name}`, but {found}; {help}", help = self.help())]
     Shape {
         /// Its number.
         shape: u32,
@@ -38,6 +38,8 @@ pub enum SnapshotError {
         found: String,
     },
 }
+
+crate::problem::errors!(SnapshotError);
 
 impl SnapshotError {
     /// How to mend it.

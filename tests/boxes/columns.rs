@@ -123,7 +123,7 @@ fn columns_are_of_one_length() {
     let mut world = BoxWorld::new();
     let ids = [(); 2].map(|()| world.insert(Aabb::default()).unwrap());
     let far = Aabb::new([9.0; 3], [9.0; 3]);
-    let told = world.set_many(&ids, &[far; 3]).unwrap_err().to_string();
+    let told = world.set_many(&ids, &[far; 3]).unwrap_err().problem();
     assert!(told.contains("bounds") && told.contains("3 entries for 2"), "{told}");
     world.cull().unwrap();
     assert_eq!(world.pairs().collect::<BTreeSet<_>>(), [ids].into());

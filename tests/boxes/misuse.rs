@@ -50,7 +50,7 @@ fn invalid_box_is_named() {
                 let told = culler.cull(&now).unwrap_err();
                 assert!(matches!(told, CullError::Contract(_)));
                 let Aabb { min, max } = bad;
-                assert_eq!(told.to_string(), format!("body {at}: box from {min:?} to {max:?}"));
+                assert_eq!(told.problem(), format!("body {at}: box from {min:?} to {max:?}"));
                 assert!(culler.pairs().is_empty());
                 assert_eq!(culler.cull(&sound).unwrap().sorted(), wanted, "{finder}, {bad:?}");
             }
@@ -83,7 +83,7 @@ fn groups_of_another_length_are_told() {
     culler.cull(&now).unwrap();
     for length in [0, 4, 6] {
         culler.set_groups(Some(vec![Groups::ALL; length]));
-        let told = culler.cull(&now).unwrap_err().to_string();
+        let told = culler.cull(&now).unwrap_err().problem();
         assert!(told.contains("groups") && culler.pairs().is_empty(), "{told}");
     }
     culler.set_groups(None);

@@ -192,7 +192,7 @@ fn portions_keep_list_order() {
             let most = 16 * (1 << 16) * 8 * threads;
             assert!(culler.pair_bytes() < most, "{} of {most}", culler.pair_bytes());
         }
-        let told = culler.cull_up_to(&now, 1000).unwrap_err().to_string();
+        let told = culler.cull_up_to(&now, 1000).unwrap_err().problem();
         assert_eq!(told, format!("the frame has {pairs} pairs, but at most 1000 are allowed"));
         assert!(culler.pairs().is_empty());
         assert_eq!(culler.cull_up_to(&now, pairs as usize).unwrap().len(), pairs as usize);

@@ -65,6 +65,7 @@ static size_t frames_of_boxes(Caller *it) {
     SdopPair pairs[BOXES * BOXES];
     check(it, sdop_box_culler_pairs(culler, pairs, BOXES * BOXES, &copied));
     refused(it, sdop_box_culler_pairs(culler, pairs, 1, &copied), "larger buffer");
+    refused(it, sdop_box_culler_cull_each(culler, boxes, NULL, BOXES, NULL, &summed), "take is null");
     check(it, sdop_box_culler_cull_each(culler, boxes, NULL, BOXES, count_pairs, &summed));
     assert(copied == found && summed == found);
     boxes[3].min[1] = 1e9F;
@@ -74,6 +75,7 @@ static size_t frames_of_boxes(Caller *it) {
     char finder[32];
     snprintf(finder, sizeof finder, "finder-%d", it->number);
     refused(it, sdop_box_culler_new(finder, 1, &culler), finder);
+    refused(it, sdop_box_culler_new(NULL, 1, NULL), "out is null");
     return summed;
 }
 
@@ -81,6 +83,8 @@ static size_t world_of_boxes(Caller *it) {
     SdopBoxWorld *world;
     check(it, sdop_box_world_new(NULL, 1, &world));
     uint64_t ids[BOXES];
+    const SdopBoxBody first = sdop_box_body_at(box(0));
+    refused(it, sdop_box_world_insert(world, &first, NULL), "id is null"); /* and inserts nothing */
     for (int i = 0; i < BOXES; ++i) {
         SdopBoxBody body = sdop_box_body_at(box(i));
         body.fixed = i % 4 == 0;
@@ -88,8 +92,9 @@ static size_t world_of_boxes(Caller *it) {
     }
     size_t found, begun = 0, bytes;
     check(it, sdop_box_world_cull(world, &found));
+    refused(it, sdop_box_world_events(world, NULL, &begun), "take is null"); /* and takes no event */
     check(it, sdop_box_world_events(world, count_event, &begun));
-    assert(begun == found);
+    assert(begun == found && ids[0] == 0);
     refused(it, sdop_box_world_snapshot(world, NULL, 0, &bytes), "larger buffer");
     uint8_t *saved = malloc(bytes);
     check(it, sdop_box_world_snapshot(world, saved, bytes, &bytes));
@@ -127,6 +132,11 @@ static size_t bodies(Caller *it) {
     check(it, sdop_part_culler_new(&culler));
     check(it, sdop_part_culler_set_parts(culler, 1, compound));
     check(it, sdop_part_culler_cull(culler, world, &parts));
+    refused(it, sdop_world_insert(world, NULL, &id), "body is null");
+    const SdopBody late = sdop_body_at(1, 0, 0, 9);
+    check(it, sdop_world_insert(world, &late, &id));
+    refused(it, sdop_part_culler_cull(culler, world, &parts), "has changed since its last cull");
+    check(it, sdop_world_cull(world, &found));
     check(it, sdop_part_culler_set_parts(culler, 0, compound));
     refused(it, sdop_part_culler_cull(culler, world, &parts), "the-arm");
     sdop_part_culler_free(culler);

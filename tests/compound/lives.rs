@@ -101,6 +101,7 @@ fn removed_bodies_have_no_parts() {
     let compounds = [(0, compound)];
     assert_eq!(afresh(&world, &compounds).len(), 3 * 4);
     world.remove(a).unwrap();
+    world.cull().unwrap();
     let all = [[0, 0], [0, 1], [1, 0], [1, 1]];
     assert_eq!(afresh(&world, &compounds), all.map(|parts| pair(b, c, parts)));
 }

@@ -7,7 +7,7 @@ use super::*;
 fn refusal(parts: &[Part]) -> String {
     let error = Compound::build("arm", &shapes(DirectionSet::K18), parts).unwrap_err();
     assert!(!error.help().is_empty());
-    error.to_string()
+    error.problem()
 }
 
 #[test]
@@ -36,6 +36,7 @@ fn other_shapes_are_refused() {
     let compound = Compound::build("arm", &shapes, &[along(0.0), along(1.5)]).unwrap();
     assert_eq!(compound.parts(), 2);
     let mut world = World::new(vec![shapes[0].clone(), compound.shape().clone()]).unwrap();
+    world.cull().unwrap();
     let mut culler = PartCuller::new();
     for (number, is_right) in [(0, false), (1, true), (2, false)] {
         culler.set_parts(number, compound.clone());
@@ -45,7 +46,7 @@ fn other_shapes_are_refused() {
                 assert!(!is_right && matches!(error, CompoundError::OtherShape { .. }));
                 let wanted =
                     format!("shape {number} of the world is not the shape of compound `arm`");
-                assert_eq!(error.to_string(), wanted);
+                assert_eq!(error.problem(), wanted);
             }
             Ok(_) => assert!(is_right),
         }
@@ -53,7 +54,34 @@ fn other_shapes_are_refused() {
     }
     culler.set_parts(1, compound);
     world.replace_shape(1, &shapes[0]).unwrap();
+    world.cull().unwrap();
     assert!(culler.cull(&world).is_err());
     culler.remove_parts(1);
+    world.cull().unwrap();
     assert!(culler.cull(&world).is_ok());
+}
+
+/// A compound is recognised by what it is, not by its size; a number beyond all shapes takes no
+/// memory.
+#[test]
+fn compounds_of_equal_size_are_told_apart() {
+    let shapes = shapes(DirectionSet::K18);
+    let along = |x| Part { translation: [x, 0.0, 0.0], ..Part::default() };
+    let of = |middle| Compound::build("arm", &shapes, &[along(-2.0), along(middle), along(2.0)]);
+    let [one, other] = [0.0, 0.25].map(|middle| of(middle).unwrap());
+    assert_eq!((one.shape().ball, one.shape().reach), (other.shape().ball, other.shape().reach));
+    let mut world = World::new(vec![one.shape().clone()]).unwrap();
+    let mut culler = PartCuller::new();
+    culler.set_parts(0, one.clone());
+    world.cull().unwrap();
+    culler.cull(&world).unwrap();
+    world.replace_shape(0, other.shape()).unwrap();
+    world.cull().unwrap();
+    let error = culler.cull(&world).unwrap_err();
+    assert!(matches!(error, CompoundError::OtherShape { shape: 0, .. }), "{error}");
+    culler.set_parts(0, other);
+    culler.cull(&world).unwrap();
+    culler.set_parts(u32::MAX, one);
+    let error = culler.cull(&world).unwrap_err();
+    assert!(matches!(error, CompoundError::OtherShape { shape: u32::MAX, .. }), "{error}");
 }

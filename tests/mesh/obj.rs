@@ -63,7 +63,7 @@ fn invalid_files_are_rejected() {
         ),
     ];
     for (text, expected) in cases {
-        assert_eq!(read_text(&text).unwrap_err().to_string(), expected, "{text}");
+        assert_eq!(read_text(&text).unwrap_err().problem(), expected, "{text}");
     }
 }
 
@@ -74,7 +74,7 @@ fn extreme_indices_are_rejected() {
     assert_eq!(read_text(text).unwrap().triangles, [[0, 0, 0]]);
     let text = "v 0 0 0\nf 9223372036854775807 -9223372036854775808 1\n";
     assert_eq!(
-        read_text(text).unwrap_err().to_string(),
+        read_text(text).unwrap_err().problem(),
         "cube.obj:2: triangle 0 names vertex 9223372036854775807, but the vertices are 1 to 1"
     );
 }
@@ -87,7 +87,7 @@ fn path_names_format_and_mesh() {
     std::fs::write(&path, "v 0 0 0\nf 1 1 1\n").unwrap();
     assert_eq!(read(&path, &ReadOptions::default()).unwrap().name, "Pyramid");
     let message = |file: &str| {
-        read(file, &ReadOptions::default()).map(|mesh| mesh.name).unwrap_err().to_string()
+        read(file, &ReadOptions::default()).map(|mesh| mesh.name).unwrap_err().problem()
     };
     assert_eq!(
         message("a.fbx"),

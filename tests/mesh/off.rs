@@ -68,6 +68,6 @@ fn invalid_off_is_rejected() {
         (with("4 0 1 2 3", "0"), "a.off:7: face 0 has no vertices"),
         (format!("{square}3 0 1 2\n"), "a.off:8: 4 words after the last face"),
     ] {
-        assert_eq!(off(&text).unwrap_err().to_string(), expected, "{text}");
+        assert_eq!(off(&text).unwrap_err().problem(), expected, "{text}");
     }
 }

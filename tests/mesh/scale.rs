@@ -43,10 +43,10 @@ fn products_are_rounded_once() {
 fn bad_scales_are_refused() {
     let mesh = l_shape();
     for scale in [[0.0, 1.0, 1.0], [1.0, f64::NAN, 1.0], [1.0, 1.0, f64::INFINITY]] {
-        let message = mesh.scaled(scale).unwrap_err().to_string();
+        let message = mesh.scaled(scale).unwrap_err().problem();
         assert!(message.contains("zero or not finite"), "{message}");
     }
-    assert!(mesh.scaled(1e30).unwrap_err().to_string().contains("beyond 2^60"));
+    assert!(mesh.scaled(1e30).unwrap_err().problem().contains("beyond 2^60"));
 }
 
 /// A wall on a map. Factors of 2 round nothing, so its points are exact multiples, and what reading

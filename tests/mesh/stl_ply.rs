@@ -13,7 +13,7 @@ fn ply(bytes: impl AsRef<[u8]>) -> Result<TriangleMesh, MeshError> {
 
 fn assert_refused(cases: &[(Vec<u8>, &str)], read: fn(Vec<u8>) -> Result<TriangleMesh, MeshError>) {
     for (bytes, expected) in cases {
-        let found = read(bytes.clone()).unwrap_err().to_string();
+        let found = read(bytes.clone()).unwrap_err().problem();
         assert_eq!(&found, expected, "{}", String::from_utf8_lossy(bytes));
     }
 }

@@ -122,7 +122,7 @@ fn normals_of_stl_may_be_anything() {
 /// A refused stl is called what it is.
 #[test]
 fn rejected_stl_is_named_correctly() {
-    let message = |bytes: &[u8]| read(MeshFormat::Stl, bytes).unwrap_err().to_string();
+    let message = |bytes: &[u8]| read(MeshFormat::Stl, bytes).unwrap_err().problem();
     let cut = STL.to_uppercase();
     let cut = &cut[..cut.len() / 2];
     assert!(!message(cut.as_bytes()).contains("binary"), "{}", message(cut.as_bytes()));
@@ -155,7 +155,7 @@ fn extra_ply_words_are_ignored() {
     let longer = PLY.replace("1 0 0 2\n", "1 0 0 2 7 8\n").replace("3 0 1 2\n", "3 0 1 2 9 9\n");
     assert_triangles(MeshFormat::Ply, longer, ONE);
     let misspelt = PLY.replacen("property float quality", "propert float quality", 1);
-    let message = read(MeshFormat::Ply, misspelt).unwrap_err().to_string();
+    let message = read(MeshFormat::Ply, misspelt).unwrap_err().problem();
     assert_eq!(message, "a:9: this does not fit a PLY header: \"propert float quality\"");
 }
 
@@ -201,6 +201,6 @@ fn obj_lines_continue_and_comment() {
 
 #[test]
 fn a_binary_file_is_no_obj() {
-    let message = read(MeshFormat::Obj, b"glTF\x00\x01\xff").unwrap_err().to_string();
+    let message = read(MeshFormat::Obj, b"glTF\x00\x01\xff").unwrap_err().problem();
     assert_eq!(message, "a: this is not text: byte 0x00 at offset 4");
 }

@@ -93,7 +93,7 @@ fn shipped_meshes_match_their_table() {
 fn a_mesh_keeps_its_contract() {
     let message = |vertices: &[[f32; 3]], triangles: &[[u32; 3]]| {
         let vertices = vertices.iter().copied().map(Vec3::from_array).collect::<Vec<_>>();
-        TriangleMesh::new("knob", vertices, triangles.to_vec()).unwrap_err().to_string()
+        TriangleMesh::new("knob", vertices, triangles.to_vec()).unwrap_err().problem()
     };
     let (point, triangle) = ([0.0; 3], [0, 0, 0]);
     let above = f32::from_bits(MAX_COORDINATE.to_bits() + 1);

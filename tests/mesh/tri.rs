@@ -14,7 +14,7 @@ fn read_as(name: &str, text: &str) -> Result<TriangleMesh, MeshError> {
 }
 
 fn message(text: impl AsRef<[u8]>) -> String {
-    read(text).unwrap_err().to_string()
+    read(text).unwrap_err().problem()
 }
 
 /// A tetrahedron's corner: the mesh that every good file below holds.
@@ -129,7 +129,7 @@ fn ambiguous_dialect_needs_a_name() {
     ];
     for (text, readings, names) in cases {
         let error = read(&text).unwrap_err();
-        assert_eq!(error.to_string(), format!("data/a.tri: the file can be read as {readings}"));
+        assert_eq!(error.problem(), format!("data/a.tri: the file can be read as {readings}"));
         let help = error.help();
         for (name, triangle) in names {
             assert!(help.contains(&format!("--tri-format {name}")), "{help}");

@@ -20,8 +20,10 @@ fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random
         let line = Line::Ray { origin: centre, direction };
         let [found, wanted] = [index, &fresh].map(|index| index.along(&line).unwrap());
         assert_eq!(found, wanted);
+        let [found, wanted] = [index, &fresh].map(|index| index.first(&line).unwrap());
+        assert_eq!(found, wanted);
     }
-    assert_eq!(index.pairs_with(&fresh), fresh.pairs_with(&fresh));
+    assert_eq!(index.pairs_with(&fresh).unwrap(), fresh.pairs_with(&fresh).unwrap());
 }
 
 #[test]

@@ -105,7 +105,7 @@ fn impossible_shapes_are_refused_by_name() {
     let message = |vertices: Vec<Vec3>, origin, radius| {
         let error = Shape::build(&mesh(vertices), &spec(origin, radius)).unwrap_err();
         let help = error.help().to_owned();
-        (error.to_string(), help)
+        (error.problem(), help)
     };
     let point = vec![Vec3::ONE];
     let segment = vec![Vec3::ZERO, Vec3::X];

@@ -43,7 +43,7 @@ fn late_shape_equals_early() {
         if way.strategy == Strategy::Obb {
             assert_eq!(refused, Ok(3)); // takes boxes, whatever the shapes' or-DOPs
         } else {
-            let told = refused.unwrap_err().to_string();
+            let told = refused.unwrap_err().problem();
             assert!(told.ends_with("of k = 26, shapes before it have k = 18"));
         }
     }
@@ -82,7 +82,7 @@ fn unused_shapes_are_removed() {
         let at = |x: f64| Body::at(number, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
         let still = world.insert(Body { margin: 0.1, ..at(0.0).fixed() }).unwrap();
         let other = world.insert(at(4.0)).unwrap();
-        let used = world.remove_shape(number).unwrap_err().to_string();
+        let used = world.remove_shape(number).unwrap_err().problem();
         assert!(used.starts_with("shape 3 (") && used.ends_with("of body 0"), "{used}");
         let culled = usize::from(way.strategy != Strategy::None);
         assert_eq!(world.cull().unwrap().len(), 0, "{way:?}");
@@ -98,7 +98,7 @@ fn unused_shapes_are_removed() {
         assert_eq!(world.remove_shape(number), Ok(()));
         assert_eq!(world.remove_shape(number), Err(WorldError::NoShape(3)));
         assert_eq!(world.replace_shape(9, &wide), Err(WorldError::NoShape(9)));
-        let gone = world.insert(at(0.0)).unwrap_err().to_string();
+        let gone = world.insert(at(0.0)).unwrap_err().problem();
         assert!(gone.contains("was removed"), "{gone}");
         assert_eq!(world.remove_shape(0), Ok(()));
         assert!(world.shapes().eq([1, 2]));

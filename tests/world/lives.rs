@@ -25,13 +25,13 @@ fn invalid_input_changes_nothing() {
         (Body { margin: f32::NAN, ..Body::default() }, "margin NaN"),
     ];
     for (body, message) in wrong {
-        assert_eq!(world.insert(body).unwrap_err().to_string(), format!("body 1: {message}"));
-        assert_eq!(world.set(id, body).unwrap_err().to_string(), format!("body 0: {message}"));
+        assert_eq!(world.insert(body).unwrap_err().problem(), format!("body 1: {message}"));
+        assert_eq!(world.set(id, body).unwrap_err().problem(), format!("body 0: {message}"));
     }
     let nowhere = world.set_pose(id, [0.0; 4], [0.0; 3]).unwrap_err();
-    assert_eq!(nowhere.to_string(), "body 0: rotation [0.0, 0.0, 0.0, 0.0]");
+    assert_eq!(nowhere.problem(), "body 0: rotation [0.0, 0.0, 0.0, 0.0]");
     let lost = world.set_pose(id, [1.0; 4], [0.0, f64::INFINITY, 0.0]);
-    assert!(lost.unwrap_err().to_string().contains("translation"));
+    assert!(lost.unwrap_err().problem().contains("translation"));
     assert_eq!((world.len(), world.body(id).unwrap()), (1, Body::default()));
     let cone =
         CullSettings { interest: Some(Interest::Bodies(vec![0])), ..CullSettings::all_pairs() };

@@ -8,7 +8,7 @@ use sdop::culler::{Culler, CullerBuilder};
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Order, Strategy};
 use sdop::volume::{Shape, ShapeSpec};
-use sdop::world::{Body, BodyId, Event, SnapshotError, World, WorldSnapshot};
+use sdop::world::{Body, BodyId, Event, World, WorldSnapshot};
 
 use super::{Random, shapes};
 
@@ -361,11 +361,7 @@ fn each_damage_is_named() {
         let mut text = whole.clone();
         *text.pointer_mut(path).unwrap() = value;
         let snapshot: WorldSnapshot = serde_json::from_value(text).unwrap();
-        let error = world.clone().restore(&snapshot).unwrap_err();
-        match &error {
-            SnapshotError::Contract(inner) => format!("{error}: {inner}"),
-            _ => error.to_string(),
-        }
+        world.clone().restore(&snapshot).unwrap_err().problem()
     };
     let number = |n: u32| serde_json::json!(n);
     let nan = f64::NAN.to_bits();
@@ -388,7 +384,7 @@ fn each_damage_is_named() {
     let mut text = whole.clone();
     text["version"] = number(2);
     let refused = serde_json::from_value::<WorldSnapshot>(text).unwrap_err();
-    assert!(refused.to_string().contains("snapshot of version 2"), "{refused}");
+    assert!(refused.problem().contains("snapshot of version 2"), "{refused}");
 }
 
 #[test]
@@ -399,11 +395,11 @@ fn another_shape_is_refused_by_name() {
     let mut others = shapes();
     others[1] = box_of(3);
     let mut other = World::with(others, &builder).unwrap();
-    let told = other.restore(&saved).unwrap_err().to_string();
+    let told = other.restore(&saved).unwrap_err().problem();
     assert!(told.starts_with("shape 1 of the snapshot is `"), "{told}");
     assert!(other.is_empty() && told.contains("another shape"), "{told}");
     let mut fewer = World::with(shapes()[..2].to_vec(), &builder).unwrap();
-    let told = fewer.restore(&saved).unwrap_err().to_string();
+    let told = fewer.restore(&saved).unwrap_err().problem();
     assert!(told.contains("none of that number"), "{told}");
     assert_eq!(fewer.add_shape(shapes()[2].clone()), Ok(2));
     assert_eq!(fewer.add_shape(box_of(7)), Ok(3), "more of them do no harm");

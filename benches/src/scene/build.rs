@@ -295,7 +295,7 @@ impl SceneFile {
     /// Points at what the file says of the body: its velocity, its pose, or its group.
     fn contract_error(&self, groups: &[BodyGroup<'_>], error: &ContractError) -> SceneError {
         let span = self.span_of(groups, error.body, error.quantity == "velocity");
-        self.wrong(span, &error.to_string(), error.hint)
+        self.wrong(span, &error.problem(), error.hint)
     }
 
     /// Where the file has a body's pose or velocity, or its group.

@@ -40,14 +40,16 @@ pub enum SceneError {
     #[diagnostic(transparent)]
     Text(Box<TextError>),
     /// Culling settings that can't be carried out.
-    #[error(transparent)]
+    #[error("{}", .0.problem())]
     #[diagnostic(help("{}", .0.help()))]
-    Settings(#[from] SettingsError),
+    Settings(SettingsError),
     /// A body outside of the contract.
-    #[error(transparent)]
+    #[error("{}", .0.problem())]
     #[diagnostic(help("{}", .0.help()))]
-    Contract(#[from] ContractError),
+    Contract(ContractError),
 }
+
+crate::remedy::held_with_remedy!(SceneError, Settings(SettingsError), Contract(ContractError));
 
 /// An error at a place of the scene file. Prints as `file:line:column: message`.
 #[derive(Debug, Error, Diagnostic)]

@@ -64,7 +64,7 @@ impl ShapeLibrary {
             Some(scale) => {
                 let Factors(factors) = *scale.get_ref();
                 let wrong = |error: MeshError| {
-                    file.source.error(scale.span(), error.to_string(), Some(error.help()))
+                    file.source.error(scale.span(), error.problem(), Some(error.help()))
                 };
                 mesh.scaled(factors).map_err(wrong)?
             }
@@ -90,7 +90,7 @@ impl ShapeLibrary {
         let spec = ShapeSpec { origin, radius, directions: cull.k, axes: cull.axes };
         let start = Instant::now();
         let shape = Shape::build(&self.meshes[mesh], &spec)
-            .map_err(|error| (error.to_string(), Some(error.help().to_owned())))?;
+            .map_err(|error| (error.problem(), Some(error.help().to_owned())))?;
         self.seconds += start.elapsed().as_secs_f64();
         // Fewer shapes than bodies, which a u32 counts.
         let number = self.shapes.len() as u32;
@@ -118,7 +118,7 @@ fn read_mesh(
     let options = ReadOptions { max_bytes: file.max_bytes, ..ReadOptions::default() };
     read(path, &options).map_err(|error| {
         let hint = if path.exists() { Some(error.help()) } else { nearest_file(path) };
-        file.source.error(name.span(), error.to_string(), hint)
+        file.source.error(name.span(), error.problem(), hint)
     })
 }
 
@@ -148,7 +148,7 @@ fn procedural(
             }
             ShapeError::UnknownShape { .. } => None,
         };
-        source.error(blamed.unwrap_or(name.span()), error.to_string(), error.help())
+        source.error(blamed.unwrap_or(name.span()), error.problem(), error.help())
     })
 }
 

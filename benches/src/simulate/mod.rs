@@ -157,13 +157,13 @@ pub struct Summary {
 #[derive(Debug, Error, Diagnostic)]
 pub enum SimulationError {
     /// A culler that can't be made, or bodies that it refuses.
-    #[error(transparent)]
+    #[error("{}", .0.problem())]
     #[diagnostic(help("{}", .0.help()))]
-    Cull(#[from] CullError),
+    Cull(CullError),
     /// A world that can't be made, or bodies that it refuses.
-    #[error(transparent)]
+    #[error("{}", .0.problem())]
     #[diagnostic(help("{}", .0.help()))]
-    World(#[from] WorldError),
+    World(WorldError),
     /// An effect that the scene can't have.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -178,6 +178,8 @@ pub enum SimulationError {
         error: WithRemedy<ContractError>,
     },
 }
+
+crate::remedy::held_with_remedy!(SimulationError, Cull(CullError), World(WorldError));
 
 impl SimulationError {
     /// A body that left the contract in the step to `frame`.

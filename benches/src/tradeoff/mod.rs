@@ -52,20 +52,20 @@ pub enum TradeoffError {
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
     /// A culler can't be built, or rejects bodies.
-    #[error(transparent)]
+    #[error("{}", .0.problem())]
     #[diagnostic(help("{}", .0.help()))]
-    Cull(#[from] CullError),
+    Cull(CullError),
     /// The exact reference rejects a number.
     #[error("the exact reference refuses the scene: {0}")]
     Refused(#[from] sdop_reference::InvalidInput),
     /// A shape can't be made.
-    #[error(transparent)]
+    #[error("{}", .0.problem())]
     #[diagnostic(help("{}", .0.help()))]
-    Form(#[from] sdop::mesh::shapes::ShapeError),
+    Form(sdop::mesh::shapes::ShapeError),
     /// A shape can't be bounded.
-    #[error(transparent)]
+    #[error("{}", .0.problem())]
     #[diagnostic(help("{}", .0.help()))]
-    Volume(#[from] sdop::volume::VolumeError),
+    Volume(sdop::volume::VolumeError),
     /// The truth can't be stored.
     #[error("cannot write {}", file.display())]
     #[diagnostic(help("choose a writable directory with --cache"))]
@@ -76,3 +76,10 @@ pub enum TradeoffError {
         source: std::io::Error,
     },
 }
+
+crate::remedy::held_with_remedy!(
+    TradeoffError,
+    Cull(CullError),
+    Form(sdop::mesh::shapes::ShapeError),
+    Volume(sdop::volume::VolumeError)
+);

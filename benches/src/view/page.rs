@@ -50,14 +50,16 @@ pub enum PageError {
         megabytes: usize,
     },
     /// The culling settings can't be carried out.
-    #[error(transparent)]
+    #[error("{}", .0.problem())]
     #[diagnostic(help("{}", .0.help()))]
-    Cull(#[from] CullError),
+    Cull(CullError),
     /// Prices can't be calibrated.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Simulation(#[from] SimulationError),
 }
+
+crate::remedy::held_with_remedy!(PageError, Cull(CullError));
 
 #[derive(Debug)]
 struct Block {

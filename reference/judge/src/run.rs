@@ -37,7 +37,7 @@ pub enum JudgeError {
         claim: Claim,
     },
     /// Periods outside of the contract, or boxes that are too large or too far away for them.
-    #[error("{case}, frame {frame}: {problem}; {}", .problem.help())]
+    #[error("{case}, frame {frame}: {problem}")]
     Periods {
         /// The case's name.
         case: String,

@@ -9,16 +9,16 @@ enum SizeSlot<'a> {
 }
 
 /// Why a shape cannot be made from a name and sizes.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum ShapeError {
     /// No shape has this name.
-    #[error("there is no shape {name:?}")]
+    #[error("there is no shape {name:?}; {help}", help = self.help())]
     UnknownShape {
         /// The name as given.
         name: String,
     },
     /// The shape has no such size.
-    #[error("the shape {shape:?} has no size {size:?}")]
+    #[error("the shape {shape:?} has no size {size:?}; {help}", help = self.help())]
     UnknownSize {
         /// The shape's name.
         shape: &'static str,
@@ -28,7 +28,7 @@ pub enum ShapeError {
         known: Vec<&'static str>,
     },
     /// The value is outside what the size allows.
-    #[error("the size {size:?} of the shape {shape:?} cannot be {value}")]
+    #[error("the size {size:?} of the shape {shape:?} cannot be {value}; {help}", help = self.help())]
     BadSize {
         /// The shape's name.
         shape: &'static str,
@@ -40,6 +40,8 @@ pub enum ShapeError {
         allowed: String,
     },
 }
+
+crate::problem::errors!(ShapeError);
 
 impl ShapeError {
     /// How to mend it.

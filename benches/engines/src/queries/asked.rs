@@ -102,7 +102,7 @@ impl Ours {
         Ok(match (question, self.is_batch) {
             (Question::Sets, _) => {
                 let [even, odd] = &self.halves;
-                OurAnswers::Pairs(even.pairs_with(odd))
+                OurAnswers::Pairs(even.pairs_with(odd)?)
             }
             (Question::Box | Question::Ball, true) => {
                 OurAnswers::ManyBodies(index.touching_all(volumes)?)

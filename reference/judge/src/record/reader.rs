@@ -67,7 +67,7 @@ impl<R: BufRead> Reader<R> {
         });
         let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
         let bodies = bodies_of(&header.bodies);
-        check_bodies(&bodies, &shapes).map_err(|error| wrong(error.to_string(), error.hint))?;
+        check_bodies(&bodies, &shapes).map_err(|error| wrong(error.problem(), error.hint))?;
         Ok(Self { name: name.to_owned(), source, header, shapes, bodies, line: 1, frame: None })
     }
 
@@ -181,7 +181,7 @@ impl<R: BufRead> Reader<R> {
 
     /// The error for a body outside of the contract.
     fn outside(&self, frame: &FrameLine, error: &ContractError) -> RecordError {
-        self.wrong(format!("frame {}: {error}", frame.frame), error.hint)
+        self.wrong(format!("frame {}: {}", frame.frame, error.problem()), error.hint)
     }
 
     /// What is wrong with a list of pairs.

@@ -124,7 +124,7 @@ impl CaseFrame {
         (frame.restore, frame.save) = (self.restore, self.save);
         frame.periods = self.periods;
         let checked = frame.check_periods();
-        checked.map_err(|e| format!("{e}; {}", remedy(&e)))?;
+        checked.map_err(|e| format!("{}; {}", e.problem(), remedy(&e)))?;
         let margins = self.margins.map(|all| sized(all, bodies, "margins"));
         frame.margins = margins.transpose()?;
         let groups = self.groups.map(|all| sized(all, bodies, "groups"));
@@ -148,7 +148,7 @@ fn posed(bodies: &[CaseBody], poses: &[[f32; 7]], shapes: &[Shape]) -> Result<Bo
         let shape = body.shape.or(body.parts.first().map(|part| part.shape));
         posed.push(shape.unwrap_or(0), !body.fixed, [x, y, z, w], [tx, ty, tz]);
     }
-    check_bodies(&posed, shapes).map_err(|e| format!("{e}; {}", e.hint))?;
+    check_bodies(&posed, shapes).map_err(|e| e.to_string())?;
     Ok(posed)
 }
 
