@@ -40,12 +40,12 @@ pub unsafe extern "C" fn sdop_boxes_outward(
     count: usize,
     out: *mut Aabb,
 ) -> SdopStatus {
-    call(|| {
+    let mut written = 0;
+    // SAFETY: the caller's promise.
+    list(unsafe { Buffer::new(out, count, &raw mut written) }, || {
         // SAFETY: the caller's promise.
         let boxes = unsafe { column(boxes, count, "boxes") }?;
-        let outward = boxes.iter().map(|&[a, b, c, d, e, f]| Aabb::outward([a, b, c], [d, e, f]));
-        // SAFETY: the caller's promise.
-        unsafe { fill(outward, out, count, &mut 0) }
+        Ok(boxes.iter().map(|&[a, b, c, d, e, f]| Aabb::outward([a, b, c], [d, e, f])))
     })
 }
 
