@@ -48,6 +48,9 @@ pub struct TriangleMesh {
     /// An upper bound on the distance of the vertices of a far mesh, or of several meshes as one,
     /// from their f64 points. Volumes are grown by it.
     pub rounding: f32,
+    /// What a reader had to guess or to ignore, with file and line. Show them to the user: the
+    /// mesh may not be what the file's author meant.
+    pub warnings: Vec<String>,
 }
 
 impl TriangleMesh {
@@ -111,6 +114,7 @@ impl TriangleMesh {
             triangles,
             offset: placed.offset,
             rounding: placed.rounding,
+            warnings: Vec::new(),
         }
     }
 
