@@ -48,8 +48,9 @@ pub struct TriangleMesh {
     /// An upper bound on the distance of the vertices of a far mesh, or of several meshes as one,
     /// from their f64 points. Volumes are grown by it.
     pub rounding: f32,
-    /// What a reader had to guess or to ignore, with file and line. Show them to the user: the
-    /// mesh may not be what the file's author meant.
+    /// What a reader had to ignore or to guess, with file and line; worth showing to the user. It
+    /// guesses the triangles of faces that cross themselves or are far from flat, which means that
+    /// their corners' heights over the mean plane differ by more than an eighth of their extent.
     pub warnings: Vec<String>,
 }
 

@@ -142,36 +142,21 @@ fn is_in(p: Point, corners: &[Point]) -> bool {
         || edges(corners).filter(passes).count() % 2 == 1
 }
 
-/// Corners in an order in which no edges meet, except neighbours at their common corner: crossing
-/// edges are exchanged until there are none.
-fn simple(mut corners: Vec<Point>) -> Option<Vec<Point>> {
-    let count = corners.len();
-    let meet = |(a, b): (Point, Point), (p, q): (Point, Point)| {
-        let parts = |a, b, p, q| area(a, b, p).signum() * area(a, b, q).signum() <= 0;
-        let touch = [(p, a, b), (q, a, b), (a, p, q), (b, p, q)];
-        touch.iter().any(|&(p, a, b)| is_on_edge(p, a, b))
-            || parts(a, b, p, q) && parts(p, q, a, b) && area(a, b, p) != 0
-    };
-    for _ in 0..200 {
-        let sides: Vec<_> = edges(&corners).collect();
-        let pairs = (0..count).flat_map(|i| (i + 2..count).map(move |j| (i, j)));
-        let mut apart = pairs.filter(|&(i, j)| j - i < count - 1);
-        let Some((i, j)) = apart.find(|&(i, j)| meet(sides[i], sides[j])) else {
-            let spike = |(&(a, b), &(_, c)): (&(Point, Point), &(Point, Point))| {
-                a == b || is_on_edge(c, a, b) || is_on_edge(a, b, c)
-            };
-            return (!sides.iter().zip(sides.iter().cycle().skip(1)).any(spike)).then_some(corners);
-        };
-        corners[i + 1..=j].reverse();
-    }
-    None
-}
-
-/// A simple polygon. Some of its edges have a corner in their middle or repeat their first corner.
+/// A simple polygon: a spiral, or corners in the order of their directions from a point. Some of
+/// its edges have a corner in their middle or repeat their first corner.
 fn polygon() -> impl Strategy<Value = Vec<Point>> {
-    let corners = prop::collection::vec([0..20_i64, 0..20_i64], 4..14);
-    let corners = corners.prop_filter_map("is not simple", simple);
-    (corners, prop::collection::vec(0..6_u8, 14)).prop_map(|(corners, extra)| {
+    let spiral = [0, 90, 99, 29, 23, 53, 56, 36, 38, 88, 81, 1].map(|n| [n / 10, n % 10]).to_vec();
+    let corners = prop::collection::vec([-15..16_i64, -15..16_i64], 6..20);
+    let star = corners.prop_filter_map("the point is outside", |mut corners| {
+        corners.retain(|&p| p != [0, 0]);
+        let is_upper = |p: Point| (p[1], p[0]) > (0, 0);
+        corners.sort_by(|&p, &q| is_upper(q).cmp(&is_upper(p)).then(0.cmp(&area([0, 0], p, q))));
+        corners.dedup_by(|&mut p, &mut q| is_upper(p) == is_upper(q) && area([0, 0], p, q) == 0);
+        let turns_left = |(p, q): (Point, Point)| area([0, 0], p, q) > 0;
+        (corners.len() > 3 && edges(&corners).all(turns_left)).then_some(corners)
+    });
+    let extra = prop::collection::vec(0..6_u8, 20);
+    (prop_oneof![9 => star, 1 => Just(spiral)], extra).prop_map(|(corners, extra)| {
         let corner = |((a, b), extra): ((Point, Point), &u8)| match extra {
             0 => vec![[2 * a[0], 2 * a[1]], [a[0] + b[0], a[1] + b[1]]],
             1 => vec![[2 * a[0], 2 * a[1]]; 2],
@@ -214,20 +199,8 @@ fn one_face(format: MeshFormat, points: &[[i64; 3]], first: usize) -> String {
 fn doubtful_faces_are_warned_of() {
     let pentagram = [[0, 3, 0], [2, -3, 0], [-3, 1, 0], [3, 1, 0], [-2, -3, 0]];
     // Winds around a point twice, and yet consists of triangles that all turn left.
-    let spiral = [
-        [0, 0],
-        [8, 0],
-        [8, 8],
-        [0, 8],
-        [0, 2],
-        [6, 2],
-        [6, 9],
-        [-1, 9],
-        [-1, -1],
-        [9, -1],
-        [9, 1],
-        [0, 1],
-    ];
+    #[rustfmt::skip]
+    let spiral = [[0, 0], [8, 0], [8, 8], [0, 8], [0, 2], [6, 2], [6, 9], [-1, 9], [-1, -1], [9, -1], [9, 1], [0, 1]];
     let spiral = spiral.map(|[x, y]| [x, y, 0]);
     let bent = [[0, 0, 0], [4, 0, 2], [4, 4, 0], [0, 4, 2]];
     let dart = [[0, 0, 0], [4, 0, 3], [1, 1, 0], [0, 4, 3]];
@@ -252,15 +225,18 @@ fn large_faces_end() {
         read_bytes("a", MeshFormat::Obj, file.as_bytes(), &ReadOptions::default())
     };
     let count = 100_000;
-    let comb = |height: i64| {
-        let teeth = (0..count).map(|i| [i, if i % 2 == 0 { 0 } else { height }, 0]);
-        teeth.chain([[count, -9, 0], [0, -9, 0]]).collect()
+    let gear = |i: i64| {
+        let angle = i as f64 / count as f64 * std::f64::consts::TAU;
+        let radius = if i % 2 == 0 { 8.0e6 } else { 7.9e6 };
+        [(radius * angle.cos()) as i64, (radius * angle.sin()) as i64, 0]
     };
-    let mesh = read(comb(9)).unwrap();
-    assert_eq!(mesh.triangles.len() as i64, count);
+    let mesh = read((0..count).map(gear).collect()).unwrap();
+    assert_eq!(mesh.triangles.len() as i64, count - 2);
     assert_eq!(mesh.warnings, [""; 0]);
+    let comb = |i: i64| [i, if i % 2 == 0 { 0 } else { 10 * count }, 0];
+    let comb = (0..count).map(comb).chain([[count, -9, 0], [0, -9, 0]]);
     // Sorted along its long teeth, each of which is next to all others.
-    let error = read(comb(10 * count)).unwrap_err().to_string();
+    let error = read(comb.collect()).unwrap_err().to_string();
     assert!(error.contains("takes too long"), "{error}");
 }
 
@@ -297,7 +273,7 @@ proptest! {
             let areas = triangles.iter().map(|&[a, b, c]| area(a, b, c) * whole.signum());
             prop_assert!(areas.clone().all(|area| area >= 0), "{}", file);
             prop_assert_eq!(areas.sum::<i64>(), whole.abs());
-            for p in (0..400).map(|n| [n % 20 * 2 + first as i64 % 2, n / 20 * 2 + 1]) {
+            for p in (0..400).map(|n| [n % 20 * 3 - 30 + first as i64 % 3, n / 20 * 3 - 29]) {
                 let covers = |t: &[Point; 3]| area(t[0], t[1], t[2]) != 0 && is_in(p, t);
                 prop_assert_eq!(triangles.iter().any(covers), is_in(p, &corners), "{:?} {}", p, file);
             }

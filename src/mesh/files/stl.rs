@@ -1,8 +1,9 @@
 //! STL, text and binary; equal corners are welded into shared vertices.
 //!
 //! Binary files may start with `solid` as text files do, so the length decides first: a binary file
-//! has exactly 84 + 50·n bytes. If it has more and is not text, the rest is ignored with a warning. In a text file, the names after `solid` and `endsolid` and the
-//! normals are ignored, and there may be many solids. A facet is `facet normal`, `outer loop`, its
+//! has exactly 84 + 50·n bytes. If it has more and is not text, the rest is ignored with a warning.
+//! In a text file, the names after `solid` and `endsolid` and the normals are ignored, and there
+//! may be many solids. A facet is `facet normal`, `outer loop`, its
 //! vertices, `endloop`, `endfacet`, in upper or lower case and with any line breaks. Anything else
 //! between facets is an error, except comments. Other words after the last `endsolid` are ignored
 //! with a warning.
