@@ -67,7 +67,8 @@ impl Shape {
         })
     }
 
-    /// Reads a mesh file: OBJ, STL, PLY or .tri. Keywords as for `Shape`.
+    /// Reads a mesh file: OBJ, STL, PLY, OFF or .tri. Keywords as for `Shape`. Warns of what had to
+    /// be guessed or ignored.
     #[staticmethod]
     #[pyo3(signature = (path, *, radius=None, origin="file", k=18, axes="principal"))]
     fn load(
@@ -79,10 +80,13 @@ impl Shape {
         axes: &str,
     ) -> PyResult<Self> {
         let spec = spec(radius, origin, k, axes)?;
-        py.detach(|| {
-            let mesh = sdop::mesh::read(&path, &ReadOptions::default()).map_err(refused)?;
-            Self::build(&mesh, &spec)
-        })
+        let read = || sdop::mesh::read(&path, &ReadOptions::default()).map_err(refused);
+        let mesh = py.detach(read)?;
+        for warning in &mesh.warnings {
+            let text = std::ffi::CString::new(warning.replace('\0', " "))?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+        }
+        py.detach(|| Self::build(&mesh, &spec))
     }
 
     /// The mesh's name.

@@ -324,6 +324,7 @@ impl Surface {
             triangles,
             offset: mesh.offset,
             rounding: mesh.rounding,
+            warnings: mesh.warnings.clone(),
         }
     }
 }

@@ -25,7 +25,7 @@ impl MeshError {
     }
 }
 
-fn place(file: &str, line: Option<usize>) -> String {
+pub(super) fn place(file: &str, line: Option<usize>) -> String {
     line.map_or_else(|| file.to_owned(), |line| format!("{file}:{line}"))
 }
 

@@ -49,6 +49,10 @@ pub struct TriangleMesh {
     /// those of [`Self::from_f64`], of a far mesh, or of several meshes as one. Volumes are grown
     /// by it.
     pub rounding: f32,
+    /// What a reader had to ignore or to guess, with file and line; worth showing to the user. It
+    /// guesses the triangles of faces that cross themselves or are far from flat, which means that
+    /// their corners' heights over the mean plane differ by more than an eighth of their extent.
+    pub warnings: Vec<String>,
 }
 
 impl TriangleMesh {
@@ -121,6 +125,7 @@ impl TriangleMesh {
             triangles,
             offset: placed.offset,
             rounding: placed.rounding,
+            warnings: Vec::new(),
         }
     }
 

@@ -47,6 +47,7 @@ impl TriangleMesh {
             let moved = f64::from(self.rounding) * largest + f64::from(scaled.rounding);
             scaled.rounding = up(moved);
         }
+        scaled.warnings.clone_from(&self.warnings);
         Ok(scaled)
     }
 }

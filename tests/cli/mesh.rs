@@ -73,6 +73,25 @@ fn fewer_triangles_are_written_and_described() {
     assert!((400..=500).contains(&triangles), "{triangles}");
     assert_eq!(report["closed_components"], 1);
     assert_eq!(json(&["mesh", text(&small)])["triangles"], triangles);
+    assert_eq!(report["warnings"], serde_json::json!([]));
+    let coarse = stdout(&["mesh", "data/meshes/teapot.tri", "--triangles", "50"]);
+    assert!(coarse.contains(" triangles are left instead of 50: "), "{coarse}");
+}
+
+/// What readers warn about is shown, and so is what counts as one vertex.
+#[test]
+fn warnings_and_merged_vertices_are_shown() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("bow.off");
+    let bow = "OFF\n5 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n-0 0 0\n4 0 1 2 3\n3 4 2 3\n";
+    std::fs::write(&path, format!("{bow}1 2 3\n")).unwrap();
+    let report = json(&["mesh", text(&path)]);
+    assert_eq!(report["warnings"].as_array().unwrap().len(), 2);
+    assert_eq!(report["merged_vertices"], 1);
+    let shown = stdout(&["mesh", text(&path)]);
+    assert!(shown.contains("bow.off:10: ignored 3 words after the last face"), "{shown}");
+    assert!(shown.contains("bow.off:8: 1 of 1 faces"), "{shown}");
+    assert!(shown.contains("1 vertices have the position of another one"), "{shown}");
 }
 
 /// Bad meshes are refused with file line and help.

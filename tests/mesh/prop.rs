@@ -117,8 +117,168 @@ fn binary_ply(mesh: &TriangleMesh) -> Vec<u8> {
     bytes
 }
 
+type Point = [i64; 2];
+
+/// Twice the area of a triangle; positive if it is counter-clockwise.
+fn area(a: Point, b: Point, c: Point) -> i64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+fn is_on_edge(p: Point, a: Point, b: Point) -> bool {
+    let between = |i: usize| p[i] >= a[i].min(b[i]) && p[i] <= a[i].max(b[i]);
+    area(a, b, p) == 0 && between(0) && between(1)
+}
+
+fn edges(corners: &[Point]) -> impl Iterator<Item = (Point, Point)> {
+    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+}
+
+/// Whether a point is in a simple polygon or on its boundary.
+fn is_in(p: Point, corners: &[Point]) -> bool {
+    let passes = |&(a, b): &(Point, Point)| {
+        (a[1] > p[1]) != (b[1] > p[1]) && (area(a, b, p) > 0) == (b[1] > a[1])
+    };
+    edges(corners).any(|(a, b)| is_on_edge(p, a, b))
+        || edges(corners).filter(passes).count() % 2 == 1
+}
+
+/// A simple polygon: a spiral, or corners in the order of their directions from a point. Some of
+/// its edges have a corner in their middle or repeat their first corner.
+fn polygon() -> impl Strategy<Value = Vec<Point>> {
+    let spiral = [0, 90, 99, 29, 23, 53, 56, 36, 38, 88, 81, 1].map(|n| [n / 10, n % 10]).to_vec();
+    let corners = prop::collection::vec([-15..16_i64, -15..16_i64], 6..20);
+    let star = corners.prop_filter_map("the point is outside", |mut corners| {
+        corners.retain(|&p| p != [0, 0]);
+        let is_upper = |p: Point| (p[1], p[0]) > (0, 0);
+        corners.sort_by(|&p, &q| is_upper(q).cmp(&is_upper(p)).then(0.cmp(&area([0, 0], p, q))));
+        corners.dedup_by(|&mut p, &mut q| is_upper(p) == is_upper(q) && area([0, 0], p, q) == 0);
+        let turns_left = |(p, q): (Point, Point)| area([0, 0], p, q) > 0;
+        (corners.len() > 3 && edges(&corners).all(turns_left)).then_some(corners)
+    });
+    let extra = prop::collection::vec(0..6_u8, 20);
+    (prop_oneof![9 => star, 1 => Just(spiral)], extra).prop_map(|(corners, extra)| {
+        let corner = |((a, b), extra): ((Point, Point), &u8)| match extra {
+            0 => vec![[2 * a[0], 2 * a[1]], [a[0] + b[0], a[1] + b[1]]],
+            1 => vec![[2 * a[0], 2 * a[1]]; 2],
+            _ => vec![[2 * a[0], 2 * a[1]]],
+        };
+        edges(&corners).zip(&extra).flat_map(corner).collect()
+    })
+}
+
+/// A file with one face, whose corners are the points in their order from the first-th on.
+fn one_face(format: MeshFormat, points: &[[i64; 3]], first: usize) -> String {
+    let count = points.len();
+    let lines = |before: &str| -> String {
+        points.iter().map(|[x, y, z]| format!("{before}{x} {y} {z}\n")).collect()
+    };
+    let from = |base: usize| -> String {
+        (0..count).map(|i| format!(" {}", (first + i) % count + base)).collect()
+    };
+    match format {
+        MeshFormat::Obj => format!("{}f{}\n", lines("v "), from(1)),
+        MeshFormat::Off => format!("OFF\n{count} 1 0\n{}{count}{}\n", lines(""), from(0)),
+        MeshFormat::Ply => format!(
+            "ply\nformat ascii 1.0\nelement vertex {count}\nproperty float x\nproperty float y\n\
+             property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n{}{count}{}\n",
+            lines(""),
+            from(0)
+        ),
+        _ => {
+            let turned = points.iter().cycle().skip(first).take(count);
+            let vertex = |[x, y, z]: &[i64; 3]| format!("vertex {x} {y} {z}\n");
+            let vertices: String = turned.map(vertex).collect();
+            format!("solid\nfacet\nouter loop\n{vertices}endloop\nendfacet\nendsolid\n")
+        }
+    }
+}
+
+/// Faces that have no right triangles keep the fan about their first corner, with one warning for
+/// all.
+#[test]
+fn doubtful_faces_are_warned_of() {
+    let pentagram = [[0, 3, 0], [2, -3, 0], [-3, 1, 0], [3, 1, 0], [-2, -3, 0]];
+    // Winds around a point twice, and yet consists of triangles that all turn left.
+    #[rustfmt::skip]
+    let spiral = [[0, 0], [8, 0], [8, 8], [0, 8], [0, 2], [6, 2], [6, 9], [-1, 9], [-1, -1], [9, -1], [9, 1], [0, 1]];
+    let spiral = spiral.map(|[x, y]| [x, y, 0]);
+    let bent = [[0, 0, 0], [4, 0, 2], [4, 4, 0], [0, 4, 2]];
+    let dart = [[0, 0, 0], [4, 0, 3], [1, 1, 0], [0, 4, 3]];
+    let bow = [[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]];
+    for points in [&pentagram[..], &spiral, &bent, &dart, &bow] {
+        for format in &FORMATS[1..] {
+            let file = one_face(*format, points, 0);
+            let mesh = read_bytes("a", *format, file.as_bytes(), &ReadOptions::default()).unwrap();
+            let fan: Vec<_> = (2..points.len() as u32).map(|i| [0, i - 1, i]).collect();
+            assert_eq!(mesh.triangles, fan, "{file}");
+            assert_eq!(mesh.warnings.len(), 1, "{file}");
+            assert!(mesh.warnings[0].contains(": 1 of 1 faces with more than"), "{file}");
+        }
+    }
+}
+
+/// A face of many corners is cut in little time, or refused.
+#[test]
+fn large_faces_end() {
+    let read = |points: Vec<[i64; 3]>| {
+        let file = one_face(MeshFormat::Obj, &points, 0);
+        read_bytes("a", MeshFormat::Obj, file.as_bytes(), &ReadOptions::default())
+    };
+    let count = 100_000;
+    let gear = |i: i64| {
+        let angle = i as f64 / count as f64 * std::f64::consts::TAU;
+        let radius = if i % 2 == 0 { 8.0e6 } else { 7.9e6 };
+        [(radius * angle.cos()) as i64, (radius * angle.sin()) as i64, 0]
+    };
+    let mesh = read((0..count).map(gear).collect()).unwrap();
+    assert_eq!(mesh.triangles.len() as i64, count - 2);
+    assert_eq!(mesh.warnings, [""; 0]);
+    let comb = |i: i64| [i, if i % 2 == 0 { 0 } else { 10 * count }, 0];
+    let comb = (0..count).map(comb).chain([[count, -9, 0], [0, -9, 0]]);
+    // Sorted along its long teeth, each of which is next to all others.
+    let error = read(comb.collect()).unwrap_err().to_string();
+    assert!(error.contains("takes too long"), "{error}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
+
+    /// The triangles of a planar simple face cover it exactly once, whatever its first corner.
+    #[test]
+    fn faces_are_cut_exactly(
+        corners in polygon(),
+        plane in prop::sample::select(vec![
+            [[1, 0, 0], [0, 1, 0]], [[0, 0, 1], [0, 1, 0]], [[1, 2, -3], [0, 5, 1]], [[7, 1, 1], [2, 2, 1]],
+        ]),
+        format in prop::sample::select(&FORMATS[1..]),
+    ) {
+        let [u, v] = plane;
+        let place = |[x, y]: Point| [0, 1, 2].map(|i| x * u[i] + y * v[i]);
+        let points: Vec<[i64; 3]> = corners.iter().copied().map(place).collect();
+        let whole: i64 = edges(&corners).map(|(a, b)| area([0, 0], a, b)).sum();
+        for first in 0..corners.len() {
+            let file = one_face(format, &points, first);
+            let mesh = read_bytes("a", format, file.as_bytes(), &ReadOptions::default()).unwrap();
+            let corner = |i: &u32| {
+                let vertex = mesh.vertices[*i as usize].map(|x| x as i64);
+                corners[points.iter().position(|point| *point == vertex).unwrap()]
+            };
+            let triangles: Vec<[Point; 3]> =
+                mesh.triangles.iter().map(|t| t.each_ref().map(corner)).collect();
+            let mut used = mesh.triangles.as_flattened().to_vec();
+            used.sort_unstable();
+            used.dedup();
+            prop_assert_eq!(used.len(), mesh.vertices.len());
+            prop_assert_eq!(&mesh.warnings, &[""; 0]);
+            let areas = triangles.iter().map(|&[a, b, c]| area(a, b, c) * whole.signum());
+            prop_assert!(areas.clone().all(|area| area >= 0), "{}", file);
+            prop_assert_eq!(areas.sum::<i64>(), whole.abs());
+            for p in (0..400).map(|n| [n % 20 * 3 - 30 + first as i64 % 3, n / 20 * 3 - 29]) {
+                let covers = |t: &[Point; 3]| area(t[0], t[1], t[2]) != 0 && is_in(p, t);
+                prop_assert_eq!(triangles.iter().any(covers), is_in(p, &corners), "{:?} {}", p, file);
+            }
+        }
+    }
 
     #[test]
     fn indexed_formats_keep_every_bit(mesh in mesh()) {

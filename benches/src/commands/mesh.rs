@@ -58,6 +58,10 @@ struct MeshReport {
     closed_components: usize,
     boundary_edges: usize,
     non_manifold_edges: usize,
+    /// Vertices that count as another vertex at their position in what is said about components.
+    merged_vertices: usize,
+    /// What is not as the file or the command wants it.
+    warnings: Vec<String>,
     /// Smallest enclosing ball (x, y, z, r) in the file's coordinates, of the vertices that
     /// triangles use, as all that follows.
     ball: [f64; 4],
@@ -78,6 +82,11 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let mut mesh = read(&args.file, &options).or_report()?;
     if let Some(most) = args.triangles {
         mesh = decimate(&mesh, most as usize);
+        let left = mesh.triangles.len();
+        if left > most as usize {
+            let reason = "every further collapse would change its topology or turn a triangle over";
+            mesh.warnings.push(format!("{left} triangles are left instead of {most}: {reason}"));
+        }
     }
     if let Some(path) = &args.to {
         write(&mesh, path).or_report()?;
@@ -107,6 +116,8 @@ fn describe(args: &Args, mesh: &TriangleMesh) -> miette::Result<MeshReport> {
         closed_components: topology.closed_components(),
         boundary_edges: total.boundary_edges,
         non_manifold_edges: total.non_manifold_edges,
+        merged_vertices: topology.merged_vertices,
+        warnings: mesh.warnings.clone(),
         ball: [x, y, z, shape.ball.radius.into()],
         offset: shape.offset,
         hull_vertices: hull.corners(&shape.vertices).len(),
@@ -158,6 +169,16 @@ fn write_text(out: &mut String, report: &MeshReport) -> std::fmt::Result {
         "components: {all}, {state}; boundary edges: {}, non-manifold edges: {}",
         report.boundary_edges, report.non_manifold_edges
     )?;
+    if report.merged_vertices > 0 {
+        writeln!(
+            out,
+            "{} vertices have the position of another one: components and edges are counted as if they were the same",
+            report.merged_vertices
+        )?;
+    }
+    for warning in &report.warnings {
+        writeln!(out, "warning: {warning}")?;
+    }
     if report.unused_vertices > 0 {
         writeln!(
             out,

@@ -116,10 +116,12 @@ fn read_mesh(
     path: &Path,
 ) -> Result<TriangleMesh, SceneError> {
     let options = ReadOptions { max_bytes: file.max_bytes, ..ReadOptions::default() };
-    read(path, &options).map_err(|error| {
+    let mesh = read(path, &options).map_err(|error| {
         let hint = if path.exists() { Some(error.help()) } else { nearest_file(path) };
         file.source.error(name.span(), error.problem(), hint)
-    })
+    })?;
+    mesh.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+    Ok(mesh)
 }
 
 fn procedural(

@@ -1,8 +1,11 @@
 //! A mesh prepared for exact judgement: its tree, its components and which of them are closed.
 //!
-//! A component is a set of triangles that shared vertex indices join. It is closed if each edge of
-//! its faces is shared by exactly two of them. Triangles that name a vertex twice belong to the
-//! surface but do not count as faces. Only closed components have an inside.
+//! A component is a set of triangles that shared vertices join. It is closed if each edge of its
+//! faces is shared by exactly two of them. Triangles that name a vertex twice belong to the surface
+//! but do not count as faces. Only closed components have an inside.
+//!
+//! Vertices are first told apart by their indices. Components that are then open are joined again
+//! with one vertex per position: a box whose faces have vertices of their own is a box.
 
 use dashu_int::IBig;
 
@@ -52,19 +55,11 @@ impl Mesh {
 
     /// [`Mesh::new`] of a mesh that was checked before.
     pub(crate) fn checked(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Self {
-        let roots = roots(vertices.len(), triangles);
-        let mut number = vec![u32::MAX; vertices.len()];
-        let mut components = Vec::new();
-        let mut component_of = Vec::with_capacity(triangles.len());
-        for [vertex, _, _] in triangles {
-            let root = roots[*vertex as usize] as usize;
-            if number[root] == u32::MAX {
-                number[root] = components.len() as u32;
-                components.push(Component { vertex: *vertex, closed: false });
-            }
-            component_of.push(number[root]);
+        let (mut components, mut component_of) = components(vertices.len(), triangles);
+        let merged = merge(vertices, triangles, |t| components[component_of[t] as usize].closed);
+        if merged != triangles {
+            (components, component_of) = self::components(vertices.len(), &merged);
         }
-        mark_closed(&mut components, triangles, &component_of);
         let point = |i: u32| vertices[i as usize].map(f64::from);
         let corners: Vec<_> = triangles.iter().map(|t| t.map(point)).collect();
         let representatives = components.iter().map(|c| point(c.vertex)).collect();
@@ -86,6 +81,44 @@ impl Mesh {
         let [a, b, c] = [a, b, c].map(|p| p.map(|x| IBig::lift(x, self.unit)));
         cross(&sub(&b, &a), &sub(&c, &a)).iter().all(IBig::is_zero)
     }
+}
+
+/// The components, and the component of each triangle.
+fn components(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<Component>, Vec<u32>) {
+    let roots = roots(vertices, triangles);
+    let mut number = vec![u32::MAX; vertices];
+    let mut components = Vec::new();
+    let mut component_of = Vec::with_capacity(triangles.len());
+    for [vertex, _, _] in triangles {
+        let root = roots[*vertex as usize] as usize;
+        if number[root] == u32::MAX {
+            number[root] = components.len() as u32;
+            components.push(Component { vertex: *vertex, closed: false });
+        }
+        component_of.push(number[root]);
+    }
+    mark_closed(&mut components, triangles, &component_of);
+    (components, component_of)
+}
+
+/// The triangles, where those of open components name one vertex per position: the first of the
+/// vertices sorted by position.
+fn merge(
+    vertices: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+    closed: impl Fn(usize) -> bool,
+) -> Vec<[u32; 3]> {
+    let is_open = |(t, _): &(usize, &[u32; 3])| !closed(*t);
+    let open = triangles.iter().enumerate().filter(is_open).flat_map(|(_, triangle)| triangle);
+    let mut open: Vec<u32> = open.copied().collect();
+    // 0 and −0 are equal.
+    let position = |vertex: u32| vertices[vertex as usize].map(|x| (x + 0.0).to_bits());
+    open.sort_unstable_by_key(|vertex| (position(*vertex), *vertex));
+    let mut first: Vec<u32> = (0..vertices.len() as u32).collect();
+    for equal in open.chunk_by(|a, b| position(*a) == position(*b)) {
+        equal.iter().for_each(|vertex| first[*vertex as usize] = equal[0]);
+    }
+    triangles.iter().map(|triangle| triangle.map(|vertex| first[vertex as usize])).collect()
 }
 
 /// Union–find: for each vertex the representative of its component.

@@ -169,6 +169,22 @@ fn inside_needs_a_closed_component() {
     triangles.extend(faces.iter().map(|t| t.map(|i| i + 8)));
     vertices.extend(closer);
     assert!(meets(&prepared(&(vertices, triangles)), &inner, [0.0; 3]), "parity is per component");
+    // A box whose triangles have vertices of their own, at 0 or at −0, and a closed one in its
+    // corner.
+    let (corners, faces) = cuboid([1.0; 3]);
+    let own = |(n, i): (usize, &u32)| {
+        corners[*i as usize].map(|x| if x < 0.0 { [0.0, -0.0][n % 2] } else { 2.0 })
+    };
+    let mut vertices: Vec<_> = faces.as_flattened().iter().enumerate().map(own).collect();
+    let mut triangles: Vec<[u32; 3]> = (0..12).map(|t| [0, 1, 2].map(|i| 3 * t + i)).collect();
+    let meets_inner = |vertices: &[[f32; 3]], triangles: &[[u32; 3]]| {
+        meets(&prepared(&(vertices.to_vec(), triangles.to_vec())), &inner, [1.0; 3])
+    };
+    assert!(meets_inner(&vertices, &triangles), "equal positions are one vertex");
+    assert!(!meets_inner(&vertices, &triangles[1..]), "a triangle is missing");
+    triangles.extend(faces.iter().map(|t| t.map(|i| i + 36)));
+    vertices.extend(corners.iter().map(|v| v.map(|x| 0.125 * (x + 1.0))));
+    assert!(meets_inner(&vertices, &triangles), "closed components stay apart");
 }
 
 /// Collapsed faces do not confuse the parity.

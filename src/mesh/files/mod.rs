@@ -5,6 +5,7 @@ mod off;
 mod parts;
 mod ply;
 mod ply_header;
+mod polygons;
 mod read;
 mod stl;
 mod text;

@@ -5,11 +5,12 @@
 //! coordinates, `C` a colour, `N` a normal, `4` a weight, by which the position is divided. A face
 //! has its number of corners, their 0-based indices, and perhaps a colour. `#` starts a comment.
 //! Files without a header are read too. A record is one line; a file that does not fit this is read
-//! without regard to line ends, as Geomview does.
+//! without regard to line ends, as Geomview does. Words after the last face are ignored with a
+//! warning.
 
-use super::parts::RawMesh;
+use super::parts::{Faces, RawMesh};
 use super::text::{self, LineProblem, Token};
-use crate::mesh::{Problem, check_triangle, check_vertex};
+use crate::mesh::{Problem, check_vertex};
 
 /// Reads an OFF file.
 pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
@@ -20,10 +21,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
         text::lines(&text).map(without_comment).flat_map(text::words).collect();
     let (layout, rest) = header(&tokens)?;
     let by_line = OffBody { rest, line: 0, by_line: true }.read(&layout);
-    by_line.or_else(|fault| {
-        let free = OffBody { rest, line: 0, by_line: false }.read(&layout);
-        free.map_err(|_| fault)
-    })
+    if by_line.as_ref().is_ok_and(|mesh| mesh.warnings.is_empty()) {
+        return by_line;
+    }
+    let free = OffBody { rest, line: 0, by_line: false }.read(&layout);
+    free.ok().filter(|mesh| mesh.warnings.is_empty()).map_or(by_line, Ok)
 }
 
 /// The numbers that a vertex has.
@@ -95,16 +97,16 @@ impl<'t, 'a> OffBody<'t, 'a> {
         for index in 0..vertices {
             points.push(self.vertex(index, vertices, layout)?);
         }
-        let mut triangles = Vec::new();
+        let mut found = Faces::default();
         for index in 0..faces {
-            self.face(index, faces, points.len(), &mut triangles)?;
+            self.face(index, faces, &mut found)?;
         }
+        let mut mesh = found.into_mesh(points, 0)?;
         if let Some(token) = self.rest.first() {
-            let message = format!("{} words after the last face", self.rest.len());
-            let help = "remove what follows, or correct the counts in the header";
-            return Err((Some(token.line), Problem::malformed(message, help)));
+            let message = format!("ignored {} words after the last face", self.rest.len());
+            mesh.warnings.push((Some(token.line), message));
         }
-        Ok(RawMesh::indexed(points, triangles))
+        Ok(mesh)
     }
 
     fn vertex(
@@ -137,27 +139,13 @@ impl<'t, 'a> OffBody<'t, 'a> {
         Ok(position)
     }
 
-    fn face(
-        &mut self,
-        index: usize,
-        faces: usize,
-        vertices: usize,
-        triangles: &mut Vec<[u32; 3]>,
-    ) -> Result<(), LineProblem> {
+    fn face(&mut self, index: usize, faces: usize, found: &mut Faces) -> Result<(), LineProblem> {
         let what = || format!("face {index} of {faces}");
         let size = &self.take(1, what)?[0];
         let corners = self.take(count(size)?, what)?;
         let corners: Vec<i64> =
             corners.iter().map(|corner| corner.integer("an index")).collect::<Result<_, _>>()?;
-        if corners.is_empty() {
-            let message = format!("face {index} has no vertices");
-            return Err((Some(size.line), Problem::malformed(message, "remove it")));
-        }
-        for triangle in text::fan(&corners) {
-            check_triangle(triangles.len(), triangle, 0, vertices)
-                .map_err(|problem| (Some(size.line), problem))?;
-            triangles.push(triangle.map(|index| index as u32));
-        }
+        found.add(&corners, Some(size.line));
         if self.by_line {
             self.skip_line();
         }

@@ -2,16 +2,17 @@
 //!
 //! The header lists elements and their properties. Everything is skipped except the vertices' x, y,
 //! z and the lists of indices. Skipped values are not parsed, so a NaN or a word in an unused
-//! property is not an error. Polygons become triangle fans, faces of one or two vertices become
-//! degenerate triangles, and strips are unrolled. In text, an element is one line; extra words
-//! after its properties are skipped only if the file can't be read otherwise.
+//! property is not an error. Polygons are cut into triangles, faces of one or two vertices
+//! become degenerate triangles, and strips are unrolled. In text, an element is one line; extra
+//! words after its properties are skipped only if the file can't be read otherwise. What follows
+//! the last element is ignored with a warning.
 
 use std::iter::Peekable;
 
-use super::parts::RawMesh;
+use super::parts::{Faces, RawMesh};
 use super::ply_header::{Element, Encoding, Header, PropertyUse, Scalar, malformed};
-use super::text::{self, LineProblem, Token};
-use crate::mesh::{Problem, check_triangle, check_vertex};
+use super::text::{self, LineProblem, LineWarning, Token};
+use crate::mesh::{Problem, check_vertex};
 
 /// Reads a PLY file.
 pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
@@ -20,14 +21,23 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
     }
     let header = Header::read(bytes)?;
     let data = &bytes[header.size..];
-    let Encoding::Binary { big_endian } = header.encoding else {
-        let text = text::decode(data);
-        let body =
-            |by_line| PlyBody::Text { tokens: tokens(&text, header.lines).peekable(), by_line };
-        let exact = read_body(&header, body(false));
-        return exact.or_else(|fault| read_body(&header, body(true)).map_err(|_| fault));
-    };
-    read_body(&header, PlyBody::Binary { rest: data, big_endian })
+    let mut mesh = match header.encoding {
+        Encoding::Binary { big_endian } => {
+            read_body(&header, PlyBody::Binary { rest: data, big_endian })
+        }
+        Encoding::Text => read_text(&header, &text::decode(data)),
+    }?;
+    mesh.warnings.extend(header.warning());
+    Ok(mesh)
+}
+
+fn read_text(header: &Header, text: &str) -> Result<RawMesh, LineProblem> {
+    let body = |by_line| PlyBody::Text { tokens: tokens(text, header.lines).peekable(), by_line };
+    let exact = read_body(header, body(false));
+    if exact.as_ref().is_ok_and(|mesh| mesh.warnings.is_empty()) {
+        return exact;
+    }
+    read_body(header, body(true)).map_err(|fault| exact.err().unwrap_or(fault))
 }
 
 fn read_body(header: &Header, mut body: PlyBody) -> Result<RawMesh, LineProblem> {
@@ -35,8 +45,9 @@ fn read_body(header: &Header, mut body: PlyBody) -> Result<RawMesh, LineProblem>
     for element in &header.elements {
         mesh.add(element, &mut body)?;
     }
-    body.check_end()?;
-    mesh.into_parts()
+    let mut mesh = mesh.faces.into_mesh(mesh.points, 0)?;
+    mesh.warnings.extend(body.excess());
+    Ok(mesh)
 }
 
 /// The words of a text that starts after `lines_before` lines.
@@ -118,20 +129,16 @@ impl PlyBody<'_> {
         }
     }
 
-    fn check_end(&mut self) -> Result<(), LineProblem> {
+    /// A warning about what follows the last element.
+    fn excess(&mut self) -> Option<LineWarning> {
         let (line, count, what) = match self {
             Self::Text { tokens, .. } => {
-                let first = tokens.next();
-                let count = usize::from(first.is_some()) + tokens.count();
-                (first.map(|token| token.line), count, "numbers")
+                let line = tokens.peek().map(|token| token.line);
+                (line, tokens.count(), "words")
             }
             Self::Binary { rest, .. } => (None, rest.len(), "bytes"),
         };
-        if count == 0 {
-            return Ok(());
-        }
-        let message = format!("{count} {what} too many after the last element");
-        Err((line, malformed(message)))
+        (count > 0).then(|| (line, format!("ignored {count} {what} after the last element")))
     }
 }
 
@@ -139,9 +146,7 @@ impl PlyBody<'_> {
 #[derive(Default)]
 struct PlyMesh {
     points: Vec<[f64; 3]>,
-    triangles: Vec<[i64; 3]>,
-    /// The line of each triangle, in a text file.
-    lines: Vec<Option<usize>>,
+    faces: Faces,
 }
 
 impl PlyMesh {
@@ -174,7 +179,7 @@ impl PlyMesh {
                         })?);
                     }
                 }
-                self.add_corners(property.used_as, &list, line, what)?;
+                self.add_corners(property.used_as, &list, line);
             }
             body.end_element(line);
             if element.name == "vertex" {
@@ -185,19 +190,9 @@ impl PlyMesh {
         Ok(())
     }
 
-    fn add_corners(
-        &mut self,
-        used_as: PropertyUse,
-        corners: &[i64],
-        line: Option<usize>,
-        what: impl Fn() -> String,
-    ) -> Result<(), LineProblem> {
+    fn add_corners(&mut self, used_as: PropertyUse, corners: &[i64], line: Option<usize>) {
         match used_as {
-            PropertyUse::Polygon if corners.is_empty() => {
-                let message = format!("{} has no vertices", what());
-                return Err((line, Problem::malformed(message, "remove it")));
-            }
-            PropertyUse::Polygon => self.triangles.extend(text::fan(corners)),
+            PropertyUse::Polygon => self.faces.add(corners, line),
             PropertyUse::Strips => {
                 for strip in corners.split(|&corner| corner == -1) {
                     // Every second triangle of a strip has its first two corners exchanged.
@@ -205,25 +200,12 @@ impl PlyMesh {
                         (1, &[a, b, c]) => [b, a, c],
                         (_, corners) => [corners[0], corners[1], corners[2]],
                     };
-                    self.triangles.extend(strip.windows(3).enumerate().map(turned));
+                    let triangles = strip.windows(3).enumerate().map(turned);
+                    triangles.for_each(|triangle| self.faces.add(&triangle, line));
                 }
             }
             PropertyUse::Coordinate(_) | PropertyUse::Nothing => {}
         }
-        self.lines.resize(self.triangles.len(), line);
-        Ok(())
-    }
-
-    fn into_parts(self) -> Result<RawMesh, LineProblem> {
-        if self.points.is_empty() {
-            return Err((None, Problem::NoVertices));
-        }
-        for (index, (triangle, line)) in self.triangles.iter().zip(&self.lines).enumerate() {
-            check_triangle(index, *triangle, 0, self.points.len())
-                .map_err(|problem| (*line, problem))?;
-        }
-        let triangles = self.triangles.iter().map(|t| t.map(|index| index as u32));
-        Ok(RawMesh::indexed(self.points, triangles.collect()))
     }
 }
 

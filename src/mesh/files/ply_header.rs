@@ -1,6 +1,6 @@
 //! The header of a PLY file: elements, their properties, and how each is used.
 
-use super::text::{self, LineProblem, Token, excerpt};
+use super::text::{self, LineProblem, LineWarning, Token, excerpt};
 use crate::mesh::Problem;
 
 /// A number type.
@@ -12,6 +12,8 @@ pub(super) enum Scalar {
     U16,
     I32,
     U32,
+    I64,
+    U64,
     F32,
     F64,
 }
@@ -25,6 +27,9 @@ impl Scalar {
             "ushort" | "uint16" => Self::U16,
             "int" | "int32" => Self::I32,
             "uint" | "uint32" => Self::U32,
+            // Not in the format's description, but some programs write them.
+            "int64" | "long" => Self::I64,
+            "uint64" | "ulong" => Self::U64,
             "float" | "float32" => Self::F32,
             "double" | "float64" => Self::F64,
             _ => return None,
@@ -36,7 +41,7 @@ impl Scalar {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 
@@ -50,6 +55,9 @@ impl Scalar {
             Self::U16 => u16::from_le_bytes([a, b]).into(),
             Self::I32 => i32::from_le_bytes([a, b, c, d]).into(),
             Self::U32 => u32::from_le_bytes([a, b, c, d]).into(),
+            // Beyond 2⁵³ these round, and no index or count is so large.
+            Self::I64 => i64::from_le_bytes(word) as f64,
+            Self::U64 => u64::from_le_bytes(word) as f64,
             Self::F32 => f32::from_le_bytes([a, b, c, d]).into(),
             Self::F64 => f64::from_le_bytes(word),
         }
@@ -139,6 +147,15 @@ impl Header {
             }
         }
         Err((Some(header.lines), malformed("the file ends in a PLY header".to_owned())))
+    }
+
+    /// A warning about types that the format doesn't have.
+    pub fn warning(&self) -> Option<LineWarning> {
+        let mut properties = self.elements.iter().flat_map(|element| &element.properties);
+        let wide = |scalar| matches!(scalar, Scalar::I64 | Scalar::U64);
+        let found = properties.any(|p| wide(p.scalar) || p.length.is_some_and(wide));
+        found
+            .then(|| (None, "the header has 64-bit integers, which PLY does not define".to_owned()))
     }
 
     /// The next line. Lines end with LF (a CR before it is white space), or all of them with CR.

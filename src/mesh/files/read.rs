@@ -4,8 +4,10 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::parts::RawMesh;
-use super::{TriFormat, obj, off, ply, stl, tri};
+use super::text::LineProblem;
+use super::{TriFormat, obj, off, ply, polygons, stl, tri};
 use crate::files;
+use crate::mesh::error::place;
 use crate::mesh::{MeshError, Problem, TriangleMesh};
 
 /// A mesh file format.
@@ -98,7 +100,8 @@ pub fn read_bytes(
         MeshFormat::Ply => ply::read(bytes),
         MeshFormat::Off => off::read(bytes),
     };
-    let RawMesh { points, triangles } = parts.map_err(|(line, problem)| problem.at(file, line))?;
+    let at = |(line, problem): LineProblem| problem.at(file, line);
+    let RawMesh { points, triangles, polygons, warnings } = parts.map_err(at)?;
     let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
     let mesh = match triangles {
         Some(triangles) => {
@@ -106,5 +109,9 @@ pub fn read_bytes(
         }
         None => TriangleMesh::from_soup(&points),
     };
-    mesh.map(|mesh| mesh.named(stem)).map_err(|problem| problem.at(file, None))
+    let mut mesh = mesh.map_err(|problem| problem.at(file, None))?.named(stem);
+    let doubtful = polygons::cut(&mut mesh, &polygons).map_err(at)?;
+    let placed = |(line, message)| format!("{}: {message}", place(file, line));
+    mesh.warnings = warnings.into_iter().chain(doubtful).map(placed).collect();
+    Ok(mesh)
 }

@@ -1,12 +1,15 @@
 //! STL, text and binary; equal corners are welded into shared vertices.
 //!
 //! Binary files may start with `solid` as text files do, so the length decides first: a binary file
-//! has exactly 84 + 50·n bytes. In a text file, the names after `solid` and `endsolid` and the
-//! normals are ignored, and there may be many solids. A facet is `facet normal`, `outer loop`, its
+//! has exactly 84 + 50·n bytes. If it has more and is not text, the rest is ignored with a warning.
+//! In a text file, the names after `solid` and `endsolid` and the normals are ignored, and there
+//! may be many solids. A facet is `facet normal`, `outer loop`, its
 //! vertices, `endloop`, `endfacet`, in upper or lower case and with any line breaks. Anything else
-//! between facets is an error, except comments.
+//! between facets is an error, except comments. Other words after the last `endsolid` are ignored
+//! with a warning.
 
 use super::parts::RawMesh;
+use super::polygons::Polygon;
 use super::text::{self, LineProblem, Token, put, wide};
 use crate::mesh::{Problem, TriangleMesh, check_vertex, in_f64};
 
@@ -32,6 +35,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
         if let Some(facets) = start_of_text(&tokens) {
             return facets.read();
         }
+    }
+    if let (Some(1..), Some(size)) = (count, size)
+        && size < bytes.len() as u64
+    {
+        let mut mesh = binary(&bytes[HEADER_BYTES..size as usize])?;
+        let excess = bytes.len() as u64 - size;
+        mesh.warnings.push((None, format!("ignored {excess} bytes after the last triangle")));
+        return Ok(mesh);
     }
     let message = match (count, size) {
         (Some(n), Some(size)) => format!(
@@ -60,7 +71,7 @@ fn binary(bytes: &[u8]) -> Result<RawMesh, LineProblem> {
 
 /// The words of a text file, if it begins with a solid or a facet.
 fn start_of_text<'t, 'a>(tokens: &'t [Token<'a>]) -> Option<Facets<'t, 'a>> {
-    let mut facets = Facets { tokens, points: Vec::new() };
+    let mut facets = Facets { tokens, points: Vec::new(), polygons: Vec::new() };
     while facets.skip_comment() {}
     let first = facets.tokens.first()?;
     (first.is("solid") || first.is("facet")).then_some(facets)
@@ -70,10 +81,12 @@ fn start_of_text<'t, 'a>(tokens: &'t [Token<'a>]) -> Option<Facets<'t, 'a>> {
 struct Facets<'t, 'a> {
     tokens: &'t [Token<'a>],
     points: Vec<[f64; 3]>,
+    polygons: Vec<Polygon>,
 }
 
 impl Facets<'_, '_> {
     fn read(mut self) -> Result<RawMesh, LineProblem> {
+        let mut warnings = Vec::new();
         let (mut open, last) = (false, self.tokens.last().map(|token| token.line));
         while !self.tokens.is_empty() {
             if self.skip_comment() {
@@ -85,6 +98,13 @@ impl Facets<'_, '_> {
             } else if self.starts_with(&["solid"]) {
                 open = true;
                 self.skip_line();
+            } else if !open
+                && !self.points.is_empty()
+                && !self.tokens.iter().any(|token| token.is("facet"))
+            {
+                let message = format!("ignored {} words after the last facet", self.tokens.len());
+                warnings.push((self.tokens.first().map(|token| token.line), message));
+                break;
             } else {
                 self.facet()?;
             }
@@ -92,7 +112,7 @@ impl Facets<'_, '_> {
         if open {
             return Err((last, malformed("the file ends before `endsolid`".to_owned())));
         }
-        Ok(RawMesh::soup(self.points))
+        Ok(RawMesh { polygons: self.polygons, warnings, ..RawMesh::soup(self.points) })
     }
 
     fn starts_with(&self, keywords: &[&str]) -> bool {
@@ -140,6 +160,7 @@ impl Facets<'_, '_> {
     }
 
     fn facet(&mut self) -> Result<(), LineProblem> {
+        let line = self.tokens.first().map(|token| token.line);
         self.take(&["facet"], &["facet"])?;
         let structure = ["outer", "facet", "vertex", "endfacet", "endsolid"];
         while self.tokens.first().is_some_and(|token| !structure.iter().any(|word| token.is(word)))
@@ -161,6 +182,10 @@ impl Facets<'_, '_> {
         }
         self.take(&["endloop"], &["end", "loop"])?;
         self.take(&["endfacet"], &["end", "facet"])?;
+        if corners.len() > 3 {
+            let first_triangle = self.points.len() / 3;
+            self.polygons.push(Polygon { first_triangle, corners: corners.len(), line });
+        }
         for edge in corners[1..].windows(2) {
             self.points.extend([corners[0], edge[0], edge[1]]);
         }

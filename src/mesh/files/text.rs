@@ -19,6 +19,9 @@ use crate::mesh::{Problem, check_vertex};
 /// A problem with its 1-based line, if it has one.
 pub(super) type LineProblem = (Option<usize>, Problem);
 
+/// A warning with its 1-based line, if it has one.
+pub(super) type LineWarning = (Option<usize>, String);
+
 /// A word and its 1-based line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token<'a> {
@@ -184,17 +187,6 @@ pub(super) fn put(text: &mut String, line: std::fmt::Arguments) {
 pub(super) fn shortest(value: impl Display + LowerExp) -> String {
     let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
     if exponent.len() < plain.len() { exponent } else { plain }
-}
-
-/// A polygon as a fan of triangles about its first corner. One or two corners give a degenerate
-/// triangle, so that nothing is lost.
-pub(super) fn fan(corners: &[i64]) -> Vec<[i64; 3]> {
-    match *corners {
-        [] => Vec::new(),
-        [a] => vec![[a, a, a]],
-        [a, b] => vec![[a, b, b]],
-        [a, ref rest @ ..] => rest.windows(2).map(|edge| [a, edge[0], edge[1]]).collect(),
-    }
 }
 
 /// A position in the tokens. Reading a record by line requires that it fills exactly one line.
