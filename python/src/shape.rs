@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use sdop::mesh::ReadOptions;
 use sdop::{Axes, DirectionSet, Origin, ShapeSpec, TriangleMesh};

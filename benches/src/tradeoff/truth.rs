@@ -26,8 +26,8 @@ use sdop::files;
 use sdop::simd::Tier;
 use sdop::volume::Shape;
 
-/// First word of a cache file; the number changes with its layout.
-const HEADER: &str = "sdop-truth-1";
+/// First word of a cache file; the number changes with its layout and with what is inside a mesh.
+const HEADER: &str = "sdop-truth-2";
 
 /// One sample frame.
 #[derive(Clone, Debug)]

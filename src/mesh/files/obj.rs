@@ -4,8 +4,8 @@
 //! mesh, the last would double vertices along seams. A line that ends with a backslash continues on
 //! the next one, `#` starts a comment anywhere, and a face may refer to later vertices. Polygons
 //! are cut into triangles. Faces of one or two vertices become degenerate triangles, so that
-//! nothing is lost. What follows x, y and z in a vertex is not read: a colour, or a weight w, which belongs
-//! to rational curves and which other programs ignore, too.
+//! nothing is lost. What follows x, y and z in a vertex is not read: a colour, or a weight w, which
+//! belongs to rational curves and which other programs ignore, too.
 
 use super::parts::{Faces, RawMesh};
 use super::text::{self, LineProblem, Token};
