@@ -14,6 +14,11 @@ impl Groups {
     /// In all groups, and collides with all: the default.
     pub const ALL: Self = Self { member: u32::MAX, mask: u32::MAX };
 
+    /// Whether a body collides with no other, whatever that is in.
+    pub(crate) const fn collide_with_none(self) -> bool {
+        self.member == 0 || self.mask == 0
+    }
+
     /// Whether each of two bodies is in a group that the other collides with.
     #[inline(always)]
     #[must_use]

@@ -31,6 +31,8 @@ pub struct QueryShape {
     reach: f64,
     /// The position of that origin relative to the point that poses place.
     pose_offset: [f64; 3],
+    /// That of the world's shape of which it is a copy.
+    stamp: u64,
 }
 
 impl QueryShape {
@@ -43,6 +45,7 @@ impl QueryShape {
             frame: &frame,
             radius: shape.ball.radius.into(),
             pose_offset: shape.pose_offset,
+            stamp: 0,
         })
     }
 
@@ -68,18 +71,14 @@ impl QueryShape {
             radius: volumes.radius,
             reach: frame.reach().into(),
             pose_offset: volumes.pose_offset,
+            stamp: volumes.stamp,
             ordop: ordop.clone(),
         }
     }
 
     /// Whether it was made from these volumes.
     pub(super) fn is_of(&self, volumes: ShapeVolumes<'_>) -> bool {
-        let ShapeVolumes { ordop, frame, .. } = volumes;
-        self.ordop == *ordop
-            && self.centre == frame.centre().map(f64::from)
-            && self.radius == volumes.radius
-            && self.reach == f64::from(frame.reach())
-            && self.pose_offset == volumes.pose_offset
+        self.stamp == volumes.stamp
     }
 
     /// Whether it has the ball, reach and place of a shape, whose slabs may have other axes.

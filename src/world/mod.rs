@@ -89,15 +89,15 @@ pub use snapshot::WorldSnapshot;
 #[cfg(feature = "serde")]
 pub use snapshot_parts::SnapshotError;
 
-pub(crate) use self::ids::{Ids, shrink_column};
+pub(crate) use self::ids::{Ids, renumber_column, renumbered_pairs};
 pub(crate) use self::live_pairs::LivePairs;
 pub(crate) use self::movers::Movers;
 #[cfg(feature = "shapes")]
 pub(crate) use self::shape_volumes::{ShapeVolumes, compose};
 #[cfg(feature = "serde")]
 pub(crate) use self::snapshot_parts::{
-    IdsSnapshot, PairsSnapshot, Version, check_length, resting_column, resting_slots,
-    restored_excluded,
+    IdsSnapshot, PairsSnapshot, Version, excluded_slots, resting_column, resting_slots,
+    restored_column, restored_excluded,
 };
 #[cfg(feature = "shapes")]
 use self::{
@@ -218,8 +218,11 @@ impl World {
     /// # Errors
     /// The pose, shape or margin is outside of the contract.
     pub fn insert(&mut self, body: Body) -> Result<BodyId, WorldError> {
+        self.check(self.ids.next_slot(), &body)?;
+        if self.ids.need_rows() {
+            self.renumber(Ids::add_rows);
+        }
         let slot = self.ids.next();
-        self.check(slot, &body)?;
         if self.ids.take() {
             self.bodies.push(0, true, [0.0f32; 4], [0.0f32; 3]);
             self.resting.push(false);
@@ -242,12 +245,15 @@ impl World {
     /// # Errors
     /// The body has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.ids.remove(id)?;
-        self.shapes[self.shape[id.slot()] as usize].bodies -= 1;
-        self.culler.excluded_mut().remove_all(id.slot);
-        self.is_of_interest[id.slot()] = false;
-        self.movers.note(id.slot(), &self.ids);
+        let slot = self.ids.remove(id)?;
+        self.shapes[self.shape[slot] as usize].bodies -= 1;
+        self.culler.excluded_mut().remove_all(slot as u32);
+        self.is_of_interest[slot] = false;
+        self.movers.note(slot, &self.ids);
         self.replaced = true;
+        if self.ids.are_sparse() {
+            self.renumber(Ids::compact);
+        }
         Ok(())
     }
 
@@ -272,7 +278,13 @@ impl World {
 
     /// All present bodies, sorted by slot.
     pub fn bodies(&self) -> impl Iterator<Item = (BodyId, Body)> + '_ {
-        self.ids().map(|id| (id, self.body_at(id.slot())))
+        self.rows().map(|(_, id, body)| (id, body))
+    }
+
+    /// All present bodies, sorted by slot, each with its row: no row is much greater than the
+    /// number of bodies.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (usize, BodyId, Body)> + '_ {
+        self.ids.filled().map(|row| (row, self.ids.id(row as u32), self.body_at(row)))
     }
 
     /// Changes any properties of a body. A pose may change by any amount: nothing is assumed about
@@ -283,13 +295,17 @@ impl World {
     /// The body has been removed, or the pose, shape or margin is outside of the contract.
     pub fn set(&mut self, id: BodyId, body: Body) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
-        self.check(slot, &body)?;
-        self.set_checked(slot, body);
+        self.check(id.slot(), &body)?;
+        self.set_at(slot, body);
         Ok(())
     }
 
     /// [`Self::set`] of a present body to one within the contract.
-    pub(crate) fn set_checked(&mut self, slot: usize, body: Body) {
+    pub(crate) fn set_checked(&mut self, id: BodyId, body: Body) {
+        self.set_at(self.ids.row_of(id.slot), body);
+    }
+
+    fn set_at(&mut self, slot: usize, body: Body) {
         let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.bodies.dynamic[slot]);
         let is_same = self.is_at(slot, body.rotation, body.translation)
             && body.margin.to_bits() == self.margin[slot].to_bits()
@@ -318,7 +334,7 @@ impl World {
     ) -> Result<(), WorldError> {
         let (rotation, translation) = (rotation.into(), translation.into());
         let slot = self.ids.slot(id)?;
-        in_default_mode(|| check_pose(slot, &rotation, &translation))?;
+        in_default_mode(|| check_pose(id.slot(), &rotation, &translation))?;
         if !self.is_at(slot, rotation, translation) {
             self.replaced |= !self.bodies.dynamic[slot];
             self.movers.note(slot, &self.ids);
@@ -353,9 +369,9 @@ impl World {
         }
         let former = std::mem::replace(&mut self.interest, ids.to_vec());
         for id in former.iter().chain(ids) {
-            if self.contains(*id) {
-                self.is_of_interest[id.slot()] = false;
-                self.movers.note(id.slot(), &self.ids);
+            if let Ok(slot) = self.ids.slot(*id) {
+                self.is_of_interest[slot] = false;
+                self.movers.note(slot, &self.ids);
             }
         }
         self.look();
@@ -382,7 +398,7 @@ impl World {
 
     /// The slot that the next body gets.
     pub(crate) fn next_slot(&self) -> usize {
-        self.ids.next()
+        self.ids.next_slot()
     }
 
     /// The pair finder in use: the chosen one, or the last choice of `auto`.
@@ -405,9 +421,8 @@ impl World {
 
     /// Marks the present bodies of interest, and passes them to the culler.
     fn look(&mut self) {
-        let living = |id: &BodyId| self.ids.slot(*id).is_ok();
-        let slots = self.interest.iter().filter(|id| living(id));
-        let slots: Vec<u32> = slots.map(|id| id.slot).collect();
+        let slots = self.interest.iter().filter_map(|id| self.ids.slot(*id).ok());
+        let slots: Vec<u32> = slots.map(|slot| slot as u32).collect();
         for &slot in &slots {
             self.is_of_interest[slot as usize] = true;
         }
@@ -415,7 +430,9 @@ impl World {
     }
 
     fn put(&mut self, slot: usize, body: Body) {
-        self.regrouped |= self.groups[slot] != body.groups;
+        let former = self.groups[slot];
+        self.regrouped |= former != body.groups;
+        self.replaced |= former.collide_with_none() != body.groups.collide_with_none();
         self.bodies.dynamic[slot] = body.motion.is_dynamic();
         self.resting[slot] = body.motion == Motion::Resting;
         self.bodies.rotation[slot] = body.rotation;
