@@ -14,7 +14,7 @@ use sdop::mesh::ProceduralShape;
 use sdop::settings::{CullSettings, Strategy};
 use sdop::volume::{Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, World};
-use sdop::{Aabb, BoxWorld, Culler, Motion};
+use sdop::{Aabb, BoxWorld, Culler, Motion, QueryIndex};
 
 /// The system's allocator, counting the bytes that each thread holds and the most that it held:
 /// tests run side by side.
@@ -275,6 +275,116 @@ fn emptied_world_is_small() {
     };
     let [(_left, bytes), (_fresh, wanted)] = [20_000, 101].map(|many| held(|| few(many)));
     assert!(10 * bytes <= 11 * wanted, "{bytes} of {wanted}");
+}
+
+/// Bodies that have lived, and which of them are left.
+const LIVED: usize = 20_000;
+const LEFT: [fn(usize) -> bool; 3] =
+    [|body| body + 1 == LIVED, |body| body % 100 == 7, |body| body < 2000];
+
+/// Memory, snapshots and the memory of a frame are those of the bodies that are left, whether there
+/// were others or not, without a call to shrink; and bodies may come and go without a cull.
+macro_rules! assert_follows_the_living {
+    ($new:expr, $insert:expr, $place:expr) => {
+        let world = |is_left: fn(usize) -> bool, had_others: bool| {
+            let (mut world, mut index) = ($new, QueryIndex::new());
+            let bodies = (0..LIVED).filter(|&body| had_others || is_left(body));
+            let ids: Vec<(usize, BodyId)> =
+                bodies.map(|body| (body, $insert(&mut world, dispersed(body)))).collect();
+            index.update(&world);
+            world.cull().unwrap();
+            for &(body, id) in &ids {
+                match is_left(body) {
+                    true => $place(&mut world, id, dispersed(body + 1)),
+                    false => world.remove(id).unwrap(),
+                }
+            }
+            world.cull().unwrap();
+            // A move makes an index of boxes, if there is none.
+            let left = ids.iter().find(|&&(body, _)| is_left(body)).unwrap();
+            $place(&mut world, left.1, dispersed(left.0));
+            world.cull().unwrap();
+            index.update(&world);
+            assert!(ids.iter().all(|&(body, id)| world.contains(id) == is_left(body)));
+            (world, index)
+        };
+        let text = |snapshot| serde_json::to_string(&snapshot).unwrap().len() as i64;
+        for is_left in LEFT {
+            let [lived, fresh] = [true, false].map(|had_others| {
+                let ((mut world, index), bytes) = held(|| world(is_left, had_others));
+                let frame = most_taken(|| {
+                    world.cull().unwrap();
+                    index.clone().update(&world);
+                });
+                [bytes, text(world.snapshot()), frame]
+            });
+            assert!(lived[0] <= 2 * fresh[0] + (64 << 10), "{lived:?}, {fresh:?}");
+            assert!(10 * lived[1] <= 11 * fresh[1] + (40 << 10), "{lived:?}, {fresh:?}");
+            assert!(lived[2] <= 2 * fresh[2] + (4 << 10), "{lived:?}, {fresh:?}");
+        }
+        let (mut world, mut index) = ($new, QueryIndex::new());
+        let (_, bytes) = held(|| {
+            let mut all = VecDeque::new();
+            for body in 0..30_000 {
+                all.push_back($insert(&mut world, dispersed(body % 1000)));
+                if all.len() > 50 {
+                    world.remove(all.pop_front().unwrap()).unwrap();
+                }
+            }
+            index.update(&world);
+        });
+        assert!(index.len() == 50 && bytes < 96 << 10, "{bytes}");
+        assert!(text(world.snapshot()) < 24 << 10);
+    };
+}
+
+/// A world that most bodies have left is as small as one that never had them.
+#[test]
+fn lived_worlds_follow_the_living() {
+    assert_follows_the_living!(
+        BoxWorld::new(),
+        |world: &mut BoxWorld, place| world.insert(box_at(place)).unwrap(),
+        |world: &mut BoxWorld, id, place| world.set_bounds(id, box_at(place)).unwrap()
+    );
+    let there = |place: [f32; 3]| place.map(|x| 2.0 * f64::from(x));
+    const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+    assert_follows_the_living!(
+        World::new(vec![form(0)]).unwrap(),
+        |world: &mut World, place| world.insert(Body::at(0, UNTURNED, there(place))).unwrap(),
+        |world: &mut World, id, place| world.set_pose(id, UNTURNED, there(place)).unwrap()
+    );
+}
+
+/// After a bulk load, and after a world was restored, a frame in which one body moves allocates
+/// nothing that grows with the world.
+#[test]
+fn first_moves_are_no_hitch() {
+    let mut world = BoxWorld::new();
+    let mut ids = Vec::new();
+    for body in 0..LIVED {
+        let motion = if body % 100 == 0 { Motion::Dynamic } else { Motion::Fixed };
+        let bounds = box_at(dispersed(body));
+        ids.push(world.insert(BoxBody { motion, ..bounds.into() }).unwrap());
+    }
+    let mut meshes = World::new(vec![form(0)]).unwrap();
+    let there = |body| dispersed(body).map(|x| 2.0 * f64::from(x));
+    let body = |body| Body::at(0, [0.0, 0.0, 0.0, 1.0], there(body));
+    let bodies: Vec<BodyId> = (0..2000).map(|i| meshes.insert(body(i)).unwrap()).collect();
+    world.cull().unwrap();
+    meshes.cull().unwrap();
+    for step in 0..4 {
+        world.set_bounds(ids[100 * step], box_at(dispersed(step + 1))).unwrap();
+        let taken = most_taken(|| _ = world.cull().unwrap());
+        assert!(taken < 64 << 10, "step {step}: {taken}");
+        meshes.set_pose(bodies[step], [0.0, 0.0, 0.0, 1.0], there(step + 7)).unwrap();
+        let taken = most_taken(|| _ = meshes.cull().unwrap());
+        assert!(taken < 64 << 10, "step {step}: {taken}");
+        assert_eq!(world.rest_counters().queried, meshes.counters().rest.queried);
+        assert_eq!(world.rest_counters().queried, step as u64 + 1);
+        let (saved, other) = (world.snapshot(), meshes.snapshot());
+        world.restore(&saved).unwrap();
+        meshes.restore(&other).unwrap();
+    }
 }
 
 /// Events are read off two lists: no third is kept, and bodies may be removed meanwhile.

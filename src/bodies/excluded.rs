@@ -70,12 +70,6 @@ impl ExcludedPairs {
         pairs.sort_unstable();
         pairs
     }
-
-    /// Frees the memory of removed pairs.
-    pub fn shrink_to_fit(&mut self) {
-        self.partners.shrink_to_fit();
-        self.partners.values_mut().for_each(HashSet::shrink_to_fit);
-    }
 }
 
 impl FromIterator<[u32; 2]> for ExcludedPairs {

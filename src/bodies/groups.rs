@@ -20,6 +20,11 @@ impl Groups {
         Self { member: bits, mask: bits }
     }
 
+    /// Whether a body collides with no other, whatever that is in.
+    pub(crate) const fn collide_with_none(self) -> bool {
+        self.member == 0 || self.mask == 0
+    }
+
     /// Whether each of two bodies is in a group that the other collides with.
     #[inline(always)]
     #[must_use]

@@ -9,7 +9,7 @@ mod places;
 mod read_ahead;
 
 pub use aabb::Aabb;
-pub(crate) use excluded::{ExcludedPairs, PairFilter, PairRules};
+pub(crate) use excluded::{ExcludedPairs, NumberHasher, PairFilter, PairRules};
 pub use groups::Groups;
 pub use motion::Motion;
 #[doc(hidden)]

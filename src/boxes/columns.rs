@@ -34,16 +34,19 @@ impl BoxWorld {
 
     /// Gives present boxes valid bounds.
     fn move_all(&mut self, ids: &[BodyId], bounds: &[Aabb]) {
-        let is_dynamic = |id: &BodyId| self.dynamic[id.slot()];
+        let row_of = |id: &BodyId| self.ids.row_of(id.slot() as u32);
+        let is_dynamic = |id: &BodyId| self.dynamic[row_of(id)];
         // Whether bounds are equal is of no use if the next cull finds all pairs anyway.
         if self.movers.are_many() && ids.iter().all(is_dynamic) {
             let all = self.bounds.as_mut_slice();
             for (id, &bounds) in ids.iter().zip(bounds) {
-                all[id.slot()] = bounds;
+                all[row_of(id)] = bounds;
             }
         } else {
             let boxes = ids.iter().zip(bounds);
-            boxes.for_each(|(id, &bounds)| self.move_to(id.slot(), bounds));
+            boxes.for_each(|(id, &bounds)| {
+                self.move_to(self.ids.row_of(id.slot() as u32), bounds);
+            });
         }
     }
 

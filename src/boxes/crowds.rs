@@ -1,10 +1,11 @@
 //! Crowds of boxes: pairs in portions, a limit to their number, and the release of memory.
 
 use super::BoxWorld;
+use crate::bodies::{Aabb, Groups};
 use crate::culler::CullError;
 use crate::pairs::PairList;
 use crate::strategy::Output;
-use crate::world::{WorldError, WorldPairs, shrink_column};
+use crate::world::{Ids, WorldError, WorldPairs, renumber_column, renumbered_pairs};
 
 impl BoxWorld {
     /// Culls as [`Self::cull`] does and passes the pairs to `take`, about 65,000 at a time. Returns
@@ -21,10 +22,9 @@ impl BoxWorld {
         &mut self,
         mut take: impl FnMut(WorldPairs<'_>) + Send,
     ) -> Result<u64, WorldError> {
-        // Those of bodies that are there don't change in a cull.
-        let generation = self.ids.generation().clone();
+        let ids = self.ids.table().clone(); // those of present boxes don't change in a cull
         self.log.take(&self.ids);
-        self.cull_by_slots(|portion| take(WorldPairs::new(portion, &generation)))
+        self.cull_by_slots(|portion| take(WorldPairs::new(portion, &ids)))
     }
 
     /// Culls as [`Self::cull`] does, if there are at most `limit` pairs. Memory for more is never
@@ -44,7 +44,7 @@ impl BoxWorld {
             return Err(CullError::TooManyPairs { pairs, limit }.into());
         }
         self.log.put(kept, &self.ids);
-        self.movers.all_found();
+        self.all_found();
         Ok(self.log.pairs(&self.ids))
     }
 
@@ -65,18 +65,27 @@ impl BoxWorld {
         self.log.bytes() + self.frames.pair_bytes()
     }
 
-    /// Frees all memory except that of the present boxes and the last pairs. Use it after a crowd,
-    /// or when most of a world is gone. Free slots at the end are removed, too ([`Self::slots`]);
-    /// ids are still never reused. The next cull starts without lists, takes as long as a first
-    /// one, and reports the same pairs in the same order.
+    /// Frees all memory except that of the present boxes and the last pairs. Use it after a crowd.
+    /// Free slots at the end are removed, too ([`Self::slots`]); ids are still never reused. The
+    /// next cull starts without lists, takes as long as a first one, and reports the same pairs in
+    /// the same order. A world does this by itself when most of it is gone.
     pub fn shrink_to_fit(&mut self) {
         self.log.shrink_to_fit(&self.ids);
-        let slots = self.ids.shrink();
-        shrink_column(&mut self.bounds, slots);
-        shrink_column(&mut self.dynamic, slots);
-        shrink_column(&mut self.resting, slots);
-        shrink_column(&mut self.groups, slots);
-        self.excluded.shrink_to_fit();
+        self.renumber(Ids::compact);
+    }
+
+    /// Changes the rows of all columns, and frees what was kept about former ones. The pairs of the
+    /// last cull stay.
+    pub(super) fn renumber(&mut self, change: fn(&mut Ids) -> Vec<u32>) {
+        self.log.outlive_rows(&self.ids);
+        let plan = change(&mut self.ids);
+        renumber_column(&mut self.bounds, &plan, Aabb::default());
+        renumber_column(&mut self.dynamic, &plan, true);
+        renumber_column(&mut self.resting, &plan, false);
+        renumber_column(&mut self.groups, &plan, Groups::ALL);
+        let excluded = self.excluded.sorted().into_iter().map(|pair| (pair, ()));
+        let excluded = renumbered_pairs(excluded, &plan).into_iter().map(|(pair, ())| pair);
+        self.excluded = excluded.collect();
         self.count_groups();
         self.movers.forget();
         self.frames.forget();

@@ -37,12 +37,33 @@ impl BoxWorld {
         true
     }
 
+    /// Notes that a cull has found all pairs, and prepares the next one if few boxes will change
+    /// until then.
+    pub(super) fn all_found(&mut self) {
+        self.movers.all_found();
+        if self.movers.expect_few(&self.ids) {
+            self.warm_up();
+        }
+    }
+
+    /// Prepares what the next cull needs if few boxes change until then.
+    pub(super) fn warm_up(&mut self) {
+        self.log.keep_by_body(&self.ids);
+        let index = in_default_mode(|| self.index_of_all());
+        self.movers.take_index(index);
+    }
+
+    /// An index of all present boxes.
+    fn index_of_all(&self) -> BoxIndex {
+        let present = self.ids.filled().map(|slot| self.indexed(slot as u32));
+        BoxIndex::of(present, self.ids.len())
+    }
+
     /// Moves changed boxes in the index, and lists the partners of each.
     fn find_changed(&mut self, most: usize) -> bool {
         let mut movers = std::mem::take(&mut self.movers);
         if movers.need_index() {
-            let present = self.ids.iter().map(|id| self.indexed(id.slot() as u32));
-            movers.take_index(BoxIndex::of(present, self.ids.len()));
+            movers.take_index(self.index_of_all());
         }
         let rules = PairRules { groups: &self.groups, excluded: &self.excluded };
         let work = movers.find(|slot| self.indexed(slot), rules, most);

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::BoxWorld;
 use crate::bodies::{Aabb, Groups};
 use crate::world::{
-    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, check_length, flag_column,
-    flagged_slots, restored_excluded,
+    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, excluded_slots, flag_column,
+    flagged_slots, restored_column, restored_excluded,
 };
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
@@ -36,15 +36,17 @@ impl BoxWorld {
     #[must_use]
     pub fn snapshot(&self) -> BoxWorldSnapshot {
         let bits = |aabb: &Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f32::to_bits));
+        let rows = || self.ids.filled();
+        let log = self.log.to_log(&self.ids);
         BoxWorldSnapshot {
             version: Version,
             ids: IdsSnapshot::of(&self.ids),
-            bounds: self.bounds.iter().map(bits).collect(),
-            dynamic: self.dynamic.clone(),
-            resting: flagged_slots(&self.resting),
-            groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
-            pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
-            excluded: self.excluded.sorted(),
+            bounds: rows().map(|row| bits(&self.bounds[row])).collect(),
+            dynamic: rows().map(|row| self.dynamic[row]).collect(),
+            resting: flagged_slots(&self.resting, &self.ids),
+            groups: rows().map(|row| self.groups[row]).map(|g| [g.member, g.mask]).collect(),
+            pairs: PairsSnapshot::of(&log, self.movers.all_changed(), &self.ids),
+            excluded: excluded_slots(&self.excluded, &self.ids),
         }
     }
 
@@ -55,33 +57,30 @@ impl BoxWorld {
     /// # Errors
     /// The snapshot is inconsistent. The world stays unchanged.
     pub fn restore(&mut self, snapshot: &BoxWorldSnapshot) -> Result<(), SnapshotError> {
-        let ids = snapshot.ids.restored()?;
-        for (column, entries) in [
-            ("bounds", snapshot.bounds.len()),
-            ("dynamic", snapshot.dynamic.len()),
-            ("groups", snapshot.groups.len()),
-        ] {
-            check_length(column, entries, ids.slots())?;
-        }
+        let (ids, plan) = snapshot.ids.restored()?;
         let corners = |corners: &[[u32; 3]; 2]| corners.map(|corner| corner.map(f32::from_bits));
-        let boxes = snapshot.bounds.iter().map(corners);
-        let bounds: Vec<Aabb> = boxes.map(|[min, max]| Aabb { min, max }).collect();
-        for (slot, aabb) in bounds.iter().enumerate() {
-            aabb.check(slot)?;
+        let bounds = snapshot.bounds.iter().map(corners).map(|[min, max]| Aabb { min, max });
+        let bounds = restored_column("bounds", bounds, &plan, Aabb::default())?;
+        for row in ids.filled() {
+            bounds[row].check(ids.id(row as u32).slot())?;
         }
-        let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
+        let dynamic = restored_column("dynamic", snapshot.dynamic.iter().copied(), &plan, true)?;
+        let groups = snapshot.groups.iter().map(|&[member, mask]| Groups { member, mask });
+        let groups = restored_column("groups", groups, &plan, Groups::ALL)?;
+        let (log, changed) = snapshot.pairs.restored(&ids)?;
         let excluded = restored_excluded(&snapshot.excluded, &ids)?;
-        let resting = flag_column(&snapshot.resting, ids.slots(), "at rest")?;
+        let resting = flag_column(&snapshot.resting, &ids, "at rest")?;
 
-        (self.ids, self.log, self.bounds) = (ids, log, bounds);
-        self.dynamic.clone_from(&snapshot.dynamic);
-        self.resting = resting;
+        (self.ids, self.log, self.bounds) = (ids, LivePairs::of(log), bounds);
+        (self.dynamic, self.resting, self.groups) = (dynamic, resting, groups);
         self.excluded = excluded;
-        let groups = snapshot.groups.iter();
-        self.groups = groups.map(|&[member, mask]| Groups { member, mask }).collect();
         self.count_groups();
         self.movers.forget();
         self.replaced = true;
+        if let Some(changed) = changed {
+            self.movers.resume(&changed, &self.ids);
+            self.warm_up();
+        }
         Ok(())
     }
 }

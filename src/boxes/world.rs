@@ -126,9 +126,13 @@ impl BoxWorld {
     /// numbered.
     pub fn insert(&mut self, body: impl Into<BoxBody>) -> Result<BodyId, WorldError> {
         let body = body.into();
-        let slot = self.ids.next();
+        let slot = self.ids.next_slot();
         check_number(slot + 1)?;
         body.bounds.check(slot)?;
+        if self.ids.need_rows() {
+            self.renumber(Ids::add_rows);
+        }
+        let slot = self.ids.next();
         if self.ids.take() {
             self.bounds.push(body.bounds);
             self.dynamic.push(true);
@@ -146,10 +150,13 @@ impl BoxWorld {
     /// # Errors
     /// The box has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.ids.remove(id)?;
-        self.excluded.remove_all(id.slot() as u32);
-        self.movers.note(id.slot(), &self.ids);
+        let slot = self.ids.remove(id)?;
+        self.excluded.remove_all(slot as u32);
+        self.movers.note(slot, &self.ids);
         self.replaced = true;
+        if self.ids.are_sparse() {
+            self.renumber(Ids::compact);
+        }
         Ok(())
     }
 
@@ -174,7 +181,13 @@ impl BoxWorld {
 
     /// All present boxes, sorted by slot.
     pub fn bodies(&self) -> impl Iterator<Item = (BodyId, BoxBody)> + '_ {
-        self.ids().map(|id| (id, self.body_at(id.slot())))
+        self.rows().map(|(_, id, body)| (id, body))
+    }
+
+    /// All present boxes, sorted by slot, each with its row: no row is much greater than the number
+    /// of boxes.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (usize, BodyId, BoxBody)> + '_ {
+        self.ids.filled().map(|row| (row, self.ids.id(row as u32), self.body_at(row)))
     }
 
     /// Changes any properties of a box. It costs nothing if they are equal to the present ones.
@@ -183,14 +196,19 @@ impl BoxWorld {
     /// The box has been removed, or as [`Self::insert`].
     pub fn set(&mut self, id: BodyId, body: impl Into<BoxBody>) -> Result<(), WorldError> {
         let (slot, body) = (self.ids.slot(id)?, body.into());
-        body.bounds.check(slot)?;
-        self.set_checked(slot, body);
+        body.bounds.check(id.slot())?;
+        self.set_at(slot, body);
         Ok(())
     }
 
     /// [`Self::set`] of a present box to a valid one.
     #[inline]
-    pub(crate) fn set_checked(&mut self, slot: usize, body: BoxBody) {
+    pub(crate) fn set_checked(&mut self, id: BodyId, body: BoxBody) {
+        self.set_at(self.ids.row_of(id.slot() as u32), body);
+    }
+
+    #[inline]
+    fn set_at(&mut self, slot: usize, body: BoxBody) {
         let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.dynamic[slot]);
         let is_same = body.bounds.has_bits_of(&self.bounds[slot])
             && is_dynamic == was_dynamic
@@ -210,7 +228,7 @@ impl BoxWorld {
     #[inline]
     pub fn set_bounds(&mut self, id: BodyId, bounds: Aabb) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
-        bounds.check(slot)?;
+        bounds.check(id.slot())?;
         self.move_to(slot, bounds);
         Ok(())
     }
@@ -237,6 +255,7 @@ impl BoxWorld {
         self.dynamic[slot] = body.motion.is_dynamic();
         self.resting[slot] = body.motion == Motion::Resting;
         let former = std::mem::replace(&mut self.groups[slot], body.groups);
+        self.replaced |= former.collide_with_none() != body.groups.collide_with_none();
         self.grouped += usize::from(body.groups != Groups::ALL);
         self.grouped -= usize::from(former != Groups::ALL);
     }
@@ -260,7 +279,7 @@ impl BoxWorld {
             self.cull_into(Output::List(&mut list))?;
             CullError::check_memory(&mut list)?;
             self.log.put(list, &self.ids);
-            self.movers.all_found();
+            self.all_found();
         }
         Ok(self.log.pairs(&self.ids))
     }
@@ -269,7 +288,7 @@ impl BoxWorld {
     pub(super) fn cull_into(&mut self, output: Output<'_>) -> Result<(), WorldError> {
         self.movers.lose_pairs();
         if std::mem::take(&mut self.replaced) {
-            self.frames.replace(&self.dynamic, self.ids.present());
+            self.frames.replace(&self.dynamic, &self.ids.colliding(&self.groups));
         }
         self.ids.settle();
         let groups = (self.grouped > 0).then_some(&*self.groups);
@@ -311,7 +330,7 @@ impl BoxWorld {
 
     /// The slot that the next box gets.
     pub(crate) fn next_slot(&self) -> usize {
-        self.ids.next()
+        self.ids.next_slot()
     }
 
     /// Counters summed over all culls: boxes updated, candidates tested, pairs reported.

@@ -41,7 +41,7 @@ use std::{ops::Range, time::Instant};
 
 #[cfg(feature = "shapes")]
 use self::{models::Models, needs::VolumeNeeds, sample::Sample};
-#[cfg(all(feature = "shapes", feature = "serde"))]
+#[cfg(feature = "shapes")]
 use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
 use crate::{
@@ -226,13 +226,11 @@ impl Culler {
 
     /// When each pair of the last frame was last refined, for the order
     /// [`Order::OldestAnswer`](crate::Order::OldestAnswer).
-    #[cfg(feature = "serde")]
     pub(crate) fn answers(&self) -> RefinementRanks {
         self.scratch.answers()
     }
 
     /// Replaces the refinement history by that of another culler.
-    #[cfg(feature = "serde")]
     pub(crate) fn set_answers(&mut self, answers: &RefinementRanks) {
         self.volumes.stamp = self.volumes.stamp.max(answers.latest());
         self.scratch.set_answers(answers);

@@ -75,6 +75,7 @@ impl Culler {
         let FoundPairs { bodies: some, others, ends, interest } = found;
         let start = Instant::now();
         self.place_sample(bodies, others);
+        self.count_sample_updates(others.len());
         let updated = Instant::now();
         if let Some(volume) = self.setup.scheme.first {
             let counted = self.keep_near(some.len(), others, ends);
@@ -126,8 +127,12 @@ impl Culler {
             }
             None => _ = update_spheres(executor, balls, &self.models.frames, bodies, places, range),
         }
+    }
+
+    /// Counts updates of the first test's volumes.
+    pub(crate) fn count_sample_updates(&mut self, updates: usize) {
         if let Some(volume) = self.setup.scheme.first {
-            self.counters.of_mut(volume).updates += more.len() as u64;
+            self.counters.of_mut(volume).updates += updates as u64;
         }
     }
 

@@ -28,7 +28,7 @@ impl Partners {
         }
         partners.by_number.resize(numbers, Run::default());
         let lengths = counts.iter().copied().filter(|&count| count > 0);
-        partners.lists.reserve_all(lengths);
+        partners.lists.reserve_growing(lengths);
         for (run, count) in partners.by_number.iter_mut().zip(counts) {
             if count > 0 {
                 partners.lists.reserve(run, count as usize);

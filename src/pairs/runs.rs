@@ -47,6 +47,11 @@ impl Run {
     pub fn len(self) -> usize {
         self.len as usize
     }
+
+    /// The first entries of the list.
+    pub fn first(self, len: usize) -> Self {
+        Self { len: len as u32, ..self }
+    }
 }
 
 /// The entries of many lists.
@@ -114,6 +119,12 @@ impl<T: Copy + Default> Runs<T> {
     pub fn reserve_all(&mut self, lengths: impl Iterator<Item = u32>) {
         let rooms = lengths.map(|len| room_for(len) as usize);
         self.allocate(rooms.sum());
+    }
+
+    /// As [`Self::reserve_all`], with a share more for lists that grow.
+    pub fn reserve_growing(&mut self, lengths: impl Iterator<Item = u32>) {
+        let rooms: usize = lengths.map(|len| room_for(len) as usize).sum();
+        self.allocate(rooms + rooms / GROWTH_DIVISOR);
     }
 
     /// Allocates this number of entries, and aligns the rooms to cache lines.

@@ -134,7 +134,7 @@ macro_rules! forward_images {
 
         #[inline]
         fn set_image(&mut self, id: BodyId, body: &$body, shift: [i32; 3], periods: &Periods) {
-            self.set_checked(id.slot(), $image(body, shift, periods));
+            self.set_checked(id, $image(body, shift, periods));
         }
 
         fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError> {

@@ -24,14 +24,15 @@ pub struct QueryIndex {
     pub(super) trees: [Tree; TREES],
     /// The origin of the boxes in the trees: 0 if bodies are boxes.
     pub(super) origin: [f64; 3],
-    /// The place of each slot's body in the trees.
+    /// The place in the trees of the body in each row of the world. After the world has changed its
+    /// rows, all bodies that have another row count as changed.
     homes: Vec<TreePlace>,
     pub(super) ids: Vec<BodyId>,
     pub(super) posed: Option<PosedBodies>,
     is_updated: bool,
 }
 
-/// The place of a slot's box.
+/// The place of a row's box.
 #[derive(Clone, Copy, Debug)]
 struct TreePlace {
     tree: u8,
@@ -135,61 +136,65 @@ impl QueryIndex {
         (self.origin, self.posed) = (origin, posed);
     }
 
-    /// The box of a body in the trees, if there is one, and its tree.
-    pub(super) fn bounds_of(&self, id: BodyId) -> Option<(usize, Aabb)> {
-        let home = self.homes.get(id.slot()).copied()?;
-        let is_there = home.place != NOWHERE && self.ids[id.slot()] == id;
+    /// The box in the trees of the body in a row, if it is this one, and its tree.
+    pub(super) fn bounds_of(&self, row: usize, id: BodyId) -> Option<(usize, Aabb)> {
+        let home = self.homes.get(row).copied()?;
+        let is_there = home.place != NOWHERE && self.ids[row] == id;
         is_there.then(|| {
             let tree = usize::from(home.tree);
             (tree, self.trees[tree].bounds(home.place))
         })
     }
 
-    /// Puts a body into a tree, with its present box.
-    pub(super) fn put(&mut self, id: BodyId, tree: usize, bounds: &Aabb) {
-        let slot = id.slot();
-        if self.homes.len() <= slot {
+    /// Puts the body in a row into a tree, with its present box.
+    pub(super) fn put(&mut self, row: usize, id: BodyId, tree: usize, bounds: &Aabb) {
+        if self.homes.len() <= row {
             let nowhere = TreePlace { tree: 0, place: NOWHERE };
-            self.homes.resize(slot + 1, nowhere);
-            self.ids.resize(slot + 1, id);
+            self.homes.resize(row + 1, nowhere);
+            self.ids.resize(row + 1, id);
         }
-        self.ids[slot] = id;
-        let home = self.homes[slot];
+        self.ids[row] = id;
+        let home = self.homes[row];
         if home.place != NOWHERE && usize::from(home.tree) == tree {
             return self.trees[tree].set(home.place, bounds);
         }
-        self.take_out(slot);
-        self.homes[slot] =
-            TreePlace { tree: tree as u8, place: self.trees[tree].push(slot as u32, bounds) };
+        self.take_out(row);
+        self.homes[row] =
+            TreePlace { tree: tree as u8, place: self.trees[tree].push(row as u32, bounds) };
     }
 
-    /// Removes the bodies of these slots.
-    pub(super) fn take_out_all(&mut self, slots: std::ops::Range<usize>) {
-        for slot in slots.start..slots.end.min(self.homes.len()) {
-            self.take_out(slot);
+    /// Removes the bodies of these rows.
+    pub(super) fn take_out_all(&mut self, rows: std::ops::Range<usize>) {
+        for row in rows.start..rows.end.min(self.homes.len()) {
+            self.take_out(row);
         }
     }
 
-    fn take_out(&mut self, slot: usize) {
-        let home = &mut self.homes[slot];
+    /// Removes the bodies of all rows from number `rows` on, and their memory if it is much.
+    pub(super) fn end(&mut self, rows: usize) {
+        self.take_out_all(rows..self.homes.len());
+        shorten(&mut self.homes, rows);
+        shorten(&mut self.ids, rows);
+        if let Some(posed) = &mut self.posed {
+            shorten(&mut posed.bodies, rows);
+        }
+    }
+
+    fn take_out(&mut self, row: usize) {
+        let home = &mut self.homes[row];
         let place = std::mem::replace(&mut home.place, NOWHERE);
         if place != NOWHERE {
             self.trees[usize::from(home.tree)].remove(place);
         }
     }
 
-    /// One more than the largest slot.
-    pub(super) fn slots(&self) -> usize {
-        self.homes.len()
-    }
-
     fn build(&mut self, tree: usize) {
-        let slots = self.homes.iter().enumerate();
-        let own = slots.filter(|(_, home)| home.place != NOWHERE && usize::from(home.tree) == tree);
-        let boxes = own.map(|(slot, home)| (slot as u32, self.trees[tree].bounds(home.place)));
+        let rows = self.homes.iter().enumerate();
+        let own = rows.filter(|(_, home)| home.place != NOWHERE && usize::from(home.tree) == tree);
+        let boxes = own.map(|(row, home)| (row as u32, self.trees[tree].bounds(home.place)));
         self.trees[tree] = Tree::build(boxes.collect());
-        for (place, &slot) in (0..).zip(self.trees[tree].numbers()) {
-            self.homes[slot as usize].place = place;
+        for (place, &row) in (0..).zip(self.trees[tree].numbers()) {
+            self.homes[row as usize].place = place;
         }
     }
 
@@ -208,6 +213,14 @@ impl QueryIndex {
     #[inline(always)]
     pub(super) fn id_at(&self, tree: usize, place: usize) -> BodyId {
         self.ids[self.trees[tree].numbers()[place] as usize]
+    }
+}
+
+/// Shortens a column, and frees its memory if most of it is not in use.
+fn shorten<T>(column: &mut Vec<T>, len: usize) {
+    column.truncate(len);
+    if column.capacity() > 4 * len {
+        column.shrink_to(2 * len);
     }
 }
 

@@ -32,6 +32,8 @@ pub struct QueryShape {
     reach: f64,
     /// The position of that origin relative to the point that poses place.
     pose_offset: [f64; 3],
+    /// That of the world's shape of which it is a copy.
+    stamp: u64,
 }
 
 impl QueryShape {
@@ -44,6 +46,7 @@ impl QueryShape {
             frame: &frame,
             radius: shape.ball.radius.into(),
             pose_offset: shape.pose_offset,
+            stamp: 0,
         })
     }
 
@@ -69,18 +72,14 @@ impl QueryShape {
             radius: volumes.radius,
             reach: frame.reach().into(),
             pose_offset: volumes.pose_offset,
+            stamp: volumes.stamp,
             ordop: ordop.clone(),
         }
     }
 
     /// Whether it was made from these volumes.
     pub(super) fn is_of(&self, volumes: ShapeVolumes<'_>) -> bool {
-        let ShapeVolumes { ordop, frame, .. } = volumes;
-        self.ordop == *ordop
-            && self.centre == frame.centre().map(f64::from)
-            && self.radius == volumes.radius
-            && self.reach == f64::from(frame.reach())
-            && self.pose_offset == volumes.pose_offset
+        self.stamp == volumes.stamp
     }
 
     /// No point is farther from the origin of the vertices.

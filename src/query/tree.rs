@@ -1,10 +1,10 @@
 //! A tree of boxes that is built once and then changed box by box: sixteen boxes form a group, and
 //! sixteen groups form a group of the level above, up to a single one.
 //!
-//! A build sorts boxes by size and along a Morton curve, so that groups are small. A box that moves
-//! changes the groups above it, in the same place; a new one is appended, and a removed one leaves
-//! its place empty. All of this makes groups wider, never wrong; [`Tree::is_worn`] returns whether
-//! rebuilding pays.
+//! A build sorts boxes by size and halves them along their widest axis, by number, so that groups
+//! are small however far apart some boxes are. A box that moves changes the groups above it, in the
+//! same place; a new one is appended, and a removed one leaves its place empty. All of this makes
+//! groups wider, never wrong; [`Tree::is_worn`] returns whether rebuilding pays.
 
 use crate::bodies::Aabb;
 use crate::simd::{Lanes, MAX_WIDTH};
@@ -19,11 +19,9 @@ const MOST_LEVELS: usize = 8;
 /// last.
 pub(super) const MOST_WAITING: usize = MOST_LEVELS * BOXES_PER_GROUP;
 
-/// Bits of a coordinate on the Morton curve.
-const CURVE_BITS: u32 = 20;
-
 /// Boxes of one class differ in size by no more than this power of two.
 const CLASS_OCTAVES: i32 = 3;
+const MOST_CLASSES: i32 = 16;
 
 /// A tree is worn when more than one in this many boxes was appended or removed …
 const BOXES_PER_LATE: usize = 8;
@@ -31,6 +29,10 @@ const LEAST_LATE_LIMIT: usize = 64;
 
 /// … or when its groups are this many times as wide as when it was built.
 const WORN_WIDTH_RATIO: f64 = 2.0;
+
+/// No group counts for more than this number of usual ones, so that few that are wide don't hide
+/// the others.
+const MOST_USUAL_WIDTHS: f64 = 16.0;
 
 /// Up to sixteen boxes, as columns.
 #[derive(Clone, Debug)]
@@ -114,21 +116,33 @@ pub(super) struct Tree {
     /// The half sides of all groups of boxes when the tree was built, and now.
     built_width: f64,
     width: f64,
+    /// The most that one group adds to them, once the tree was built.
+    most_width: Option<f64>,
 }
 
 impl Tree {
     /// Builds a tree and puts the boxes into the order of their places.
     pub fn build(mut boxes: Vec<(u32, Aabb)>) -> Self {
-        let curve = CurveOrder::through(boxes.iter().map(|(_, aabb)| aabb));
-        boxes.sort_by_cached_key(|(_, aabb)| curve.place_of(aabb));
+        put_in_order(&mut boxes);
         let mut tree = Self::default();
         for (number, aabb) in &boxes {
             tree.push(*number, aabb);
         }
         tree.settle();
         tree.late = 0;
+        let above = tree.levels.get(1).into_iter().flatten();
+        let mut widths: Vec<f64> =
+            above.flat_map(|group| group.lanes().map(|lane| group.width_of(lane))).collect();
+        widths.sort_unstable_by(f64::total_cmp);
+        tree.most_width = widths.get(widths.len() / 2).map(|usual| MOST_USUAL_WIDTHS * usual);
+        tree.width = widths.into_iter().map(|width| tree.counted(width)).sum();
         tree.built_width = tree.width;
         tree
+    }
+
+    /// The part of a group's width that counts.
+    fn counted(&self, width: f64) -> f64 {
+        self.most_width.map_or(width, |most| width.min(most))
     }
 
     /// The numbers by place, including those of removed boxes.
@@ -191,13 +205,15 @@ impl Tree {
             for group in &mut changed {
                 let (at, bounds) = (*group as usize, self.levels[level][*group as usize].bounds());
                 let above = &mut self.levels[level + 1][at / BOXES_PER_GROUP];
-                let former = above.width_of(at % BOXES_PER_GROUP);
+                let lane = at % BOXES_PER_GROUP;
+                let former = above.width_of(lane);
                 match bounds {
-                    Some(bounds) => above.set(at % BOXES_PER_GROUP, &bounds),
-                    None => above.present &= !(1 << (at % BOXES_PER_GROUP)),
+                    Some(bounds) => above.set(lane, &bounds),
+                    None => above.present &= !(1 << lane),
                 }
                 if level == 0 {
-                    self.width += above.width_of(at % BOXES_PER_GROUP) - former;
+                    let now = above.width_of(lane);
+                    self.width += self.counted(now) - self.counted(former);
                 }
                 *group /= BOXES_PER_GROUP as u32;
             }
@@ -277,62 +293,55 @@ impl Node {
     }
 }
 
-/// The order of boxes: those of similar size together, and near each other in space.
-struct CurveOrder {
-    lowest: [f64; 3],
-    per_unit: f64,
-    largest: i32,
+/// Puts boxes in order: those of similar size together, the largest first, and those near each
+/// other in space.
+fn put_in_order(boxes: &mut [(u32, Aabb)]) {
+    let largest = boxes.iter().map(|(_, aabb)| octave_of(aabb)).max().unwrap_or(0);
+    let class = |aabb: &Aabb| ((largest - octave_of(aabb)) / CLASS_OCTAVES).min(MOST_CLASSES - 1);
+    boxes.sort_by_key(|(_, aabb)| class(aabb));
+    let mut start = 0;
+    for boxes in boxes.chunk_by_mut(|(_, a), (_, b)| class(a) == class(b)) {
+        halve(boxes, start);
+        start += boxes.len();
+    }
 }
 
-impl CurveOrder {
-    fn through<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> Self {
-        let (mut lowest, mut highest, mut largest) =
-            ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], i32::MIN);
-        for aabb in boxes {
-            let centre = centre_of(aabb);
-            for axis in 0..3 {
-                lowest[axis] = lowest[axis].min(centre[axis]);
-                highest[axis] = highest[axis].max(centre[axis]);
-            }
-            largest = largest.max(octave_of(aabb));
+/// Sorts boxes, which have the places from `start` on, into halves along their widest axis, each
+/// half of whole groups of the highest possible level, and each half likewise.
+fn halve(boxes: &mut [(u32, Aabb)], start: usize) {
+    if boxes.len() <= BOXES_PER_GROUP {
+        return;
+    }
+    let levels = (boxes.len() - 1).ilog(BOXES_PER_GROUP);
+    let unit = BOXES_PER_GROUP.pow(levels);
+    let middle = (start + boxes.len() / 2 + unit / 2) / unit * unit - start;
+    let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+    for (_, aabb) in &*boxes {
+        for (axis, [lowest, highest]) in range.iter_mut().enumerate() {
+            let centre = centre_of(aabb, axis);
+            (*lowest, *highest) = (lowest.min(centre), highest.max(centre));
         }
-        let widest = (0..3)
-            .fold(f64::MIN_POSITIVE, |widest: f64, axis| widest.max(highest[axis] - lowest[axis]));
-        Self { lowest, per_unit: f64::from((1_u32 << CURVE_BITS) - 1) / widest, largest }
     }
-
-    fn place_of(&self, aabb: &Aabb) -> u64 {
-        let centre = centre_of(aabb);
-        let class = (self.largest - octave_of(aabb)) / CLASS_OCTAVES;
-        let along = |axis: usize| ((centre[axis] - self.lowest[axis]) * self.per_unit) as u64;
-        let place = (0..3).fold(0, |place, axis| place | spread(along(axis)) << axis);
-        (class.min(15) as u64) << (3 * CURVE_BITS) | place
-    }
+    let width = range.map(|[lowest, highest]| highest - lowest);
+    let wider = |a: usize, b: usize| if width[b] > width[a] { b } else { a };
+    let axis = wider(wider(0, 1), 2);
+    let by_centre = |(_, a): &(u32, Aabb), (_, b): &(u32, Aabb)| {
+        centre_of(a, axis).total_cmp(&centre_of(b, axis))
+    };
+    boxes.select_nth_unstable_by(middle, by_centre);
+    let (lower, upper) = boxes.split_at_mut(middle);
+    halve(lower, start);
+    halve(upper, start + middle);
 }
 
-fn centre_of(aabb: &Aabb) -> [f64; 3] {
-    std::array::from_fn(|axis| 0.5 * (f64::from(aabb.min[axis]) + f64::from(aabb.max[axis])))
+fn centre_of(aabb: &Aabb, axis: usize) -> f32 {
+    0.5 * aabb.min[axis] + 0.5 * aabb.max[axis]
 }
 
 /// The exponent of the longest side.
 fn octave_of(aabb: &Aabb) -> i32 {
     let longest = aabb.half_sides().into_iter().fold(0.0, f32::max);
     (longest.to_bits() >> (f32::MANTISSA_DIGITS - 1)) as i32
-}
-
-/// The bits of a number, moved to every third place.
-fn spread(number: u64) -> u64 {
-    let mut bits = number & 0x1f_ffff;
-    for (shift, mask) in [
-        (32, 0x001f_0000_0000_ffff),
-        (16, 0x001f_0000_ff00_00ff),
-        (8, 0x100f_00f0_0f00_f00f),
-        (4, 0x10c3_0c30_c30c_30c3),
-        (2, 0x1249_2492_4924_9249),
-    ] {
-        bits = (bits | bits << shift) & mask;
-    }
-    bits
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Culling one frame by a strategy: its inputs, its buffers, and the flow of pairs.
 
 use super::tasks::Tasks;
-#[cfg(feature = "serde")]
 use super::time_critical::RefinementRanks;
 use super::{SlotNames, Totals, batch, listing, output::Output, sequential, time_critical};
 use crate::bodies::{PairFilter, Places};
@@ -131,13 +130,11 @@ impl Scratch {
     }
 
     /// When each pair of the last frame was last refined.
-    #[cfg(feature = "serde")]
     pub fn answers(&self) -> RefinementRanks {
         self.history.answers()
     }
 
     /// Replaces the refinement history.
-    #[cfg(feature = "serde")]
     pub fn set_answers(&mut self, answers: &RefinementRanks) {
         self.history.set_answers(answers);
     }

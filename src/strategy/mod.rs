@@ -34,7 +34,7 @@ pub(crate) use interest::mark;
 pub(crate) use listing::{BoxInputs, BoxTest, list_boxes};
 pub(crate) use output::Output;
 pub(crate) use tasks::Tasks;
-#[cfg(all(feature = "shapes", feature = "serde"))]
+#[cfg(feature = "shapes")]
 pub(crate) use time_critical::RefinementRanks;
 
 /// What the names of the finder's slots are.

@@ -39,7 +39,6 @@ pub(super) struct History {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct RefinementRanks(pub Vec<([u32; 2], u32)>);
 
-#[cfg(feature = "serde")]
 impl RefinementRanks {
     /// The largest rank.
     pub fn latest(&self) -> u32 {
@@ -202,7 +201,6 @@ impl History {
     }
 
     /// The refinement history without frame numbers.
-    #[cfg(feature = "serde")]
     pub fn answers(&self) -> RefinementRanks {
         let mut answers: Vec<_> = self.refined.iter().map(|(&pair, &at)| (pair, at)).collect();
         let mut frames: Vec<u32> = answers.iter().map(|&(_, at)| at).collect();
@@ -218,7 +216,6 @@ impl History {
 
     /// Replaces the refinement history. Coming frames must have larger numbers than the latest
     /// rank.
-    #[cfg(feature = "serde")]
     pub fn set_answers(&mut self, answers: &RefinementRanks) {
         self.refined = answers.0.iter().copied().collect();
     }
@@ -248,7 +245,6 @@ mod tests {
     }
 
     /// Answers have ranks in the order of frames.
-    #[cfg(feature = "serde")]
     #[test]
     fn answer_ranks_follow_frames() {
         let mut history = History::default();

@@ -39,6 +39,16 @@ impl World {
         true
     }
 
+    /// Prepares what the next cull needs if few bodies change until then.
+    pub(super) fn warm_up(&mut self) {
+        if self.culler.judges_pairs_alone() {
+            self.log.keep_by_body(&self.ids);
+            let index = in_default_mode(|| self.index_of_all());
+            self.movers.take_index(index);
+            self.read_bounds();
+        }
+    }
+
     /// Moves changed bodies in the index, and lists the partners of each.
     fn find_changed(&mut self, most: usize) -> bool {
         if self.place_changed().is_err() || !self.movers.are_few() {
@@ -47,9 +57,11 @@ impl World {
         let mut movers = std::mem::take(&mut self.movers);
         if movers.need_index() {
             movers.take_index(self.index_of_all());
+            self.culler.count_sample_updates(self.ids.len());
         }
         let count = movers.put_gone_last(&self.ids);
         let boxes = self.culler.boxes_of(&self.bodies, &movers.changed()[..count]);
+        self.culler.count_sample_updates(count);
         let mut boxes = boxes.into_iter();
         let box_of = |slot| self.indexed(slot, boxes.next());
         let rules = PairRules { groups: &self.groups, excluded: self.culler.excluded() };
@@ -71,7 +83,7 @@ impl World {
 
     /// An index of all present bodies.
     fn index_of_all(&mut self) -> BoxIndex {
-        let all: Vec<u32> = self.ids.iter().map(|id| id.slot).collect();
+        let all: Vec<u32> = self.ids.filled().map(|slot| slot as u32).collect();
         let boxes = self.culler.boxes_of(&self.bodies, &all);
         let boxes = all.iter().zip(&boxes);
         let indexed = boxes.map(|(&slot, &aabb)| self.indexed(slot, Some(aabb)));

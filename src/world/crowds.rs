@@ -1,9 +1,9 @@
 //! Crowds: pairs in portions, a limit to their number, and the release of memory.
 
-use super::ids::shrink_column;
 use super::local_origins::Origins;
 use super::pair_log::WorldPairs;
-use super::{World, WorldError};
+use super::{Groups, Ids, World, WorldError, renumber_column, renumbered_pairs};
+use crate::strategy::RefinementRanks;
 
 impl World {
     /// Culls as [`Self::cull`] does and passes the pairs to `take`, about 65,000 at a time. Returns
@@ -24,9 +24,9 @@ impl World {
     ) -> Result<u64, WorldError> {
         self.prepare()?;
         self.log.take(&self.ids);
-        let generation = self.ids.generation();
+        let ids = self.ids.table();
         let pairs = self.culler.cull_in_portions(&self.bodies, |portion| {
-            take(WorldPairs::new(portion, generation));
+            take(WorldPairs::new(portion, ids));
         });
         Ok(pairs?)
     }
@@ -52,32 +52,45 @@ impl World {
     }
 
     /// Frees all memory except that of the present bodies and shapes and the last pairs. Use it
-    /// after a crowd, or when most of a world is gone. Free slots at the end are removed, too
-    /// ([`Self::slots`]); ids are still never reused. The next cull starts without lists, takes as
-    /// long as a first one, and reports the same pairs in the same order.
+    /// after a crowd. Free slots at the end are removed, too ([`Self::slots`]); ids are still never
+    /// reused. The next cull starts without lists, takes as long as a first one, and reports the
+    /// same pairs in the same order. A world does this by itself when most of it is gone.
     pub fn shrink_to_fit(&mut self) {
         if self.place().is_ok() {
             self.sweep_margins(false);
         }
         self.log.shrink_to_fit(&self.ids);
-        let slots = self.ids.shrink();
-        shrink_column(&mut self.bodies.shape, slots);
-        shrink_column(&mut self.bodies.dynamic, slots);
-        shrink_column(&mut self.bodies.rotation, slots);
-        shrink_column(&mut self.bodies.translation, slots);
-        shrink_column(&mut self.resting, slots);
-        shrink_column(&mut self.is_of_interest, slots);
-        shrink_column(&mut self.shape, slots);
-        shrink_column(&mut self.translation, slots);
-        shrink_column(&mut self.margin, slots);
-        shrink_column(&mut self.rounded, slots);
-        shrink_column(&mut self.groups, slots);
+        self.renumber(Ids::compact);
         let shapes = self.shape_numbers();
-        shrink_column(&mut self.shapes, shapes);
-        shrink_column(&mut self.models, shapes);
+        self.shapes.truncate(shapes);
+        self.shapes.shrink_to_fit();
+        self.models.truncate(shapes);
+        self.models.shrink_to_fit();
         self.interest.shrink_to_fit();
         self.margins.shrink_to_fit();
-        self.culler.excluded_mut().shrink_to_fit();
+    }
+
+    /// Changes the rows of all columns, and frees what was kept about former ones. The pairs of the
+    /// last cull stay.
+    pub(super) fn renumber(&mut self, change: fn(&mut Ids) -> Vec<u32>) {
+        self.log.outlive_rows(&self.ids);
+        let plan = change(&mut self.ids);
+        renumber_column(&mut self.bodies.shape, &plan, 0);
+        renumber_column(&mut self.bodies.dynamic, &plan, true);
+        renumber_column(&mut self.bodies.rotation, &plan, [0.0; 4]);
+        renumber_column(&mut self.bodies.translation, &plan, [0.0; 3]);
+        renumber_column(&mut self.resting, &plan, false);
+        renumber_column(&mut self.is_of_interest, &plan, false);
+        renumber_column(&mut self.shape, &plan, 0);
+        renumber_column(&mut self.translation, &plan, [0.0; 3]);
+        renumber_column(&mut self.margin, &plan, 0.0);
+        renumber_column(&mut self.rounded, &plan, false);
+        renumber_column(&mut self.groups, &plan, Groups::ALL);
+        let answers = renumbered_pairs(self.culler.answers().0, &plan);
+        self.culler.set_answers(&RefinementRanks(answers));
+        let excluded = self.culler.excluded().sorted().into_iter().map(|pair| (pair, ()));
+        let excluded = renumbered_pairs(excluded, &plan).into_iter().map(|(pair, ())| pair);
+        *self.culler.excluded_mut() = excluded.collect();
         self.movers.forget();
         self.origins = Origins::default();
         self.culler.forget();

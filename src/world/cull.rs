@@ -38,6 +38,9 @@ impl World {
         self.log.put(list, &self.ids);
         outcome?;
         self.movers.all_found();
+        if self.movers.expect_few(&self.ids) {
+            self.warm_up();
+        }
         Ok(())
     }
 
@@ -48,7 +51,7 @@ impl World {
         in_default_mode(|| self.place())?;
         self.sweep_margins(true);
         if std::mem::take(&mut self.replaced) {
-            self.culler.exchange(&self.bodies, self.ids.present());
+            self.culler.exchange(&self.bodies, &self.ids.colliding(&self.groups));
             if !self.interest.is_empty() {
                 self.look(); // another body may have taken the slot of one that was of interest
             }

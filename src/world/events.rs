@@ -1,5 +1,6 @@
 //! Events between two culls: found by merging their lists, or listed if little has changed.
 
+use std::cmp::Ordering;
 use std::iter::Peekable;
 use std::sync::Arc;
 
@@ -40,7 +41,7 @@ pub struct Events {
 #[derive(Clone, Debug)]
 pub(super) enum CurrentPairs {
     List(Arc<ReportedPairs>),
-    Partners { slots: Arc<Partners>, generation: Arc<Vec<u32>> },
+    Partners { slots: Arc<Partners>, ids: Arc<Vec<BodyId>> },
 }
 
 /// The difference of the former cull's pairs.
@@ -68,7 +69,7 @@ impl CurrentPairs {
     pub fn pairs(&self) -> WorldPairs<'_> {
         match self {
             Self::List(list) => list.pairs(),
-            Self::Partners { slots, generation } => WorldPairs::of_partners(slots, generation),
+            Self::Partners { slots, ids } => WorldPairs::of_partners(slots, ids),
         }
     }
 }
@@ -144,9 +145,8 @@ fn changes_between(before: &ReportedPairs, now: &ReportedPairs) -> Option<PairDi
     };
     // Bodies are looked up at the end, because that misses the caches.
     let named = |keys: Vec<u64>, reported: &ReportedPairs| {
-        let ids = reported.generation.as_slice();
         let pairs = keys.into_iter().map(pair_of);
-        pairs.map(|pair| BodyId::pair_of(pair, ids)).collect()
+        pairs.map(|pair| BodyId::pair_of(pair, &reported.table)).collect()
     };
     Some(PairDifference::Listed { begun: named(begun, now), ended: named(ended, before) })
 }
@@ -158,40 +158,40 @@ fn changes_of_lists(
     now: &ReportedPairs,
     most: usize,
 ) -> Option<[Vec<u64>; 2]> {
-    let are_of_one_time = Arc::ptr_eq(&before.generation, &now.generation);
+    let are_of_one_time = Arc::ptr_eq(&before.table, &now.table);
     let in_step = || before.out_of_step(now);
     let [old, new] = match are_of_one_time.then(in_step).flatten() {
         Some(alone) => alone.map(SortedKeys::Copied),
         None => [before, now].map(|reported| reported.keys(before.are_read())),
     };
-    let is_same = |key: u64| {
-        let ids = |reported: &ReportedPairs| BodyId::pair_of(pair_of(key), &reported.generation);
-        are_of_one_time || ids(before) == ids(now)
-    };
-    changes_in_order(&old, &new, is_same, most)
+    if are_of_one_time {
+        return changes_in_order(&old, &new, |[was, is]| was.cmp(&is), most);
+    }
+    let ids = |key, reported: &ReportedPairs| BodyId::pair_of(pair_of(key), &reported.table);
+    changes_in_order(&old, &new, |[was, is]| ids(was, before).cmp(&ids(is, now)), most)
 }
 
-/// The keys that have begun and ended from one list to another. Equal slots are equal bodies,
-/// unless a slot was reused in between. `None` if there are more than `most`.
+/// The keys that have begun and ended from one list to another, of which `order` compares the
+/// bodies of two keys. `None` if there are more than `most`.
 fn changes_in_order(
     old: &SortedKeys<'_>,
     new: &SortedKeys<'_>,
-    is_same: impl Fn(u64) -> bool,
+    order: impl Fn([u64; 2]) -> Ordering,
     most: usize,
 ) -> Option<[Vec<u64>; 2]> {
     let (mut begun, mut ended) = (Vec::new(), Vec::new());
     let (mut i, mut j) = (0, 0);
     while i < old.len() && j < new.len() {
         let (was, is) = (old.at(i), new.at(j));
-        if was == is && is_same(is) {
+        let order = order([was, is]);
+        if order.is_eq() {
             (i, j) = (i + 1, j + 1);
             continue;
         }
-        if was <= is {
+        if order.is_lt() {
             ended.push(was);
             i += 1;
-        }
-        if is <= was {
+        } else {
             begun.push(is);
             j += 1;
         }

@@ -28,6 +28,8 @@ pub(crate) struct LivePairs {
 struct PairsByBody {
     /// Shared with events.
     partners: Arc<Partners>,
+    /// The bodies of rows, if the world has changed its rows since the last cull.
+    table: Option<Arc<Vec<BodyId>>>,
     /// `None` if there were no pairs when events were last read, or if events have never been read:
     /// all pairs have begun since then.
     changes: Option<ChangeLog>,
@@ -67,8 +69,8 @@ impl LivePairs {
             let log = std::mem::take(&mut self.log);
             let changes = (!log.watched.is_empty())
                 .then(|| ChangeLog::between(log.watched, log.last.clone()));
-            let partners = Partners::of(log.last.slots(), ids.slots());
-            self.live = Some(PairsByBody { partners: Arc::new(partners), changes });
+            let partners = Partners::of(log.last.slots(), ids.rows());
+            self.live = Some(PairsByBody { partners: Arc::new(partners), table: None, changes });
         }
     }
 
@@ -90,16 +92,16 @@ impl LivePairs {
     pub fn change<'a>(&'a mut self, ids: &'a Ids) -> Option<PairChanges<'a>> {
         let live = self.live.as_mut()?;
         let partners = Arc::make_mut(&mut live.partners);
-        partners.extend_to(ids.slots());
+        partners.extend_to(ids.rows());
         Some(PairChanges { partners, log: live.changes.as_mut(), ids })
     }
 
     /// Makes room for all slots.
     pub fn extend(&mut self, ids: &Ids) {
         if let Some(live) = &mut self.live
-            && !live.partners.has_room_for(ids.slots())
+            && !live.partners.has_room_for(ids.rows())
         {
-            Arc::make_mut(&mut live.partners).extend_to(ids.slots());
+            Arc::make_mut(&mut live.partners).extend_to(ids.rows());
         }
     }
 
@@ -118,11 +120,27 @@ impl LivePairs {
         let Some(live) = &mut self.live else {
             return self.log.events();
         };
-        let changes = match live.changes.replace(ChangeLog::default()) {
-            Some(changes) => changes.net(),
-            None => [live.pairs(ids).iter().collect(), Vec::new()],
-        };
-        live.events(changes, ids)
+        match live.changes.replace(ChangeLog::default()) {
+            Some(changes) => live.events(changes.net(), ids),
+            None => {
+                let change = PairDifference::default(); // all have begun
+                Events { change, ..live.events(Default::default(), ids) }
+            }
+        }
+    }
+
+    /// Keeps the pairs of the last cull, and those of the last events, while the world changes its
+    /// rows. Then all pairs must be found anew. Long lists aren't copied.
+    pub fn outlive_rows(&mut self, ids: &Ids) {
+        if let Some(live) = &mut self.live
+            && 2 * live.partners.len() > ids.rows()
+        {
+            live.table.get_or_insert_with(|| ids.table().clone());
+        } else {
+            self.log = self.to_log(ids);
+            self.live = None;
+        }
+        self.log.outlive_rows();
     }
 
     /// Bytes of the pairs.
@@ -143,10 +161,7 @@ impl LivePairs {
     /// The same pairs as lists. If nothing has changed since events were read, both are one list.
     pub fn to_log(&self, ids: &Ids) -> PairLog {
         let (last, watched) = match &self.live {
-            None => {
-                let watched = reported(self.log.watched.pairs().iter());
-                (self.log.last.clone(), Arc::new(watched))
-            }
+            None => (self.log.last.clone(), self.log.watched.compacted()),
             Some(live) => (Arc::new(live.last(ids)), Arc::new(live.watched(ids))),
         };
         let are_equal = last.pairs().iter().eq(watched.pairs());
@@ -156,23 +171,23 @@ impl LivePairs {
 }
 
 impl PairsByBody {
+    fn table<'a>(&'a self, ids: &'a Ids) -> &'a Arc<Vec<BodyId>> {
+        self.table.as_ref().unwrap_or(ids.table())
+    }
+
     fn last(&self, ids: &Ids) -> ReportedPairs {
-        ReportedPairs::sorted(self.partners.iter().collect(), ids.generation().clone())
+        ReportedPairs::sorted(self.partners.iter().collect(), self.table(ids).clone())
     }
 
     fn pairs<'a>(&'a self, ids: &'a Ids) -> WorldPairs<'a> {
-        WorldPairs::of_partners(&self.partners, ids.generation())
+        WorldPairs::of_partners(&self.partners, self.table(ids))
     }
 
     /// The events of the pairs that have begun and ended.
     fn events(&self, [begun, ended]: [Vec<[BodyId; 2]>; 2], ids: &Ids) -> Events {
-        Events {
-            now: CurrentPairs::Partners {
-                slots: self.partners.clone(),
-                generation: ids.generation().clone(),
-            },
-            change: PairDifference::Listed { begun, ended },
-        }
+        let slots = self.partners.clone();
+        let now = CurrentPairs::Partners { slots, ids: self.table(ids).clone() };
+        Events { now, change: PairDifference::Listed { begun, ended } }
     }
 
     /// The pairs of the last call of `events`.
@@ -181,26 +196,11 @@ impl PairsByBody {
             return ReportedPairs::default();
         };
         let events = self.events(changes.net(), ids);
-        reported(events.iter().filter_map(|event| match event {
+        ReportedPairs::compact(events.iter().filter_map(|event| match event {
             Event::Begun(_) => None,
             Event::Persisting(pair) | Event::Ended(pair) => Some(pair),
         }))
     }
-}
-
-/// Sorted pairs as a list, with the generations of only their slots.
-fn reported(pairs: impl Iterator<Item = [BodyId; 2]>) -> ReportedPairs {
-    let (mut slots, mut generation) = (PairList::default(), Vec::new());
-    for pair in pairs {
-        for id in pair {
-            if generation.len() <= id.slot() {
-                generation.resize(id.slot() + 1, 0);
-            }
-            generation[id.slot()] = id.generation;
-        }
-        slots.push(pair[0].slot, pair[1].slot);
-    }
-    ReportedPairs::sorted(slots, Arc::new(generation))
 }
 
 /// Changes pairs. A change is made in the lists of both bodies, and logged once.
@@ -303,6 +303,9 @@ mod tests {
             }
             if below(9) == 0 {
                 live.shrink_to_fit(&ids);
+                assert!(live.pairs(&ids).iter().eq(lists.pairs()), "{frame}");
+                live.take(&ids);
+                live.put(list(), &ids);
             }
         }
     }

@@ -74,10 +74,43 @@ impl Default for Origins {
     }
 }
 
+impl Origins {
+    /// The origin of the last cull, if there was one for all, in bits; the world's is `None`.
+    #[cfg(feature = "serde")]
+    pub fn saved(&self) -> Option<Option<[u64; 3]>> {
+        match &self.local {
+            LocalOrigins::World => Some(None),
+            LocalOrigins::One(region) => Some(Some(region.origin.map(f64::to_bits))),
+            LocalOrigins::Many(_) => None,
+        }
+    }
+
+    /// The origin that was saved.
+    #[cfg(feature = "serde")]
+    pub fn restored(origin: Option<[u64; 3]>) -> Self {
+        let one = |origin: [u64; 3]| {
+            LocalOrigins::One(Region { origin: origin.map(f64::from_bits), corner: [0.0; 3] })
+        };
+        Self { local: origin.map_or(LocalOrigins::World, one), bounds: None }
+    }
+}
+
 impl World {
+    /// Places all bodies about the origins of the last cull.
+    #[cfg(feature = "serde")]
+    pub(super) fn place_again(&mut self) -> Result<(), WorldError> {
+        self.place_all(self.origins.local.clone())
+    }
+
+    /// Reads the bounds of all bodies, before single ones change.
+    pub(super) fn read_bounds(&mut self) {
+        let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(range));
+        self.origins.bounds = Some(BoundsTree::new(self.ids.rows(), of_slots));
+    }
+
     /// Places all bodies about local origins, in the models that their margins and rounding need.
     pub(super) fn place(&mut self) -> Result<(), WorldError> {
-        let local = LocalOrigins::of(self.placed_in(0..self.ids.slots()));
+        let local = LocalOrigins::of(self.placed_in(0..self.ids.rows()));
         self.origins.bounds = None;
         self.place_all(local)
     }
@@ -85,7 +118,7 @@ impl World {
     /// Places the bodies that have changed since the last cull, and all others if an origin has
     /// changed. Notes those whose place or model has changed.
     pub(super) fn place_changed(&mut self) -> Result<(), WorldError> {
-        let slots = self.ids.slots();
+        let slots = self.ids.rows();
         let bounds = self.origins.bounds.take();
         let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(range));
         let bounds = match bounds.filter(|bounds| bounds.has_room_for(slots)) {
@@ -118,7 +151,7 @@ impl World {
 
     /// Places all bodies about these origins, and notes those whose place or model changes.
     fn place_all(&mut self, local: LocalOrigins) -> Result<(), WorldError> {
-        for slot in 0..self.ids.slots() {
+        for slot in 0..self.ids.rows() {
             if self.ids.present()[slot] && self.place_body(slot, &local)? {
                 self.movers.note(slot, &self.ids);
             }
@@ -171,7 +204,7 @@ impl World {
 
     /// Number, translation and reach of the bodies in some slots.
     fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = PlacedBody> + Clone + '_ {
-        let slots = slots.start..slots.end.min(self.ids.slots());
+        let slots = slots.start..slots.end.min(self.ids.rows());
         let present = slots.filter(move |&slot| self.ids.present()[slot]);
         present.map(move |slot| {
             let (translation, composed) = self.composed(slot);
@@ -189,7 +222,7 @@ impl World {
         let (rotation, offset) = (self.bodies.rotation[slot], shape.pose_offset);
         let (place, error) = offset::compose(rotation, self.translation[slot], offset);
         let reach = offset::reach_about_pose(shape.reach.into(), offset);
-        (place, error + turn_error(self.is_rounded(slot), reach))
+        (place, error + turn_error(self.rounded[slot], reach))
     }
 }
 

@@ -91,15 +91,15 @@ pub use snapshot_parts::SnapshotError;
 
 #[cfg(feature = "shapes")]
 pub(crate) use self::digest::of as digest_of;
-pub(crate) use self::ids::{Ids, shrink_column};
+pub(crate) use self::ids::{Ids, renumber_column, renumbered_pairs};
 pub(crate) use self::live_pairs::LivePairs;
 pub(crate) use self::movers::Movers;
 #[cfg(feature = "shapes")]
 pub(crate) use self::shape_volumes::{ShapeVolumes, compose, reach_about_pose};
 #[cfg(feature = "serde")]
 pub(crate) use self::snapshot_parts::{
-    IdsSnapshot, PairsSnapshot, Version, check_length, flag_column, flagged_slots,
-    restored_excluded,
+    IdsSnapshot, PairsSnapshot, Version, excluded_slots, flag_column, flagged_slots,
+    restored_column, restored_excluded,
 };
 #[cfg(feature = "shapes")]
 use self::{
@@ -148,7 +148,7 @@ pub struct World {
     shape: Vec<u32>,
     translation: Vec<[f64; 3]>,
     margin: Vec<f32>,
-    /// Whether each slot's rotation was rounded from f64; slots beyond its end have none.
+    /// Whether each rotation was rounded from f64.
     rounded: Vec<bool>,
     groups: Vec<Groups>,
     margins: Margins,
@@ -223,11 +223,15 @@ impl World {
     /// # Errors
     /// The pose, shape or margin is outside of the contract.
     pub fn insert(&mut self, body: Body) -> Result<BodyId, WorldError> {
+        self.check(self.ids.next_slot(), &body)?;
+        if self.ids.need_rows() {
+            self.renumber(Ids::add_rows);
+        }
         let slot = self.ids.next();
-        self.check(slot, &body)?;
         if self.ids.take() {
             self.bodies.push(0, true, [0.0f32; 4], [0.0f32; 3]);
             self.resting.push(false);
+            self.rounded.push(false);
             self.is_of_interest.push(false);
             self.shape.push(0);
             self.translation.push([0.0; 3]);
@@ -247,12 +251,15 @@ impl World {
     /// # Errors
     /// The body has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), WorldError> {
-        self.ids.remove(id)?;
-        self.shapes[self.shape[id.slot()] as usize].bodies -= 1;
-        self.culler.excluded_mut().remove_all(id.slot);
-        self.is_of_interest[id.slot()] = false;
-        self.movers.note(id.slot(), &self.ids);
+        let slot = self.ids.remove(id)?;
+        self.shapes[self.shape[slot] as usize].bodies -= 1;
+        self.culler.excluded_mut().remove_all(slot as u32);
+        self.is_of_interest[slot] = false;
+        self.movers.note(slot, &self.ids);
         self.replaced = true;
+        if self.ids.are_sparse() {
+            self.renumber(Ids::compact);
+        }
         Ok(())
     }
 
@@ -277,7 +284,13 @@ impl World {
 
     /// All present bodies, sorted by slot.
     pub fn bodies(&self) -> impl Iterator<Item = (BodyId, Body)> + '_ {
-        self.ids().map(|id| (id, self.body_at(id.slot())))
+        self.rows().map(|(_, id, body)| (id, body))
+    }
+
+    /// All present bodies, sorted by slot, each with its row: no row is much greater than the
+    /// number of bodies.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (usize, BodyId, Body)> + '_ {
+        self.ids.filled().map(|row| (row, self.ids.id(row as u32), self.body_at(row)))
     }
 
     /// Changes any properties of a body. A pose may change by any amount: nothing is assumed about
@@ -288,16 +301,20 @@ impl World {
     /// The body has been removed, or the pose, shape or margin is outside of the contract.
     pub fn set(&mut self, id: BodyId, body: Body) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
-        self.check(slot, &body)?;
-        self.set_checked(slot, body);
+        self.check(id.slot(), &body)?;
+        self.set_at(slot, body);
         Ok(())
     }
 
     /// [`Self::set`] of a present body to one within the contract.
-    pub(crate) fn set_checked(&mut self, slot: usize, body: Body) {
+    pub(crate) fn set_checked(&mut self, id: BodyId, body: Body) {
+        self.set_at(self.ids.row_of(id.slot), body);
+    }
+
+    fn set_at(&mut self, slot: usize, body: Body) {
         let (is_dynamic, was_dynamic) = (body.motion.is_dynamic(), self.bodies.dynamic[slot]);
         let is_same = self.is_at(slot, body.rotation, body.translation)
-            && body.rounded == self.is_rounded(slot)
+            && body.rounded == self.rounded[slot]
             && body.margin.to_bits() == self.margin[slot].to_bits()
             && body.shape == self.shape[slot]
             && is_dynamic == was_dynamic
@@ -347,30 +364,15 @@ impl World {
         translation: [f64; 3],
     ) -> Result<(), WorldError> {
         let slot = self.ids.slot(id)?;
-        in_default_mode(|| check_pose(slot, &rotation, &translation))?;
-        if !self.is_at(slot, rotation, translation) || self.is_rounded(slot) != rounded {
+        in_default_mode(|| check_pose(id.slot(), &rotation, &translation))?;
+        if !self.is_at(slot, rotation, translation) || self.rounded[slot] != rounded {
             self.replaced |= !self.bodies.dynamic[slot];
             self.movers.note(slot, &self.ids);
             self.bodies.rotation[slot] = rotation;
             self.translation[slot] = translation;
-            self.set_rounded(slot, rounded);
+            self.rounded[slot] = rounded;
         }
         Ok(())
-    }
-
-    /// Whether the rotation of the body in a slot was rounded from f64.
-    #[inline]
-    fn is_rounded(&self, slot: usize) -> bool {
-        self.rounded.get(slot).is_some_and(|rounded| *rounded)
-    }
-
-    fn set_rounded(&mut self, slot: usize, rounded: bool) {
-        if rounded && self.rounded.len() <= slot {
-            self.rounded.resize(slot + 1, false);
-        }
-        if let Some(is_rounded) = self.rounded.get_mut(slot) {
-            *is_rounded = rounded;
-        }
     }
 
     /// Puts a body to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
@@ -398,9 +400,9 @@ impl World {
         }
         let former = std::mem::replace(&mut self.interest, ids.to_vec());
         for id in former.iter().chain(ids) {
-            if self.contains(*id) {
-                self.is_of_interest[id.slot()] = false;
-                self.movers.note(id.slot(), &self.ids);
+            if let Ok(slot) = self.ids.slot(*id) {
+                self.is_of_interest[slot] = false;
+                self.movers.note(slot, &self.ids);
             }
         }
         self.look();
@@ -427,7 +429,7 @@ impl World {
 
     /// The slot that the next body gets.
     pub(crate) fn next_slot(&self) -> usize {
-        self.ids.next()
+        self.ids.next_slot()
     }
 
     /// The pair finder in use: the chosen one, or the last choice of `auto`.
@@ -450,9 +452,8 @@ impl World {
 
     /// Marks the present bodies of interest, and passes them to the culler.
     fn look(&mut self) {
-        let living = |id: &BodyId| self.ids.slot(*id).is_ok();
-        let slots = self.interest.iter().filter(|id| living(id));
-        let slots: Vec<u32> = slots.map(|id| id.slot).collect();
+        let slots = self.interest.iter().filter_map(|id| self.ids.slot(*id).ok());
+        let slots: Vec<u32> = slots.map(|slot| slot as u32).collect();
         for &slot in &slots {
             self.is_of_interest[slot as usize] = true;
         }
@@ -460,11 +461,13 @@ impl World {
     }
 
     fn put(&mut self, slot: usize, body: Body) {
-        self.regrouped |= self.groups[slot] != body.groups;
+        let former = self.groups[slot];
+        self.regrouped |= former != body.groups;
+        self.replaced |= former.collide_with_none() != body.groups.collide_with_none();
         self.bodies.dynamic[slot] = body.motion.is_dynamic();
         self.resting[slot] = body.motion == Motion::Resting;
         self.bodies.rotation[slot] = body.rotation;
-        self.set_rounded(slot, body.rounded);
+        self.rounded[slot] = body.rounded;
         self.shape[slot] = body.shape;
         self.translation[slot] = body.translation;
         self.groups[slot] = body.groups;
@@ -477,7 +480,7 @@ impl World {
             motion: Motion::of(self.bodies.dynamic[slot], self.resting[slot]),
             rotation: self.bodies.rotation[slot],
             translation: self.translation[slot],
-            rounded: self.is_rounded(slot),
+            rounded: self.rounded[slot],
             groups: self.groups[slot],
             margin: self.margin[slot],
         }

@@ -101,7 +101,7 @@ impl Movers {
         if former != self.cull {
             self.changed.push(slot as u32);
             self.thawed += usize::from(former + 1 != self.cull);
-            self.are_many = self.changed.len() * BODIES_PER_CHANGE > ids.slots();
+            self.are_many = self.changed.len() * BODIES_PER_CHANGE > ids.rows();
         }
     }
 
@@ -123,6 +123,28 @@ impl Movers {
         self.number_next(2);
         self.are_many = false;
         self.pause = self.pause.saturating_sub(1);
+    }
+
+    /// The bodies that have changed since the last cull, if no others have. `None` if the pairs of
+    /// that cull can't be updated by them.
+    #[cfg(feature = "serde")]
+    pub fn all_changed(&self) -> Option<&[u32]> {
+        (!self.are_many).then_some(&self.changed)
+    }
+
+    /// Continues after a cull whose pairs are known, since which no bodies but these have changed.
+    #[cfg(feature = "serde")]
+    pub fn resume(&mut self, changed: &[u32], ids: &Ids) {
+        self.forget();
+        self.are_many = false;
+        changed.iter().for_each(|&slot| self.note(slot as usize, ids));
+    }
+
+    /// Whether an index should be made after a cull that found all pairs: many bodies have come or
+    /// gone, so the next frames will probably change few.
+    pub fn expect_few(&self, ids: &Ids) -> bool {
+        let are_many = ids.exchanged() * BODIES_PER_CHANGE > ids.rows();
+        are_many && !self.are_many && self.pause == 0 && self.index.is_none()
     }
 
     /// Notes that the pairs of the last cull are unknown until [`Self::all_found`].
@@ -224,19 +246,21 @@ impl Movers {
         for (number, indexed) in boxes.iter().enumerate() {
             let ahead = [3, 2, 1].map(|steps| boxes.get(number + steps * PREFETCH_DISTANCE));
             index.prefetch(ahead);
-            work += index.put(indexed);
+            index.put(indexed);
         }
         index.compact();
         self.found.clear();
         self.ends.clear();
         for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
             let (search, found, ends) = (&mut self.search, &mut self.found, &mut self.ends);
-            work += index.find_partners(seekers, rules, search, found, ends);
+            let left = most_work - work;
+            let read = index.find_partners(seekers, rules, search, found, ends, left);
             // A pair of two changed bodies is found twice.
-            if work > most_work || found.len() / 2 > most {
+            let Some(read) = read.filter(|_| found.len() / 2 <= most) else {
                 self.back_off();
                 return None;
-            }
+            };
+            work += read;
         }
         self.index = Some(index);
         Some(work)

@@ -12,7 +12,7 @@ use crate::pairs::{PairList, PairSorter, PartnerPairs, Partners};
 #[derive(Clone, Copy, Debug)]
 pub struct WorldPairs<'a> {
     slots: SlotPairs<'a>,
-    generation: &'a [u32],
+    ids: &'a [BodyId],
 }
 
 /// Pairs of slots, in one of their forms.
@@ -24,14 +24,14 @@ enum SlotPairs<'a> {
 }
 
 impl<'a> WorldPairs<'a> {
-    pub(crate) fn new(slots: &'a PairList, generation: &'a [u32]) -> Self {
+    pub(crate) fn new(slots: &'a PairList, ids: &'a [BodyId]) -> Self {
         let slots = SlotPairs::List(slots);
-        Self { slots, generation }
+        Self { slots, ids }
     }
 
-    pub(super) fn of_partners(slots: &'a Partners, generation: &'a [u32]) -> Self {
+    pub(super) fn of_partners(slots: &'a Partners, ids: &'a [BodyId]) -> Self {
         let slots = SlotPairs::Partners(slots);
-        Self { slots, generation }
+        Self { slots, ids }
     }
 
     /// Number of pairs.
@@ -59,7 +59,7 @@ impl<'a> WorldPairs<'a> {
             SlotPairs::ReportedPairs(reported) => SlotIter::List(in_list(reported.slots())),
             SlotPairs::Partners(partners) => SlotIter::Partners(partners.iter()),
         };
-        PairIds { slots, generation: self.generation }
+        PairIds { slots, ids: self.ids }
     }
 
     /// The pairs sorted by slots. The pairs of a world's cull already have this order; portions
@@ -84,7 +84,7 @@ impl<'a> IntoIterator for WorldPairs<'a> {
 #[derive(Clone, Debug)]
 pub struct PairIds<'a> {
     slots: SlotIter<'a>,
-    generation: &'a [u32],
+    ids: &'a [BodyId],
 }
 
 #[derive(Clone, Debug)]
@@ -100,7 +100,7 @@ impl Iterator for PairIds<'_> {
             SlotIter::List(list) => list.next().map(|(&first, &second)| [first, second])?,
             SlotIter::Partners(partners) => partners.next()?,
         };
-        Some(BodyId::pair_of([first, second], self.generation))
+        Some(BodyId::pair_of([first, second], self.ids))
     }
     fn size_hint(&self) -> (usize, Option<usize>) {
         match &self.slots {
@@ -115,7 +115,7 @@ impl ExactSizeIterator for PairIds<'_> {}
 impl ReportedPairs {
     /// The pairs with their ids.
     pub fn pairs(&self) -> WorldPairs<'_> {
-        WorldPairs { slots: SlotPairs::ReportedPairs(self), generation: &self.generation }
+        WorldPairs { slots: SlotPairs::ReportedPairs(self), ids: &self.table }
     }
 }
 
@@ -129,6 +129,8 @@ pub(crate) struct PairLog {
     /// The list of events before: its memory is reused once nothing reads it.
     spare: Option<Arc<ReportedPairs>>,
     sorter: Arc<Mutex<PairSorter>>,
+    /// Whether the lists are those of a larger world, and too long for this one.
+    are_long: bool,
 }
 
 impl PairLog {
@@ -141,6 +143,8 @@ impl PairLog {
     pub fn take(&mut self) -> PairList {
         let last = Arc::into_inner(std::mem::take(&mut self.last));
         let unread = last.or_else(|| Arc::into_inner(self.spare.take()?));
+        let are_long = std::mem::take(&mut self.are_long);
+        let unread = unread.filter(|_| !are_long);
         let mut list = unread.map(ReportedPairs::into_list).unwrap_or_default();
         list.clear();
         list
@@ -148,8 +152,8 @@ impl PairLog {
 
     /// Takes the pairs of a cull in any order.
     pub fn put(&mut self, slots: PairList, ids: &Ids) {
-        let (generation, sorter) = (ids.generation().clone(), self.sorter.clone());
-        self.last = Arc::new(ReportedPairs::found(slots, generation, sorter));
+        let (table, sorter) = (ids.table().clone(), self.sorter.clone());
+        self.last = Arc::new(ReportedPairs::found(slots, table, sorter));
     }
 
     /// The pairs of the last cull.
@@ -168,7 +172,7 @@ impl PairLog {
 
     /// Bytes of the lists of pairs.
     pub fn bytes(&self) -> usize {
-        let Self { last, watched, spare, sorter } = self;
+        let Self { last, watched, spare, sorter, .. } = self;
         let mut lists: Vec<_> = [last, watched].into_iter().chain(spare).collect();
         lists.sort_by_key(|list| Arc::as_ptr(list));
         lists.dedup_by_key(|list| Arc::as_ptr(list));
@@ -177,13 +181,22 @@ impl PairLog {
         lists.sum::<usize>() + sorter.bytes()
     }
 
+    /// Prepares for a change of rows: no memory of this log is of use afterwards.
+    pub fn outlive_rows(&mut self) {
+        (self.spare, self.sorter, self.are_long) = (None, Arc::default(), true);
+        for list in [&mut self.last, &mut self.watched] {
+            if list.table.len() > 2 * list.len() {
+                *list = list.compacted();
+            }
+        }
+    }
+
     /// Frees the memory that the pairs don't need.
     pub fn shrink_to_fit(&mut self) {
         (self.spare, self.sorter) = Default::default();
         let is_watched = Arc::ptr_eq(&self.last, &self.watched);
-        self.last = Arc::new(self.last.compacted());
-        self.watched =
-            if is_watched { self.last.clone() } else { Arc::new(self.watched.compacted()) };
+        self.last = self.last.compacted();
+        self.watched = if is_watched { self.last.clone() } else { self.watched.compacted() };
     }
 }
 

@@ -21,20 +21,25 @@ use super::{BodyId, World};
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct PairLookup {
-    /// The start of each slot's pairs, with one more entry than slots.
+    /// The start of the pairs of each range of first slots, with one more entry than ranges.
     starts: Vec<usize>,
+    /// The number of slots in a range, as a power of two.
+    range_bits: u32,
     pairs: Vec<[BodyId; 2]>,
 }
 
 impl PairLookup {
     /// Replaces its pairs by those of the world's last cull.
     pub fn refill(&mut self, world: &World) {
-        self.starts.clear();
-        self.starts.resize(world.slots() + 1, 0);
         self.pairs.clear();
         self.pairs.extend(world.pairs());
+        // About one range per body, whatever the slots.
+        let last = self.pairs.last().map_or(0, |[first, _]| first.slot());
+        self.range_bits = (last / world.len().max(1)).checked_ilog2().map_or(0, |bits| bits + 1);
+        self.starts.clear();
+        self.starts.resize((last >> self.range_bits) + 2, 0);
         for [first, _] in &self.pairs {
-            self.starts[first.slot() + 1] += 1;
+            self.starts[(first.slot() >> self.range_bits) + 1] += 1;
         }
         let mut end = 0;
         for start in &mut self.starts {
@@ -48,8 +53,8 @@ impl PairLookup {
     #[must_use]
     pub fn contains(&self, a: BodyId, b: BodyId) -> bool {
         let pair = if a.slot <= b.slot { [a, b] } else { [b, a] };
-        let slot = pair[0].slot();
-        match self.starts.get(slot..slot + 2) {
+        let range = pair[0].slot() >> self.range_bits;
+        match self.starts.get(range..range + 2) {
             Some(&[start, end]) => self.pairs[start..end].contains(&pair),
             _ => false,
         }

@@ -4,9 +4,10 @@
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
+use super::BodyId;
 use crate::pairs::{PairList, PairSorter, out_of_step};
 
-/// The pairs of one cull by slot, with the generations of slots at that time.
+/// The pairs of one cull by row, with the bodies of rows at that time.
 #[derive(Debug, Default)]
 pub(crate) struct ReportedPairs {
     /// The pairs in any order; empty once they have been sorted.
@@ -15,7 +16,10 @@ pub(crate) struct ReportedPairs {
     /// Whether someone has read the pairs in order.
     is_read: AtomicBool,
     len: usize,
-    pub(super) generation: Arc<Vec<u32>>,
+    /// The body of each row. Rows are in the order of slots while pairs aren't sorted.
+    pub(super) table: Arc<Vec<BodyId>>,
+    /// Whether list and table hold these pairs and no more.
+    is_compact: bool,
     sorter: Arc<Mutex<PairSorter>>,
 }
 
@@ -46,17 +50,13 @@ impl SortedKeys<'_> {
 
 impl ReportedPairs {
     /// Pairs in any order.
-    pub fn found(
-        found: PairList,
-        generation: Arc<Vec<u32>>,
-        sorter: Arc<Mutex<PairSorter>>,
-    ) -> Self {
-        Self { len: found.len(), found: Mutex::new(found), generation, sorter, ..Self::default() }
+    pub fn found(found: PairList, table: Arc<Vec<BodyId>>, sorter: Arc<Mutex<PairSorter>>) -> Self {
+        Self { len: found.len(), found: Mutex::new(found), table, sorter, ..Self::default() }
     }
 
     /// Pairs that are sorted.
-    pub fn sorted(slots: PairList, generation: Arc<Vec<u32>>) -> Self {
-        Self { len: slots.len(), sorted: slots.into(), generation, ..Self::default() }
+    pub fn sorted(slots: PairList, table: Arc<Vec<BodyId>>) -> Self {
+        Self { len: slots.len(), sorted: slots.into(), table, ..Self::default() }
     }
 
     /// Number of pairs.
@@ -78,7 +78,7 @@ impl ReportedPairs {
     fn sort(&self) -> &PairList {
         self.sorted.get_or_init(|| {
             let mut found = std::mem::take(&mut *lock(&self.found));
-            found.sort(self.generation.len(), &mut lock(&self.sorter));
+            found.sort(self.table.len(), &mut lock(&self.sorter));
             found
         })
     }
@@ -99,7 +99,7 @@ impl ReportedPairs {
         let copied = || {
             let found = lock(&self.found);
             let is_kept = !are_read && self.sorted.get().is_none();
-            is_kept.then(|| found.sorted_keys(self.generation.len(), &mut lock(&self.sorter)))?
+            is_kept.then(|| found.sorted_keys(self.table.len(), &mut lock(&self.sorter)))?
         };
         copied().map_or_else(|| SortedKeys::OfList(self.sort()), SortedKeys::Copied)
     }
@@ -120,18 +120,26 @@ impl ReportedPairs {
         lock(&self.found).bytes() + self.sorted.get().map_or(0, PairList::bytes)
     }
 
-    /// A copy without spare memory.
-    pub(super) fn compacted(&self) -> Self {
-        let mut slots = PairList::default();
-        slots.append(self.slots());
-        let last = slots.second().iter().max();
-        let named = last.map_or(0, |&last| last as usize + 1);
-        let generation = if named < self.generation.len() {
-            Arc::new(self.generation[..named].to_vec())
-        } else {
-            self.generation.clone()
-        };
-        Self::sorted(slots, generation)
+    /// Sorted pairs, with a table of these bodies alone.
+    pub fn compact(pairs: impl Iterator<Item = [BodyId; 2]>) -> Self {
+        let (mut list, mut table) = (PairList::default(), Vec::new());
+        let mut first = (None, 0);
+        for [one, other] in pairs {
+            if first.0 != Some(one) {
+                first = (Some(one), table.len() as u32);
+                table.push(one);
+            }
+            list.push(first.1, table.len() as u32);
+            table.push(other);
+        }
+        list.shrink_to_fit();
+        table.shrink_to_fit();
+        Self { is_compact: true, ..Self::sorted(list, Arc::new(table)) }
+    }
+
+    /// The same pairs without spare memory.
+    pub(super) fn compacted(self: &Arc<Self>) -> Arc<Self> {
+        if self.is_compact { self.clone() } else { Arc::new(Self::compact(self.pairs().iter())) }
     }
 }
 

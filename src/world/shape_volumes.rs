@@ -16,6 +16,8 @@ pub(crate) struct ShapeVolumes<'a> {
     pub radius: f64,
     /// The position of the vertices' origin relative to the point that poses place.
     pub pose_offset: [f64; 3],
+    /// No other shape of any world has it, except in a world's clones.
+    pub stamp: u64,
 }
 
 impl World {
@@ -31,7 +33,13 @@ impl World {
         slots.map(|(slot, &model)| {
             slot.is_present.then(|| {
                 let (ordop, frame) = self.culler.volumes(model);
-                ShapeVolumes { ordop, frame, radius: slot.ball.1, pose_offset: slot.pose_offset }
+                ShapeVolumes {
+                    ordop,
+                    frame,
+                    radius: slot.ball.1,
+                    pose_offset: slot.pose_offset,
+                    stamp: slot.stamp,
+                }
             })
         })
     }

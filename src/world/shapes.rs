@@ -3,9 +3,14 @@
 //! A world keeps no meshes: the culler has the volumes of each shape. The number of a removed shape
 //! is reused.
 
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
 use super::{World, WorldError};
 use crate::bodies::contract::{ContractError, refuse};
 use crate::volume::Shape;
+
+/// The next [`ShapeSlot::stamp`].
+static NEXT_STAMP: AtomicU64 = AtomicU64::new(1);
 
 /// The data of a shape's number.
 #[derive(Clone, Debug)]
@@ -20,6 +25,9 @@ pub(super) struct ShapeSlot {
     /// Number of bodies with this shape.
     pub bodies: usize,
     pub is_present: bool,
+    /// By which copies of the shape know whether they are up to date. Worlds and their clones share
+    /// no other stamps.
+    pub stamp: u64,
     pub digest: u64,
 }
 
@@ -34,6 +42,7 @@ impl ShapeSlot {
             ball: (centre, ball.radius.into()),
             bodies: 0,
             is_present: true,
+            stamp: NEXT_STAMP.fetch_add(1, Relaxed),
             digest: super::digest::of(shape),
         }
     }
@@ -87,12 +96,11 @@ impl World {
     pub fn remove_shape(&mut self, shape: u32) -> Result<(), WorldError> {
         let at = self.shape_at(shape)?;
         if self.shapes[at].bodies > 0 {
-            let mut bodies = self.ids();
-            let has = bodies.find(|id| self.shape[id.slot()] == shape);
-            return Err(has.map_or(WorldError::NoShape(shape), |body| WorldError::ShapeInUse {
+            let has = self.ids.filled().find(|&slot| self.shape[slot] == shape);
+            return Err(has.map_or(WorldError::NoShape(shape), |slot| WorldError::ShapeInUse {
                 shape,
                 name: self.shapes[at].name.clone(),
-                body,
+                body: self.ids.id(slot as u32),
             }));
         }
         self.remove_grown(self.models[at]);
@@ -108,11 +116,11 @@ impl World {
     /// of a body, or it has other slab directions than the other shapes. Nothing is replaced.
     pub fn replace_shape(&mut self, number: u32, shape: &Shape) -> Result<(), WorldError> {
         let at = self.shape_at(number)?;
-        let with_shape = self.ids.iter().map(|id| id.slot());
-        let with_shape: Vec<usize> =
-            with_shape.filter(|&slot| self.shape[slot] == number).collect();
+        let filled = self.ids.filled();
+        let with_shape: Vec<usize> = filled.filter(|&slot| self.shape[slot] == number).collect();
         for &slot in &with_shape {
-            super::check_margin(slot, shape.reach, self.margin[slot])?;
+            let body = self.ids.id(slot as u32).slot();
+            super::check_margin(body, shape.reach, self.margin[slot])?;
         }
         self.culler.replace_shape(self.models[at], shape)?;
         self.remove_grown(self.models[at]);
@@ -161,8 +169,8 @@ impl World {
             return;
         }
         let mut used = vec![false; self.culler.models()];
-        for id in self.ids.iter() {
-            used[self.bodies.shape[id.slot()] as usize] = true;
+        for slot in self.ids.filled() {
+            used[self.bodies.shape[slot] as usize] = true;
         }
         let culler = &mut self.culler;
         self.margins.sweep(&used, |grown| culler.remove_grown(grown));

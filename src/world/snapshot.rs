@@ -12,11 +12,12 @@ use serde::{Deserialize, Serialize};
 use super::local_origins::Origins;
 use super::shapes::{ShapeSlot, check_shape};
 use super::snapshot_parts::{
-    IdsSnapshot, PairsSnapshot, SnapshotError, Version, check_length, damaged, flag_column,
-    flagged_slots, restored_excluded,
+    IdsSnapshot, PairsSnapshot, SnapshotError, Version, damaged, excluded_slots, flag_column,
+    flagged_slots, restored_column, restored_excluded,
 };
-use super::{BodyId, Groups, LivePairs, World, check_margin, check_pose};
+use super::{BodyId, Groups, Ids, LivePairs, World, check_margin, check_pose};
 use crate::bodies::Bodies;
+use crate::simd::in_default_mode;
 use crate::strategy::RefinementRanks;
 
 /// A [`World`] at one moment, to be stored or sent in any format of serde.
@@ -39,6 +40,8 @@ pub struct WorldSnapshot {
     groups: Vec<[u32; 2]>,
     interest: Vec<BodyId>,
     pairs: PairsSnapshot,
+    /// The origin about which the bodies were placed in the last cull, if it isn't the world's.
+    origin: Option<[u64; 3]>,
     answers: Vec<([u32; 2], u32)>,
     #[serde(default)]
     excluded: Vec<[u32; 2]>,
@@ -80,22 +83,28 @@ impl World {
         let saved = |slot: &ShapeSlot| {
             slot.is_present.then(|| ShapeSnapshot { name: slot.name.clone(), digest: slot.digest })
         };
+        let rows = || self.ids.filled();
+        let origin = self.origins.saved().filter(|_| self.movers.all_changed().is_some());
+        let changed = origin.and(self.movers.all_changed());
+        let slots = |pair: [u32; 2]| pair.map(|row| self.ids.id(row).slot);
+        let answers = self.culler.answers().0.into_iter();
         WorldSnapshot {
             version: Version,
             shapes: self.shapes[..self.shape_numbers()].iter().map(saved).collect(),
             ids: IdsSnapshot::of(&self.ids),
-            shape: self.shape.clone(),
-            dynamic: self.bodies.dynamic.clone(),
-            resting: flagged_slots(&self.resting),
-            rotation: self.bodies.rotation.iter().map(|q| q.map(bits)).collect(),
-            translation: self.translation.iter().map(|t| t.map(f64::to_bits)).collect(),
-            margin: self.margin.iter().copied().map(bits).collect(),
-            groups: self.groups.iter().map(|g| [g.member, g.mask]).collect(),
+            shape: rows().map(|row| self.shape[row]).collect(),
+            dynamic: rows().map(|row| self.bodies.dynamic[row]).collect(),
+            resting: flagged_slots(&self.resting, &self.ids),
+            rotation: rows().map(|row| self.bodies.rotation[row].map(bits)).collect(),
+            translation: rows().map(|row| self.translation[row].map(f64::to_bits)).collect(),
+            margin: rows().map(|row| bits(self.margin[row])).collect(),
+            groups: rows().map(|row| self.groups[row]).map(|g| [g.member, g.mask]).collect(),
             interest: self.interest.clone(),
-            pairs: PairsSnapshot::of(&self.log.to_log(&self.ids)),
-            answers: self.culler.answers().0,
-            excluded: self.culler.excluded().sorted(),
-            rounded: flagged_slots(&self.rounded),
+            pairs: PairsSnapshot::of(&self.log.to_log(&self.ids), changed, &self.ids),
+            origin: origin.flatten(),
+            answers: answers.map(|(pair, rank)| (slots(pair), rank)).collect(),
+            excluded: excluded_slots(self.culler.excluded(), &self.ids),
+            rounded: flagged_slots(&self.rounded, &self.ids),
         }
     }
 
@@ -111,56 +120,42 @@ impl World {
     /// inconsistent. The world stays unchanged.
     pub fn restore(&mut self, snapshot: &WorldSnapshot) -> Result<(), SnapshotError> {
         check_shapes(&snapshot.shapes, &self.shapes)?;
-        let ids = snapshot.ids.restored()?;
-        let slots = ids.slots();
-        for (column, entries) in [
-            ("shape", snapshot.shape.len()),
-            ("dynamic", snapshot.dynamic.len()),
-            ("rotation", snapshot.rotation.len()),
-            ("translation", snapshot.translation.len()),
-            ("margin", snapshot.margin.len()),
-            ("groups", snapshot.groups.len()),
-        ] {
-            check_length(column, entries, slots)?;
-        }
-        let rotations = snapshot.rotation.iter().map(|q| q.map(f32::from_bits));
-        let rotation: Vec<[f32; 4]> = rotations.collect();
-        let translations = snapshot.translation.iter().map(|t| t.map(f64::from_bits));
-        let translation: Vec<[f64; 3]> = translations.collect();
-        let margin: Vec<f32> = snapshot.margin.iter().copied().map(f32::from_bits).collect();
+        let (ids, plan) = snapshot.ids.restored()?;
+        let shape = restored_column("shape", snapshot.shape.iter().copied(), &plan, 0)?;
+        let dynamic = restored_column("dynamic", snapshot.dynamic.iter().copied(), &plan, true)?;
+        let rotation = snapshot.rotation.iter().map(|q| q.map(f32::from_bits));
+        let rotation = restored_column("rotation", rotation, &plan, [0.0; 4])?;
+        let translation = snapshot.translation.iter().map(|t| t.map(f64::from_bits));
+        let translation = restored_column("translation", translation, &plan, [0.0; 3])?;
+        let margin = snapshot.margin.iter().copied().map(f32::from_bits);
+        let margin = restored_column("margin", margin, &plan, 0.0)?;
+        let groups = snapshot.groups.iter().map(|&[member, mask]| Groups { member, mask });
+        let groups = restored_column("groups", groups, &plan, Groups::ALL)?;
         let mut counts = vec![0; self.shapes.len()];
-        for slot in 0..slots {
-            check_pose(slot, &rotation[slot], &translation[slot])?;
-            let shape = snapshot.shape[slot];
-            if ids.present()[slot] {
-                if !matches!(snapshot.shapes.get(shape as usize), Some(Some(_))) {
-                    return damaged(format!("slot {slot} has shape {shape}, which isn't in it"));
-                }
-                let reach = check_shape(slot, shape, &self.shapes)?;
-                check_margin(slot, reach, margin[slot])?;
-                counts[shape as usize] += 1;
+        for row in ids.filled() {
+            let (slot, shape) = (ids.id(row as u32).slot(), shape[row]);
+            check_pose(slot, &rotation[row], &translation[row])?;
+            if !matches!(snapshot.shapes.get(shape as usize), Some(Some(_))) {
+                return damaged(format!("slot {slot} has shape {shape}, which isn't in it"));
             }
+            let reach = check_shape(slot, shape, &self.shapes)?;
+            check_margin(slot, reach, margin[row])?;
+            counts[shape as usize] += 1;
         }
-        let log = LivePairs::of(snapshot.pairs.restored(&ids)?);
-        let resting = flag_column(&snapshot.resting, slots, "at rest")?;
-        let rounded = match &snapshot.rounded[..] {
-            [] => Vec::new(),
-            rounded => flag_column(rounded, slots, "rounded")?,
-        };
-        let answers = checked(&snapshot.answers, slots)?;
+        let (log, changed) = snapshot.pairs.restored(&ids)?;
+        let origins = Origins::restored(snapshot.origin.filter(|_| changed.is_some()));
+        let resting = flag_column(&snapshot.resting, &ids, "at rest")?;
+        let rounded = flag_column(&snapshot.rounded, &ids, "rounded")?;
+        let answers = checked(&snapshot.answers, &ids)?;
         let excluded = restored_excluded(&snapshot.excluded, &ids)?;
 
-        self.bodies = Bodies {
-            shape: vec![0; slots],
-            dynamic: snapshot.dynamic.clone(),
-            rotation,
-            translation: vec![[0.0; 3]; slots],
-        };
-        (self.ids, self.log, self.resting) = (ids, log, resting);
+        let slots = ids.rows();
+        self.bodies =
+            Bodies { shape: vec![0; slots], dynamic, rotation, translation: vec![[0.0; 3]; slots] };
+        (self.ids, self.log, self.resting) = (ids, LivePairs::of(log), resting);
         self.rounded = rounded;
-        (self.shape, self.translation, self.margin) = (snapshot.shape.clone(), translation, margin);
-        let groups = snapshot.groups.iter();
-        self.groups = groups.map(|&[member, mask]| Groups { member, mask }).collect();
+        (self.shape, self.translation, self.margin) = (shape, translation, margin);
+        self.groups = groups;
         for (shape, bodies) in self.shapes.iter_mut().zip(counts) {
             shape.bodies = bodies;
         }
@@ -170,8 +165,14 @@ impl World {
         *self.culler.excluded_mut() = excluded;
         self.look();
         self.movers.forget();
-        self.origins = Origins::default();
+        self.origins = origins;
         (self.replaced, self.regrouped) = (true, true);
+        if let Some(changed) = changed
+            && in_default_mode(|| self.place_again()).is_ok()
+        {
+            self.movers.resume(&changed, &self.ids);
+            self.warm_up();
+        }
         Ok(())
     }
 }
@@ -197,16 +198,19 @@ fn check_shapes(
 }
 
 /// Answers of sorted pairs of slots, each once, with ranks up to the number of pairs.
-fn checked(answers: &[([u32; 2], u32)], slots: usize) -> Result<RefinementRanks, SnapshotError> {
-    let is_sound = |&([i, j], rank): &([u32; 2], u32)| {
-        i < j && (j as usize) < slots && rank as usize <= answers.len()
-    };
+fn checked(answers: &[([u32; 2], u32)], ids: &Ids) -> Result<RefinementRanks, SnapshotError> {
+    let row = |slot| Some(ids.row_of(slot)).filter(|&row| row < ids.rows()).map(|row| row as u32);
+    let by_row = answers.iter().map(|&([i, j], rank)| Some(([row(i)?, row(j)?], rank)));
+    let by_row: Option<Vec<_>> = by_row.collect();
+    let is_sound = |&([i, j], rank): &([u32; 2], u32)| i < j && rank as usize <= answers.len();
     let is_sorted = answers.is_sorted_by(|(a, _), (b, _)| a < b);
     // Ranks are 1, 2, 3 … without a gap, and 0 for pairs that were never refined.
     let ranks: BTreeSet<u32> = answers.iter().map(|&(_, rank)| rank).chain([0]).collect();
     let is_dense = ranks.iter().copied().eq(0..ranks.len() as u32);
-    if is_sorted && is_dense && answers.iter().all(is_sound) {
-        return Ok(RefinementRanks(answers.to_vec()));
+    match by_row {
+        Some(by_row) if is_sorted && is_dense && answers.iter().all(is_sound) => {
+            Ok(RefinementRanks(by_row))
+        }
+        _ => damaged("answers of pairs that there can't be"),
     }
-    damaged("answers of pairs that there can't be")
 }

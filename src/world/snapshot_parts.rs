@@ -1,19 +1,19 @@
 //! The common parts of the snapshots of both worlds: version, ids, pairs, and errors.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::Ids;
+use super::ids::{BodyId, Ids, NEW_ROW, renumber_column};
 use super::pair_log::PairLog;
 use super::reported_pairs::ReportedPairs;
 use crate::bodies::ExcludedPairs;
 use crate::bodies::contract::{ContractError, check_number};
-use crate::pairs::PairList;
 
 /// The version of snapshots that this library writes and reads.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The error of a snapshot that can't be restored. The world stays unchanged.
 #[derive(Clone, PartialEq, Error)]
@@ -61,16 +61,32 @@ pub(crate) fn damaged<T>(problem: impl Into<String>) -> Result<T, SnapshotError>
     Err(SnapshotError::Damaged { problem })
 }
 
-/// Checks that a column has one entry for each slot.
-pub(crate) fn check_length(
-    column: &str,
-    entries: usize,
-    slots: usize,
-) -> Result<(), SnapshotError> {
-    if entries == slots {
+/// Entries of bodies, by row: `plan` has the number of each row's body.
+pub(crate) fn restored_column<T: Copy>(
+    name: &str,
+    entries: impl ExactSizeIterator<Item = T>,
+    plan: &[u32],
+    empty: T,
+) -> Result<Vec<T>, SnapshotError> {
+    let bodies = plan.iter().filter(|&&number| number != NEW_ROW).count();
+    check_length(name, entries.len(), bodies)?;
+    let mut column = entries.collect();
+    renumber_column(&mut column, plan, empty);
+    Ok(column)
+}
+
+/// Checks that a column has one entry for each body.
+fn check_length(column: &str, entries: usize, bodies: usize) -> Result<(), SnapshotError> {
+    if entries == bodies {
         return Ok(());
     }
-    damaged(format!("`{column}` has {entries} entries for {slots} slots"))
+    damaged(format!("`{column}` has {entries} entries for {bodies} bodies"))
+}
+
+/// The rows of slots that have bodies.
+fn rows_of(slots: impl Iterator<Item = u32>, ids: &Ids) -> Option<Vec<usize>> {
+    let row = |slot| Some(ids.row_of(slot)).filter(|&row| ids.present.get(row) == Some(&true));
+    slots.map(row).collect()
 }
 
 /// Excluded pairs of bodies, as a snapshot has them: sorted pairs of slots that have bodies, the
@@ -79,34 +95,39 @@ pub(crate) fn restored_excluded(
     pairs: &[[u32; 2]],
     ids: &Ids,
 ) -> Result<ExcludedPairs, SnapshotError> {
-    let has_body = |slot: u32| ids.present.get(slot as usize) == Some(&true);
-    let is_sound = |&[a, b]: &[u32; 2]| a < b && has_body(a) && has_body(b);
-    if pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(is_sound) {
-        return Ok(pairs.iter().copied().collect());
+    let are_sound = pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(|[a, b]| a < b);
+    match rows_of(pairs.as_flattened().iter().copied(), ids) {
+        Some(rows) if are_sound => {
+            Ok(rows.chunks_exact(2).map(|pair| [pair[0] as u32, pair[1] as u32]).collect())
+        }
+        _ => damaged("excluded pairs that there can't be"),
     }
-    damaged("excluded pairs that there can't be")
+}
+
+/// The excluded pairs by slot, sorted.
+pub(crate) fn excluded_slots(pairs: &ExcludedPairs, ids: &Ids) -> Vec<[u32; 2]> {
+    let slots = |pair: [u32; 2]| pair.map(|row| ids.id(row).slot);
+    pairs.sorted().into_iter().map(slots).collect()
 }
 
 /// The slots of bodies with a flag, such as those at rest, sorted.
-pub(crate) fn flagged_slots(flags: &[bool]) -> Vec<u32> {
-    let slots = (0..).zip(flags);
-    let flagged = slots.filter(|(_, is_flagged)| **is_flagged);
-    flagged.map(|(slot, _)| slot).collect()
+pub(crate) fn flagged_slots(flags: &[bool], ids: &Ids) -> Vec<u32> {
+    let flagged = ids.filled().filter(|&row| flags[row]);
+    flagged.map(|row| ids.id(row as u32).slot).collect()
 }
 
-/// Whether the body in each slot has a flag, which `name` describes.
+/// Whether the body in each row has a flag, which `name` describes.
 pub(crate) fn flag_column(
     flagged: &[u32],
-    slots: usize,
+    ids: &Ids,
     name: &str,
 ) -> Result<Vec<bool>, SnapshotError> {
-    let mut flags = vec![false; slots];
-    for &slot in flagged {
-        match flags.get_mut(slot as usize) {
-            Some(is_flagged) => *is_flagged = true,
-            None => return damaged(format!("slot {slot} of {slots} is {name}")),
-        }
-    }
+    let mut flags = vec![false; ids.rows()];
+    let rows = rows_of(flagged.iter().copied(), ids);
+    let Some(rows) = rows.filter(|_| flagged.is_sorted_by(|a, b| a < b)) else {
+        return damaged(format!("bodies that are {name} that there can't be"));
+    };
+    rows.into_iter().for_each(|row| flags[row] = true);
     Ok(flags)
 }
 
@@ -133,130 +154,176 @@ impl From<Version> for u32 {
     }
 }
 
-/// The slots of a world, and their bodies.
+/// The ids of a world: of its bodies, sorted by slot, and of its empty rows, each by slot and
+/// generation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct IdsSnapshot {
-    present: Vec<bool>,
+    slots: Vec<u32>,
     generation: Vec<u32>,
-    free: Vec<u32>,
-    emptied: Vec<u32>,
+    free: Vec<[u32; 2]>,
+    emptied: Vec<[u32; 2]>,
     first_generation: u32,
 }
 
 impl IdsSnapshot {
     pub fn of(ids: &Ids) -> Self {
+        let empty = |rows: &[u32]| rows.iter().map(|&row| numbers_of(ids.id(row))).collect();
         Self {
-            present: ids.present.clone(),
-            generation: ids.generation.to_vec(),
-            free: ids.free.clone(),
-            emptied: ids.emptied.clone(),
+            slots: ids.iter().map(|id| id.slot).collect(),
+            generation: ids.iter().map(|id| id.generation).collect(),
+            free: empty(&ids.free),
+            emptied: empty(&ids.emptied),
             first_generation: ids.first_generation,
         }
     }
 
-    pub fn restored(&self) -> Result<Ids, SnapshotError> {
-        let slots = self.present.len();
-        check_number(slots)?;
-        check_length("generation", self.generation.len(), slots)?;
-        let mut is_known = self.present.clone();
-        for &slot in self.free.iter().chain(&self.emptied) {
-            match is_known.get_mut(slot as usize) {
-                Some(is_known) if !*is_known => *is_known = true,
-                Some(_) => return damaged(format!("slot {slot} is in two states at once")),
-                None => return damaged(format!("slot {slot} of {slots} is free")),
-            }
+    /// The ids, and the plan of rows: the number of the body in each, or [`NEW_ROW`].
+    pub fn restored(&self) -> Result<(Ids, Vec<u32>), SnapshotError> {
+        check_length("generation", self.generation.len(), self.slots.len())?;
+        if !self.slots.is_sorted() {
+            return damaged("slots aren't sorted");
         }
-        let last = |slot: usize| self.generation[slot] == u32::MAX;
-        if let Some(slot) = (0..slots).find(|&slot| !is_known[slot] && !last(slot)) {
-            return damaged(format!("slot {slot} is neither taken nor free"));
+        let bodies = self.slots.iter().zip(&self.generation);
+        let bodies = bodies.zip(0..).map(|((&slot, &generation), body)| ([slot, generation], body));
+        let empty = self.free.iter().chain(&self.emptied).map(|&id| (id, NEW_ROW));
+        let mut rows: Vec<([u32; 2], u32)> = bodies.chain(empty).collect();
+        rows.sort_unstable();
+        let slot = |row: &([u32; 2], u32)| row.0[0];
+        check_number(rows.last().map_or(0, |row| slot(row) as usize + 1))?;
+        if let Some(row) = rows.windows(2).find(|rows| slot(&rows[0]) == slot(&rows[1])) {
+            return damaged(format!("slot {} is in two states at once", slot(&row[0])));
         }
-        if let Some(slot) = self.free.iter().find(|&&slot| last(slot as usize)) {
+        if let Some([slot, _]) = self.free.iter().find(|id| id[1] == u32::MAX) {
             return damaged(format!("slot {slot} is free and has no generation left"));
         }
-        Ok(Ids {
-            present: self.present.clone(),
-            generation: Arc::new(self.generation.clone()),
-            free: self.free.clone(),
-            emptied: self.emptied.clone(),
-            first_generation: self.first_generation,
-            bodies: self.present.iter().filter(|is| **is).count(),
-        })
+        let table = rows.iter().map(|&([slot, generation], _)| BodyId { slot, generation });
+        let mut ids = Ids::of_rows(table.collect(), self.first_generation);
+        if ids.rows() < ids.slots() && self.first_generation == 0 {
+            return damaged("vacant slots whose generations have not begun");
+        }
+        let row = |id: &[u32; 2]| ids.row_of(id[0]) as u32;
+        let [free, emptied] = [&self.free, &self.emptied].map(|all| all.iter().map(row).collect());
+        (ids.free, ids.emptied, ids.bodies) = (free, emptied, self.slots.len());
+        let plan: Vec<u32> = rows.iter().map(|&(_, body)| body).collect();
+        ids.present = plan.iter().map(|&body| body != NEW_ROW).collect();
+        Ok((ids, plan))
     }
+}
+
+fn numbers_of(id: BodyId) -> [u32; 2] {
+    [id.slot, id.generation]
 }
 
 /// The pairs of the last cull, and those of the last events.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PairsSnapshot {
+    /// By slot.
     last: [Vec<u32>; 2],
-    /// `None` if they are the same.
-    watched: Option<WatchedSnapshot>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-struct WatchedSnapshot {
-    pairs: [Vec<u32>; 2],
-    generation: Vec<u32>,
+    /// Slot and generation of the bodies in them that were removed since, sorted.
+    gone: Vec<[u32; 2]>,
+    /// Slots of the bodies that have changed since that cull, if the pairs of all others are known
+    /// to be the last ones.
+    changed: Option<Vec<u32>>,
+    /// Slot and generation of both bodies of each pair. `None` if they are the last ones.
+    watched: Option<Vec<[u32; 4]>>,
 }
 
 impl PairsSnapshot {
-    pub fn of(log: &PairLog) -> Self {
-        let columns = |list: &PairList| [list.first().to_vec(), list.second().to_vec()];
-        let watched = (!Arc::ptr_eq(&log.last, &log.watched)).then(|| {
-            let watched = log.watched.compacted();
-            WatchedSnapshot {
-                pairs: columns(watched.slots()),
-                generation: watched.generation.to_vec(),
-            }
-        });
-        Self { last: columns(log.last.slots()), watched }
+    pub fn of(log: &PairLog, changed: Option<&[u32]>, ids: &Ids) -> Self {
+        let pairs = log.last.pairs();
+        let is_gone = |id: &BodyId| ids.slot(*id).is_err();
+        let gone: BTreeSet<BodyId> = pairs.iter().flatten().filter(is_gone).collect();
+        let named = |[a, b]: [BodyId; 2]| [a.slot, a.generation, b.slot, b.generation];
+        let watched = (!Arc::ptr_eq(&log.last, &log.watched))
+            .then(|| log.watched.pairs().iter().map(named).collect());
+        Self {
+            last: [0, 1].map(|side: usize| pairs.iter().map(|pair| pair[side].slot).collect()),
+            gone: gone.into_iter().map(numbers_of).collect(),
+            changed: changed.map(|rows| rows.iter().map(|&row| ids.id(row).slot).collect()),
+            watched,
+        }
     }
 
-    pub fn restored(&self, ids: &Ids) -> Result<PairLog, SnapshotError> {
-        let slots = sorted(&self.last, ids.slots())?;
-        let mut is_named = ids.present.clone();
-        for &slot in &ids.emptied {
-            is_named[slot as usize] = true;
-        }
-        if let Some([i, j]) =
-            slots.iter().find(|pair| pair.iter().any(|&slot| !is_named[slot as usize]))
-        {
-            return damaged(format!("the pair {i}, {j} has a slot that was empty"));
-        }
-        let generation = ids.generation().clone();
-        let last = Arc::new(ReportedPairs::sorted(slots, generation));
-        let watched = match &self.watched {
-            None => last.clone(),
-            Some(WatchedSnapshot { pairs, generation }) => {
-                let named = pairs[1].iter().max().map_or(0, |&last| last as usize + 1);
-                check_length("watched generation", generation.len(), named)?;
-                let mut unnamed: Vec<u32> = generation.clone();
-                for &slot in pairs.iter().flatten() {
-                    if let Some(generation) = unnamed.get_mut(slot as usize) {
-                        *generation = 0;
-                    }
-                }
-                if let Some(slot) = unnamed.iter().position(|&generation| generation > 0) {
-                    return damaged(format!("no watched pair names slot {slot}"));
-                }
-                let slots = sorted(pairs, generation.len())?;
-                Arc::new(ReportedPairs::sorted(slots, Arc::new(generation.clone())))
+    /// The pairs, and the rows that have changed since, if that is known.
+    pub fn restored(&self, ids: &Ids) -> Result<(PairLog, Option<Vec<u32>>), SnapshotError> {
+        let last = self.last(ids)?;
+        let row = |&slot: &u32| Some(ids.row_of(slot)).filter(|&row| row < ids.rows());
+        let changed = match &self.changed {
+            None => None,
+            Some(slots) => {
+                let rows: Option<Vec<usize>> = slots.iter().map(row).collect();
+                let rows = rows.filter(|_| Arc::ptr_eq(&last.table, ids.table()));
+                let Some(rows) = rows.filter(|rows| are_distinct(rows)) else {
+                    return damaged("changed bodies that there can't be");
+                };
+                Some(rows.into_iter().map(|row| row as u32).collect())
             }
         };
-        Ok(PairLog::of(last, watched))
+        let last = Arc::new(last);
+        let watched = match &self.watched {
+            None => last.clone(),
+            Some(pairs) => {
+                let id = |slot, generation| BodyId { slot, generation };
+                let pairs = pairs.iter().map(|&[i, of_i, j, of_j]| [id(i, of_i), id(j, of_j)]);
+                if !pairs.clone().all(|[a, b]| a.slot < b.slot)
+                    || !pairs.clone().is_sorted_by(|a, b| a < b)
+                {
+                    return damaged("watched pairs aren't sorted");
+                }
+                Arc::new(ReportedPairs::compact(pairs))
+            }
+        };
+        Ok((PairLog::of(last, watched), changed))
+    }
+
+    /// The pairs of the last cull: by row, unless a row has another body now.
+    fn last(&self, ids: &Ids) -> Result<ReportedPairs, SnapshotError> {
+        let [first, second] = &self.last;
+        if first.len() != second.len() {
+            return damaged(format!("{} and {} halves of pairs", first.len(), second.len()));
+        }
+        let pairs = || first.iter().zip(second).map(|(&i, &j)| [i, j]);
+        if let Some([i, j]) = pairs().find(|&[i, j]| i >= j) {
+            return damaged(format!("the pair {i}, {j}"));
+        }
+        if !pairs().is_sorted_by(|a, b| a < b) || !self.gone.is_sorted_by(|a, b| a[0] < b[0]) {
+            return damaged("pairs aren't sorted");
+        }
+        let mut unnamed: BTreeSet<u32> = self.gone.iter().map(|id| id[0]).collect();
+        let mut are_by_row = true;
+        let mut body = |slot: u32| {
+            let row = ids.row_of(slot);
+            let gone = self.gone.binary_search_by_key(&slot, |id| id[0]).map(|at| self.gone[at]);
+            let Ok([slot, generation]) = gone else {
+                return ids.table.get(row).copied().filter(|_| ids.present[row]);
+            };
+            unnamed.remove(&slot);
+            let id = BodyId { slot, generation };
+            are_by_row &= ids.table.get(row) == Some(&id);
+            ids.slot(id).is_err().then_some(id)
+        };
+        let mut bodies = Vec::with_capacity(first.len());
+        for pair in pairs() {
+            let [Some(a), Some(b)] = pair.map(&mut body) else {
+                return damaged(format!(
+                    "the pair {}, {} has a slot that was empty",
+                    pair[0], pair[1]
+                ));
+            };
+            bodies.push([a, b]);
+        }
+        if let Some(slot) = unnamed.first() {
+            return damaged(format!("no pair contains the removed body of slot {slot}"));
+        }
+        if !are_by_row {
+            return Ok(ReportedPairs::compact(bodies.into_iter()));
+        }
+        let rows = pairs().map(|pair| pair.map(|slot| ids.row_of(slot) as u32));
+        Ok(ReportedPairs::sorted(rows.collect(), ids.table().clone()))
     }
 }
 
-/// Pairs of numbers below `slots`, the lower one first, sorted, each once.
-fn sorted([first, second]: &[Vec<u32>; 2], slots: usize) -> Result<PairList, SnapshotError> {
-    if first.len() != second.len() {
-        return damaged(format!("{} and {} halves of pairs", first.len(), second.len()));
-    }
-    let pairs = || first.iter().zip(second).map(|(&i, &j)| [i, j]);
-    if let Some([i, j]) = pairs().find(|&[i, j]| i >= j || j as usize >= slots) {
-        return damaged(format!("the pair {i}, {j} of {slots} slots"));
-    }
-    if !pairs().is_sorted_by(|a, b| a < b) {
-        return damaged("pairs aren't sorted");
-    }
-    Ok(pairs().collect())
+/// Whether no number comes twice.
+fn are_distinct(numbers: &[usize]) -> bool {
+    numbers.iter().collect::<BTreeSet<_>>().len() == numbers.len()
 }

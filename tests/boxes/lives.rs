@@ -151,21 +151,23 @@ fn damaged_snapshots_of_boxes_are_refused() {
     world.remove(ids[5]).unwrap();
     let whole = serde_json::to_value(world.snapshot()).unwrap();
     for (path, value) in [
-        ("/version", serde_json::json!(2)),
+        ("/version", serde_json::json!(1)),
         ("/bounds/7/0/1", serde_json::json!(f32::NAN.to_bits())),
         ("/bounds/7/0/1", serde_json::json!(f32::MAX.to_bits())),
         ("/bounds", serde_json::json!([])),
         ("/dynamic", serde_json::json!([true])),
         ("/groups", serde_json::json!([])),
         ("/ids/generation", serde_json::json!([1])),
-        ("/ids/free/0", serde_json::json!(5)),
-        ("/ids/emptied/0", serde_json::json!(6)),
-        ("/ids/present/5", serde_json::json!(true)),
-        ("/ids/present/8", serde_json::json!(false)),
+        ("/ids/free/0", serde_json::json!([5, 0])),
+        ("/ids/emptied/0", serde_json::json!([6, 0])),
+        ("/ids/slots/5", serde_json::json!(5)),
+        ("/ids/slots/17", serde_json::json!(u32::MAX)),
         ("/pairs/last", serde_json::json!([[2, 1], [4, 4]])),
         ("/pairs/last", serde_json::json!([[3], [4]])),
         ("/pairs/last", serde_json::json!([[1], [20]])),
-        ("/pairs/watched/pairs", serde_json::json!([[1], [20]])),
+        ("/pairs/watched", serde_json::json!([[20, 0, 1, 0]])),
+        ("/pairs/gone", serde_json::json!([[6, 0]])),
+        ("/pairs/changed", serde_json::json!([99])),
     ] {
         let mut text = whole.clone();
         *text.pointer_mut(path).unwrap() = value;

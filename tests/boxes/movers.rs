@@ -279,6 +279,53 @@ fn a_frame_costs_what_changes() {
     assert!(few < 50 * 200 && many < 2 * few, "{few}, {many}");
 }
 
+/// Boxes that collide with none are compared with none.
+#[test]
+fn boxes_without_groups_are_not_compared() {
+    let mut world = BoxWorld::new();
+    let groups =
+        |at: u32| [Groups { member: 1, mask: 0 }, Groups { member: 0, mask: 1 }][at as usize % 2];
+    let ids: Vec<BodyId> = (0..3000)
+        .map(|i| world.insert(BoxBody { groups: groups(i), ..cube(0.0).into() }).unwrap())
+        .collect();
+    for frame in 0..4 {
+        ids.iter().for_each(|&id| world.set_bounds(id, cube(frame as f32)).unwrap());
+        world.cull().unwrap();
+        assert!(world.pairs().len() == 0 && world.counters().tests < 30_000);
+    }
+    for &id in &ids[..2] {
+        world.set(id, cube(3.0)).unwrap();
+    }
+    world.cull().unwrap();
+    assert!(world.pairs().eq([[ids[0], ids[1]]]));
+}
+
+/// Fixed boxes at one place, some of which are set per frame: no frame compares them with each
+/// other, nor finds all pairs anew.
+#[test]
+fn parked_boxes_cost_their_changes() {
+    let (mut world, count) = (BoxWorld::new(), 5000);
+    let place = |step: usize| cube(1.0e-3 * (step % 100) as f32);
+    let parked = |step| BoxBody { motion: Motion::Fixed, ..place(step).into() };
+    let ids: Vec<BodyId> = (0..count).map(|i| world.insert(parked(i)).unwrap()).collect();
+    let visitor = world.insert(cube(0.5)).unwrap();
+    world.cull().unwrap();
+    for frame in 0..20 {
+        let before = (*world.counters(), world.rest_counters().queried);
+        for i in (frame..count).step_by(17) {
+            world.set_bounds(ids[i], place(i + frame + 1)).unwrap();
+        }
+        world.cull().unwrap();
+        let changed = (frame..count).step_by(17).len() as u64;
+        assert_eq!(world.rest_counters().queried - before.1, changed, "frame {frame}");
+        // The cells near each box, and the visitor.
+        let tests = world.counters().since(&before.0).tests;
+        assert!(tests <= 64 * changed, "frame {frame}: {tests}");
+        assert_eq!(world.pairs().len(), count);
+        assert!(world.pairs().all(|pair| pair[1] == visitor));
+    }
+}
+
 /// A giant that moves looks at more than all boxes are worth: then all pairs are found anew, and
 /// they are the same.
 #[test]

@@ -15,6 +15,12 @@ use crate::simd::{TaggedBox, prefetch};
 /// The table of cells is enlarged when more than this share of it is used.
 const MAX_LOAD: [usize; 2] = [3, 4];
 
+/// A new index keeps a table of at most this number of cells per cell with boxes.
+const MOST_SPARE_CELLS: usize = 8;
+
+/// Number of boxes by which prefetching is ahead while an index is made.
+const PREFETCH_DISTANCE: usize = 16;
+
 /// Searching this number of cells takes as long as testing one box.
 const CELLS_PER_BOX: u64 = 2;
 
@@ -29,14 +35,17 @@ const GROUPED_TAG: u32 = 2;
 struct Cell {
     /// See [`BoxLevel::name`](levels::BoxLevel::name); 0 if there is no cell.
     name: u32,
+    /// Those that aren't fixed come first: a fixed box reads no others.
     boxes: Run,
 }
 
 /// The cell of a box.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 struct HomeCell {
     /// The cell's name, or 0.
     cell: u32,
+    /// The number of the box in the cell's list.
+    place: u32,
     level: u16,
 }
 
@@ -65,10 +74,46 @@ pub(crate) struct BoxIndex {
 }
 
 impl BoxIndex {
-    /// An index of `count` boxes.
+    /// An index of `count` boxes, all present, no two in one slot. It is made in a few passes over
+    /// all boxes: their cells, the length of each cell's list, the lists.
     pub fn of(boxes: impl Iterator<Item = IndexedBox> + Clone, count: usize) -> Self {
         let mut index = Self::suited_to(boxes.clone().map(|indexed| indexed.aabb), count);
-        boxes.for_each(|indexed| _ = index.put(&indexed));
+        let mut names = Vec::with_capacity(count);
+        for IndexedBox { slot, aabb, .. } in boxes.clone() {
+            let home = index.home_of(&aabb);
+            index.homes.resize(index.homes.len().max(slot as usize + 1), HomeCell::default());
+            index.homes[slot as usize] = home;
+            index.levels.all[usize::from(home.level)].boxes += 1;
+            names.push(home.cell);
+        }
+        let mut lengths = vec![0; index.cells.len()];
+        for (number, &name) in names.iter().enumerate() {
+            index.prefetch_cell(names.get(number + PREFETCH_DISTANCE));
+            let at = index.find(name);
+            index.taken += usize::from(lengths[at] == 0);
+            index.cells[at].name = name;
+            lengths[at] += 1;
+        }
+        let filled = lengths.iter().copied().filter(|&len| len > 0);
+        index.boxes.reserve_growing(filled);
+        for (cell, &len) in index.cells.iter_mut().zip(&lengths).filter(|(_, len)| **len > 0) {
+            index.boxes.reserve(&mut cell.boxes, len as usize);
+        }
+        for tag in [0, FIXED_TAG] {
+            for (number, (indexed, &name)) in boxes.clone().zip(&names).enumerate() {
+                if indexed.tags & FIXED_TAG == tag {
+                    index.prefetch_cell(names.get(number + PREFETCH_DISTANCE));
+                    let at = index.find(name);
+                    let run = &mut index.cells[at].boxes;
+                    index.homes[indexed.slot as usize].place = run.len() as u32;
+                    index.boxes.push(run, indexed.tagged());
+                }
+            }
+        }
+        index.len = names.len();
+        if MOST_SPARE_CELLS * index.taken < index.cells.len() {
+            index.make_room();
+        }
         index
     }
 
@@ -76,7 +121,7 @@ impl BoxIndex {
     fn suited_to(boxes: impl Iterator<Item = Aabb>, count: usize) -> Self {
         Self {
             levels: Levels::suited_to(boxes, count),
-            cells: vec![Cell::default(); (count / 2).next_power_of_two().max(16)],
+            cells: vec![Cell::default(); (2 * count + 16).next_power_of_two()],
             taken: 0,
             boxes: Runs::default(),
             homes: Vec::new(),
@@ -89,9 +134,15 @@ impl BoxIndex {
         self.len
     }
 
-    /// Moves a box to its present cell, or removes it if it is gone. Returns the work: the number
-    /// of entries read.
-    pub fn put(&mut self, indexed: &IndexedBox) -> usize {
+    /// The cell of a box that isn't in its list yet.
+    fn home_of(&mut self, aabb: &Aabb) -> HomeCell {
+        let level = self.levels.level_of(aabb);
+        HomeCell { cell: self.levels.all[usize::from(level)].home(aabb), place: 0, level }
+    }
+
+    /// Moves a box to its present cell, or removes it if it is gone. It takes the same time however
+    /// many boxes share a cell.
+    pub fn put(&mut self, indexed: &IndexedBox) {
         let &IndexedBox { slot, is_present, ref aabb, .. } = indexed;
         if !is_present {
             return self.remove(slot);
@@ -99,50 +150,70 @@ impl BoxIndex {
         if self.homes.len() <= slot as usize {
             self.homes.resize(slot as usize + 1, HomeCell::default());
         }
-        let level = self.levels.level_of(aabb);
-        let cell = self.levels.all[usize::from(level)].home(aabb);
-        let home = HomeCell { cell, level };
+        let mut home = self.home_of(aabb);
         let entry = indexed.tagged();
-        if self.homes[slot as usize] == home {
-            let at = self.find(cell);
+        let former = self.homes[slot as usize];
+        if [former.cell, former.level.into()] == [home.cell, home.level.into()] {
+            let at = self.find(home.cell);
             let boxes = self.boxes.get_mut(self.cells[at].boxes);
-            if let Some(place) = boxes.iter().position(|other| other.slot == slot) {
-                boxes[place] = entry;
-                return place;
+            if (boxes[former.place as usize].tags ^ entry.tags) & FIXED_TAG == 0 {
+                boxes[former.place as usize] = entry;
+                return;
             }
         }
-        let work = self.remove(slot);
+        self.remove(slot);
         if (self.taken + 1) * MAX_LOAD[1] > self.cells.len() * MAX_LOAD[0] {
             self.make_room();
         }
-        let at = self.find(cell);
+        let at = self.find(home.cell);
         if self.cells[at].name == 0 {
-            self.cells[at].name = cell;
+            self.cells[at].name = home.cell;
             self.taken += 1;
         }
-        self.boxes.push(&mut self.cells[at].boxes, entry);
-        self.levels.all[usize::from(level)].boxes += 1;
+        let first_fixed = self.movable(self.cells[at].boxes);
+        let run = &mut self.cells[at].boxes;
+        let mut place = run.len();
+        self.boxes.push(run, entry);
+        if entry.tags & FIXED_TAG == 0 && first_fixed < place {
+            let boxes = self.boxes.get_mut(*run);
+            boxes.swap(first_fixed, place);
+            self.homes[boxes[place].slot as usize].place = place as u32;
+            place = first_fixed;
+        }
+        home.place = place as u32;
+        self.levels.all[usize::from(home.level)].boxes += 1;
         self.homes[slot as usize] = home;
         self.len += 1;
-        work
     }
 
-    /// Removes a box, if it is there. Returns the work.
-    fn remove(&mut self, slot: u32) -> usize {
+    /// Removes a box, if it is there. The last one of its cell and kind takes its place.
+    fn remove(&mut self, slot: u32) {
         let home = match self.homes.get_mut(slot as usize) {
-            Some(home) if home.cell != 0 => std::mem::take(home),
-            _ => return 0,
+            Some(home) if home.cell != 0 => *home,
+            _ => return,
         };
         let at = self.find(home.cell);
+        let movable = self.movable(self.cells[at].boxes);
         let run = &mut self.cells[at].boxes;
-        let boxes = self.boxes.get(*run);
-        let place = boxes.iter().position(|other| other.slot == slot);
-        if let Some(place) = place {
-            self.boxes.swap_remove(run, place);
-            self.levels.all[usize::from(home.level)].boxes -= 1;
-            self.len -= 1;
+        let mut place = home.place as usize;
+        if place < movable {
+            let boxes = self.boxes.get_mut(*run);
+            boxes.swap(place, movable - 1);
+            self.homes[boxes[place].slot as usize].place = place as u32;
+            place = movable - 1;
         }
-        place.unwrap_or(0)
+        self.boxes.swap_remove(run, place);
+        if let Some(moved) = self.boxes.get(*run).get(place) {
+            self.homes[moved.slot as usize].place = place as u32;
+        }
+        self.homes[slot as usize] = HomeCell::default();
+        self.levels.all[usize::from(home.level)].boxes -= 1;
+        self.len -= 1;
+    }
+
+    /// The number of boxes in a cell that aren't fixed.
+    fn movable(&self, run: Run) -> usize {
+        self.boxes.get(run).partition_point(|entry| entry.tags & FIXED_TAG == 0)
     }
 
     /// The position of a cell in the table, or where it would be inserted.
@@ -189,9 +260,7 @@ impl BoxIndex {
         if let Some(home) = last.and_then(home) {
             prefetch(home);
         }
-        if let Some(home) = next.and_then(home) {
-            prefetch(&self.cells[home.cell as usize & (self.cells.len() - 1)]);
-        }
+        self.prefetch_cell(next.and_then(home).map(|home| &home.cell));
         if let Some(home) = soon.and_then(home)
             && home.cell != 0
         {
@@ -199,9 +268,17 @@ impl BoxIndex {
         }
     }
 
+    #[inline(always)]
+    fn prefetch_cell(&self, name: Option<&u32>) {
+        if let Some(&name) = name {
+            prefetch(&self.cells[name as usize & (self.cells.len() - 1)]);
+        }
+    }
+
     /// Appends, for each of some boxes, the slots of those that meet it, are not both fixed, and
     /// are allowed by the rules: sorted, each once. The end of each box's part is appended to
-    /// `ends`. Returns the number of boxes and cells read.
+    /// `ends`. Returns the number of boxes and cells read, or `None` before any box is read if
+    /// there are more than `most`.
     pub fn find_partners(
         &self,
         seekers: &[IndexedBox],
@@ -209,7 +286,8 @@ impl BoxIndex {
         search: &mut Search,
         found: &mut Vec<u32>,
         ends: &mut Vec<usize>,
-    ) -> usize {
+        most: usize,
+    ) -> Option<usize> {
         // Three passes, so that many cache misses overlap.
         search.clear();
         for seeker in seekers {
@@ -219,25 +297,37 @@ impl BoxIndex {
                 search.ends.push((search.names.len(), false));
             }
         }
-        for &name in &search.names {
-            let run = self.cells[self.find(name)].boxes;
-            if !run.is_empty() {
-                self.boxes.prefetch(run);
+        let everywhere = search.ends.iter().filter(|(_, is_everywhere)| *is_everywhere);
+        let mut work = search.names.len() + self.len * everywhere.count();
+        let mut first = 0;
+        for (seeker, &(end, _)) in seekers.iter().zip(&search.ends) {
+            for &name in &search.names[std::mem::replace(&mut first, end)..end] {
+                let mut run = self.cells[self.find(name)].boxes;
+                if !run.is_empty() {
+                    self.boxes.prefetch(run);
+                    if seeker.tags & FIXED_TAG != 0 {
+                        run = run.first(self.movable(run));
+                    }
+                }
+                work += run.len();
+                search.runs.push(run);
             }
-            search.runs.push(run);
         }
-        let (mut work, mut first) = (search.runs.len(), 0);
+        if work > most {
+            return None;
+        }
+        let mut first = 0;
         for (seeker, &(end, is_everywhere)) in seekers.iter().zip(&search.ends) {
             let start = found.len();
             let (tagged, hits) = (seeker.tagged(), &mut search.hits);
             hits.count = 0;
             if is_everywhere {
                 for cell in &self.cells {
-                    work += self.look_into(cell.boxes, &tagged, hits);
+                    self.look_into(cell.boxes, &tagged, hits);
                 }
             }
             for &run in &search.runs[std::mem::replace(&mut first, end)..end] {
-                work += self.look_into(run, &tagged, hits);
+                self.look_into(run, &tagged, hits);
             }
             let met = hits.numbers[..hits.count].iter();
             let met = met.map(|&number| self.boxes.entry(number));
@@ -246,7 +336,7 @@ impl BoxIndex {
             sort_each_once(found, start);
             ends.push(found.len());
         }
-        work
+        Some(work)
     }
 
     /// Lists the cells to be searched for a box, or notes that all are.
@@ -262,7 +352,7 @@ impl BoxIndex {
             };
             left = rest;
             level.each_name(&range, |name| {
-                prefetch(&self.cells[name as usize & (self.cells.len() - 1)]);
+                self.prefetch_cell(Some(&name));
                 search.names.push(name);
             });
         }
@@ -272,7 +362,7 @@ impl BoxIndex {
     /// Appends the boxes of a cell that meet this one. Nearly all cells have few boxes, so there is
     /// no branch that depends on how many, or on which of them meet.
     #[inline(always)]
-    fn look_into(&self, run: Run, &seeker: &TaggedBox, hits: &mut Hits) -> usize {
+    fn look_into(&self, run: Run, &seeker: &TaggedBox, hits: &mut Hits) {
         hits.make_room(run.len() + ROOM);
         let (mut count, entries) = (hits.count, &mut hits.numbers[..]);
         let (first, rooms) = self.boxes.rooms(run);
@@ -285,7 +375,6 @@ impl BoxIndex {
             }
         }
         hits.count = count;
-        run.len()
     }
 }
 

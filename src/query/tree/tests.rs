@@ -114,10 +114,30 @@ fn spreading_wears_the_tree() {
     assert!(tree.is_worn());
 }
 
+/// A far box, in any direction and at any distance, leaves the groups of the others small.
 #[test]
-fn bits_are_spread() {
-    assert_eq!(spread(0b1011), 0b1_000_001_001);
-    assert_eq!(spread(0xf_ffff), (0..20).map(|bit| 1 << (3 * bit)).sum::<u64>());
+fn a_far_box_leaves_groups_small() {
+    let cubes = |far: Option<f32>| {
+        let at = |i: u32| [i % 16, i / 16 % 16, i / 256].map(|x| 2.0 * x as f32);
+        let near = (0..4096).map(at).chain(far.map(|x| [-x, x, 0.5 * x]));
+        let cubes = near.map(|min| Aabb::new(min, min.map(|x| x + 1.0)));
+        Tree::build((0..).zip(cubes).collect())
+    };
+    // The half sides of all groups but the widest one, which has the far box.
+    let width = |tree: &Tree| {
+        let groups = tree.groups().iter().filter_map(BoxGroup::bounds);
+        let mut widths: Vec<f32> =
+            groups.map(|aabb| aabb.half_sides().iter().sum::<f32>()).collect();
+        widths.sort_unstable_by(f32::total_cmp);
+        widths.pop();
+        widths.iter().sum::<f32>()
+    };
+    let alone = width(&cubes(None));
+    for far in [1.0e3, 1.0e6, 1.0e18, 1.0e30] {
+        let tree = cubes(Some(far));
+        assert!(width(&tree) < 1.2 * alone, "{far}");
+        assert!(tree.built_width < 1.2 * cubes(None).built_width, "{far}");
+    }
 }
 
 /// Small boxes and a far larger one are in separate groups.
