@@ -106,8 +106,8 @@ def test_poses_of_float64_lose_no_pair(strategy):
         rotations, translations = Rotation.random(60, random_state=draws.integers(99)).as_quat(), draws.uniform(-6, 6, (60, 3))
         found = culler.cull(rotations, translations).tolist()
         truth = meeting(shape, rotations, translations)
-        truth = [[i, j] for i, j in truth if (i % 3 or j % 3) and (not interest or i in interest)]
-        assert len(truth) > 10 and all(pair in found for pair in truth) and culler.seconds > 0
+        truth = [[i, j] for i, j in truth if (i % 3 or j % 3) and (not interest or i in interest or j in interest)]
+        assert len(truth) > 2 and all(pair in found for pair in truth) and culler.seconds > 0
         narrow = culler.cull(np.float32(rotations), np.float32(translations))
         assert sdop.Culler([shape], [0] * 60, **options).cull(np.float32(rotations), np.float32(translations)).tolist() == narrow.tolist()
     world = sdop.World([shape])
