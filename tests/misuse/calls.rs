@@ -16,8 +16,8 @@ use super::*;
 /// pairs.
 const STATES: [&str; 5] = ["new", "moved", "removed", "restored", "unlisted"];
 
-/// For each type, the methods that answer about pairs or places of bodies, with one letter per state:
-/// `n`ow, as the bodies are; `l`ast, as they were in the last cull or update, which the
+/// For each type, the methods that answer about pairs or places of bodies, with one letter per
+/// state: `n`ow, as the bodies are; `l`ast, as they were in the last cull or update, which the
 /// documentation says; `!`, an error that says what to call; `-`, no such state. Methods without
 /// letters change a set, return what was set, or count.
 const METHODS: [(&str, &str, &str); 24] = [

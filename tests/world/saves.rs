@@ -384,7 +384,7 @@ fn each_damage_is_named() {
     let mut text = whole.clone();
     text["version"] = number(2);
     let refused = serde_json::from_value::<WorldSnapshot>(text).unwrap_err();
-    assert!(refused.problem().contains("snapshot of version 2"), "{refused}");
+    assert!(refused.to_string().contains("snapshot of version 2"), "{refused}");
 }
 
 #[test]
