@@ -93,20 +93,6 @@ fn knot_length() -> f64 {
     (0..n).map(|i| speed(step * f64::from(i))).sum::<f64>() * step
 }
 
-#[test]
-fn sizes_are_kept() {
-    let gear = default_mesh("gear");
-    let radii = gear.vertices.iter().map(|v| glam::Vec2::new(v[0], v[1]).length());
-    assert!((radii.clone().fold(0.0, f32::max) - 1.0).abs() < 1e-6);
-    assert!((radii.fold(9.0, f32::min) - 0.3).abs() < 1e-6);
-    for vertex in default_mesh("icosphere").vertices {
-        assert!((glam::Vec3::from(vertex).length() - 1.0).abs() < 1e-6);
-    }
-    assert_eq!(default_mesh("icosphere").triangles.len(), 20 * 64);
-    let edges = with("box", &[("x", 0.5), ("z", 8.0)]).unwrap().vertices[7];
-    assert_eq!(edges, [0.25, 0.5, 4.0]);
-}
-
 /// Sizes that make no shape are refused with what would do.
 #[test]
 fn invalid_sizes_are_rejected() {
