@@ -3,8 +3,7 @@
 
 mod decimate;
 mod far;
-mod obj;
-mod off;
+mod files;
 mod prop;
 mod scale;
 mod shapes;

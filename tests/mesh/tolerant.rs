@@ -15,11 +15,6 @@ fn assert_triangles(format: MeshFormat, bytes: impl AsRef<[u8]>, expected: &[[u3
     assert_eq!(mesh.triangles, expected, "{}", bytes.escape_ascii());
 }
 
-fn replaced(text: &str, from: &str, to: &[u8]) -> Vec<u8> {
-    let (before, after) = text.split_once(from).unwrap();
-    [before.as_bytes(), to, after.as_bytes()].concat()
-}
-
 const OBJ: &str = "# by NAME\no NAME\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl NAME\nf 1 2 3\n";
 
 const STL: &str = "solid NAME\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
@@ -83,124 +78,10 @@ fn marked_utf16_is_text() {
     }
 }
 
-/// Numbers are those of c and fortran.
-#[test]
-fn c_and_fortran_numbers_parse() {
-    let text = OBJ.replace("v 1 0 0", "v +1.d0 .5 5.E-1");
-    let vertex = read(MeshFormat::Obj, text).unwrap().vertices[1];
-    assert_eq!(vertex, [1.0, 0.5, 0.5]);
-}
-
 #[test]
 fn capitals_are_letters_too() {
     assert_triangles(MeshFormat::Stl, STL.to_uppercase(), ONE);
     assert_triangles(MeshFormat::Stl, STL.replace("solid", "Solid"), ONE);
     assert_triangles(MeshFormat::Obj, OBJ.to_uppercase(), ONE);
     assert_triangles(MeshFormat::Ply, PLY.to_uppercase(), ONE);
-}
-
-/// Text stl begins and ends in many ways.
-#[test]
-fn tolerant_text_stl() {
-    let marked = format!("\u{feff}{STL}");
-    let comment = format!("# made by hand\n; and again\n\n// and {STL}");
-    let end = STL.replace("endsolid", "end solid").replace("endloop", "end loop");
-    let one_line = STL.replace("endfacet\n", "endfacet ");
-    for text in [marked, comment, end.replace("endfacet", "end facet"), one_line] {
-        assert_triangles(MeshFormat::Stl, text, ONE);
-    }
-}
-
-/// Exporters write what they have for a normal; here it is not used.
-#[test]
-fn normals_of_stl_may_be_anything() {
-    for normal in ["nan nan nan", "-nan(ind) -1.#IND 1.#QNAN", "", "1 2", "0,0 0,0 1,0"] {
-        assert_triangles(MeshFormat::Stl, STL.replace("0 0 1\n", &format!("{normal}\n")), ONE);
-    }
-}
-
-/// A refused stl is called what it is.
-#[test]
-fn rejected_stl_is_named_correctly() {
-    let message = |bytes: &[u8]| read(MeshFormat::Stl, bytes).unwrap_err().to_string();
-    let cut = STL.to_uppercase();
-    let cut = &cut[..cut.len() / 2];
-    assert!(!message(cut.as_bytes()).contains("binary"), "{}", message(cut.as_bytes()));
-    let mut binary = b"solid".to_vec();
-    binary.resize(80, b' ');
-    binary.extend([2, 0, 0, 0, 7, 7]);
-    assert_eq!(
-        message(&binary),
-        "a: a binary STL file of 2 triangles has 184 bytes, this one has 86"
-    );
-}
-
-/// Unused properties of ply may be anything.
-#[test]
-fn unused_ply_properties_are_ignored() {
-    for value in ["nan", "-nan(ind)", "1.#QNAN", "inf", "?"] {
-        assert_triangles(
-            MeshFormat::Ply,
-            replaced(PLY, "1 0 0 2", format!("1 0 0 {value}").as_bytes()),
-            ONE,
-        );
-    }
-}
-
-/// A comment without the word, and columns that the header does not name.
-#[test]
-fn extra_ply_words_are_ignored() {
-    let unmarked = PLY.replacen("comment NAME", "Created by NAME", 1);
-    assert_triangles(MeshFormat::Ply, unmarked, ONE);
-    let longer = PLY.replace("1 0 0 2\n", "1 0 0 2 7 8\n").replace("3 0 1 2\n", "3 0 1 2 9 9\n");
-    assert_triangles(MeshFormat::Ply, longer, ONE);
-    let misspelt = PLY.replacen("property float quality", "propert float quality", 1);
-    let message = read(MeshFormat::Ply, misspelt).unwrap_err().to_string();
-    assert_eq!(message, "a:9: this does not fit a PLY header: \"propert float quality\"");
-}
-
-/// The numbers begin after the line feed if the header's other lines end with one, whatever is
-/// before it.
-#[test]
-fn binary_ply_begins_after_header() {
-    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
-                  property float z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
-    // The first byte of the data looks like a line end, too.
-    let first = f32::from_le_bytes([b'\n', 0, 0, 0]);
-    let points = [[first, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let numbers = points.as_flattened().iter().flat_map(|x| x.to_le_bytes());
-    let data: Vec<u8> = numbers.chain([3, 0, 1, 2]).collect();
-    for text in [
-        header.to_owned(),
-        header.replace('\n', "\r\n"),
-        header.replace('\n', "\r"),
-        header.replace("end_header\n", "end_header\r\n"),
-    ] {
-        assert_triangles(MeshFormat::Ply, [text.as_bytes(), &data].concat(), ONE);
-    }
-}
-
-/// −1 ends a strip, and each strip starts with a triangle in the order of its vertices.
-#[test]
-fn strips_of_ply_are_unrolled() {
-    let strips = PLY
-        .replace("element vertex 3", "element vertex 5")
-        .replace("element face 1", "element tristrips 1")
-        .replace("3 0 1 2\n", "1 1 0 4\n2 1 0 5\n8 0 1 2 3 -1 1 3 4\n");
-    assert_triangles(MeshFormat::Ply, strips, &[[0, 1, 2], [2, 1, 3], [1, 3, 4]]);
-}
-
-/// Lines of obj are continued and commented.
-#[test]
-fn obj_lines_continue_and_comment() {
-    let text = "v 0 0 0 # first\nv 1 0 \\\n 0\nV 0 1 0\nf 1/1 2/x/y \\\r\n3//-7#\nf -1 -2 -3";
-    assert_triangles(MeshFormat::Obj, text, &[[0, 1, 2], [2, 1, 0]]);
-    let later = "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
-    assert_triangles(MeshFormat::Obj, later, ONE);
-}
-
-#[test]
-fn a_binary_file_is_no_obj() {
-    let message = read(MeshFormat::Obj, b"glTF\x00\x01\xff").unwrap_err().to_string();
-    assert_eq!(message, "a: this is not text: byte 0x00 at offset 4");
 }
