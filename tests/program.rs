@@ -1,5 +1,7 @@
 //! The program `sdop`, as a user runs it.
 
+#[path = "support/answers.rs"]
+mod answers;
 mod cli;
 mod judge;
 mod tradeoff;

@@ -131,25 +131,6 @@ fn older_records_are_read() {
     assert_eq!(reader.next_frame().unwrap(), None);
 }
 
-#[test]
-fn other_files_are_told_from_records() {
-    for (text, problem) in [
-        ("", "the first line is empty"),
-        ("\n\n", "the first line is empty"),
-        ("name = \"scene\"\n", "expected ident"),
-        ("{\"format\":\"glTF\",\"version\":2}\n", "its format is \"glTF\""),
-        ("{}\n", "missing field `format`"),
-    ] {
-        let (message, help) = refusal(text);
-        assert!(message.starts_with("r.ndjson:1: not a record: "), "{message}");
-        assert!(message.contains(problem), "{message}");
-        assert!(help.contains("sdop run SCENE --record FILE"), "{help}");
-    }
-    let (message, help) = refusal(&altered("\"version\":1", "\"version\":7"));
-    assert_eq!(message, "r.ndjson:1: the record has version 7; this program reads version 1");
-    assert!(help.contains("write it again"), "{help}");
-}
-
 /// A first line that contradicts itself is refused.
 #[test]
 fn contradictory_header_is_rejected() {

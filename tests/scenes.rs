@@ -1,5 +1,7 @@
 //! Scenes: files, errors, placement, effects, and one scene on many ranks.
 
+#[path = "support/answers.rs"]
+mod answers;
 mod domain;
 mod effects;
 mod far_scenes;

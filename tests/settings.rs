@@ -1,9 +1,7 @@
-//! The culling settings by name: flags, scene files and JSON spell them alike, and invalid ones are
-//! rejected.
+//! The culling settings by name: flags, scene files and JSON spell them alike.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use sdop::settings::*;
-use sdop::simd::Tier;
 use sdop_bench::scene::SceneFile;
 
 /// Every name reads back as its choice.
@@ -49,88 +47,4 @@ fn scene_defaults_match_the_library() {
     assert_eq!(settings.k, DirectionSet::K18);
     assert_eq!(serde_json::to_value(&settings).unwrap()["k"], 18);
     settings.check(0).unwrap();
-}
-
-/// Settings that cannot be carried out are refused.
-#[test]
-fn invalid_settings_are_rejected() {
-    let problem = |change: fn(&mut CullSettings)| {
-        let mut settings = CullSettings::all_pairs();
-        change(&mut settings);
-        settings.check(10).unwrap_err().problem()
-    };
-    assert_eq!(
-        problem(|s| s.strategy = Strategy::SDopObjectOfInterest),
-        "strategy s-dop-object-of-interest needs `interest`"
-    );
-    assert_eq!(
-        problem(|s| s.strategy = Strategy::SDopTimeCritical),
-        "strategy s-dop-time-critical needs `budget`"
-    );
-    assert_eq!(
-        problem(|s| s.interest = Some(Interest::Bodies(vec![3, 10]))),
-        "interest: body 10 of a scene of 10"
-    );
-    let cone = |text: &str| {
-        let text = format!("interest = {text}");
-        let settings: CullSettings = toml::from_str(&text).unwrap();
-        settings.check(10).unwrap_err().problem()
-    };
-    assert_eq!(cone("{ direction = [0, 0, 1], half_angle = 30 }"), "interest: a cone has one apex");
-    assert_eq!(
-        cone("{ body = 1, direction = [0, 0, 0], half_angle = 30 }"),
-        "interest: direction [0.0, 0.0, 0.0]"
-    );
-    assert_eq!(
-        cone("{ apex = [nan, 0, 0], direction = [0, 0, 1], half_angle = 30 }"),
-        "interest: apex [NaN, 0.0, 0.0]"
-    );
-    assert_eq!(
-        cone("{ body = 1, direction = [0, 0, 1], half_angle = nan }"),
-        "interest: half_angle NaN"
-    );
-    assert_eq!(
-        cone("{ body = 1, direction = [0, 0, 1], half_angle = 30, range = 0 }"),
-        "interest: range 0"
-    );
-}
-
-/// A builder keeps each setting and no other.
-#[test]
-fn builder_keeps_each_setting() {
-    let settings = CullSettings {
-        strategy: Strategy::KDop,
-        pairs: Finder::Sweep,
-        k: DirectionSet::K26,
-        overlap: Overlap::Full,
-        updates: Updates::Lazy,
-        interest: Some(Interest::Bodies(vec![1])),
-        budget: Some(Budget::Tests(7)),
-        order: Order::OldestAnswer,
-        ..CullSettings::default()
-    };
-    let new = sdop::Culler::builder;
-    let one_by_one = new()
-        .threads(2)
-        .tier(Tier::SCALAR)
-        .strategy(settings.strategy)
-        .finder(settings.pairs)
-        .k(settings.k)
-        .overlap(settings.overlap)
-        .updates(settings.updates)
-        .interest(Interest::Bodies(vec![1]))
-        .budget(Budget::Tests(7))
-        .worth_waking(3)
-        .order(settings.order);
-    let on_two = new().threads(2).tier(Tier::SCALAR);
-    let at_once = on_two.clone().worth_waking(3).settings(&settings);
-    assert_eq!(one_by_one, at_once);
-    let others = [
-        new().settings(&settings),
-        new().settings(&settings).threads(2),
-        new().settings(&settings).tier(Tier::SCALAR),
-        on_two.clone().settings(&settings),
-        on_two.worth_waking(3),
-    ];
-    assert!(!others.contains(&at_once));
 }

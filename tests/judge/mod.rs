@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod answers;
 mod catalogue;
 mod cheats;
-mod commands;
 mod cullers;
 mod parts;
 mod periodic;
@@ -13,3 +11,10 @@ mod programs;
 mod rust;
 mod twins;
 mod vectors;
+
+/// `tests/cmd/judge.console`: cases, answers to them, smallest cases as scenes and unit tests.
+#[cfg(target_os = "linux")]
+#[test]
+fn commands() {
+    crate::cli::check("judge");
+}

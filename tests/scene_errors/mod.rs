@@ -3,62 +3,70 @@
 
 mod contract;
 mod damaged;
-mod scenes;
-mod values;
 
 use std::path::Path;
 
 use miette::Diagnostic;
 use sdop_bench::scene::{Scene, SceneError, SceneFile};
 
+use crate::answers;
+
+const HERE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scene_errors");
+const SOUND: &str = include_str!("sound.toml");
+
 fn build(text: &str) -> Result<Scene, SceneError> {
-    SceneFile::parse(text, "a.toml", Path::new("data/scenes"))?.build()
+    SceneFile::parse(text, "a.toml", Path::new(HERE))?.build()
 }
 
-/// The error of a scene as "message | hint".
-fn refusal(text: &str) -> String {
-    let error = build(text).expect_err(text);
-    let hint = error.help().map(|hint| format!(" | {hint}")).unwrap_or_default();
-    format!("{error}{hint}")
-}
-
-const SOUND: &str = r#"name = "s"
-frames = 2
-[box]
-side = 20
-[[bodies]]
-shape = "box"
-count = 3
-radius = 1
-speed = [0.5, 2]
-[effects]
-motion = true
-walls = "specular"
-[cull]
-strategy = "sphere"
-"#;
-
-/// The sound scene with one piece of text replaced.
-fn changed(from: &str, to: &str) -> String {
-    assert!(SOUND.contains(from), "{from}");
-    refusal(&SOUND.replacen(from, to, 1))
-}
-
-/// A scene of two boxes, the second one as posed.
-fn posed(pose: &str) -> String {
-    format!(
-        "name = \"p\"\nframes = 1\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, 0, 1, 0, 0, 0],\n {pose}]\n"
-    )
+/// The error of a scene with its remedy, or what the scene has.
+fn answer(text: &str) -> String {
+    match build(text) {
+        Ok(scene) => format!("{} bodies, side {:?}", scene.bodies.len(), scene.side),
+        Err(error) => {
+            let help = error.help().map(|help| format!("\nhelp: {help}"));
+            format!("{error}{}", help.unwrap_or_default()).replace(HERE, ".")
+        }
+    }
 }
 
 #[test]
-fn the_sound_scene_builds() {
-    let scene = build(SOUND).unwrap();
-    assert_eq!((scene.bodies.len(), scene.shapes.len(), scene.side), (3, 1, Some(20.0)));
+fn scenes_are_rejected_with_a_remedy() {
+    assert_eq!(answer(SOUND), "3 bodies, side Some(20.0)");
+    let mut scene = SOUND.to_owned();
+    answers::check(&Path::new(HERE).join("errors.txt"), |input| {
+        let Some((from, to)) = input.split_once(" =>") else {
+            scene = format!("{input}\n");
+            return answer(&scene);
+        };
+        let [from, to] = [from, to.strip_prefix(' ').unwrap_or(to)].map(|t| t.replace("\\n", "\n"));
+        assert!(scene.contains(&from), "{from}");
+        answer(&scene.replacen(&from, &to, 1))
+    });
 }
 
 #[test]
 fn an_unreadable_file_is_named() {
     let error = SceneFile::read(Path::new("data/scenes/no-such-scene.toml")).unwrap_err();
     assert!(error.to_string().starts_with("data/scenes/no-such-scene.toml: "), "{error}");
+}
+
+#[test]
+fn text_of_no_kind_is_located() {
+    assert!(answer("").starts_with("a.toml:1:1: missing field"));
+    assert!(answer("\u{feff}\0ö = [").starts_with("a.toml:1:"));
+}
+
+/// Floats read as the nearest f32 of their text.
+#[test]
+fn floats_round_once() {
+    // Just above the midpoint of 1 and the next f32: as f64 it is the midpoint itself, and ties to
+    // even give 1.
+    let text = "1.00000005960464477539062500000000000000001";
+    assert_eq!(text.parse::<f64>().unwrap() as f32, 1.0);
+    let scene = format!(
+        "name = \"p\"\nframes = 1\n[[bodies]]\nshape = \"box\"\nposes = [[0, 0, {text}, 16777217, 0.1, 0, 0]]\n"
+    );
+    let scene = build(&scene).unwrap();
+    assert_eq!(scene.bodies.rotation[0], [0.0, 0.0, 1.0_f32.next_up(), 16_777_216.0]);
+    assert_eq!(scene.bodies.translation[0][0], 0.1);
 }

@@ -1,8 +1,6 @@
-//! The comparison of volumes: its truth, its hulls, its counts, and the commands that print them.
+//! The comparison of volumes: its truth, its hulls, its counts.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its input has failed")]
-
-mod commands;
 
 use std::fs;
 use std::path::Path;
@@ -205,4 +203,11 @@ fn worlds_are_compared_where_bodies_rest() {
             }
         }
     }
+}
+
+/// `tests/cmd/tradeoff.console`: what `tradeoff` and `advise` write, print and reject.
+#[cfg(target_os = "linux")]
+#[test]
+fn commands() {
+    crate::cli::check("tradeoff");
 }
