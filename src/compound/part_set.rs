@@ -7,10 +7,7 @@ use crate::rounding::narrow::turn_error;
 use crate::rounding::pose::{rotate_of, rotation};
 use crate::rounding::query::{is_beyond, largest, slack};
 use crate::volume::Shape;
-use crate::world::{Body, compose, reach_about_pose};
-
-/// An unturned part keeps the quaternion of its body.
-const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+use crate::world::{Body, UNTURNED, compose, reach_about_pose};
 
 /// The parts of a shape number: those of a compound, or a shape alone.
 #[derive(Clone, Debug)]

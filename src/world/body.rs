@@ -4,6 +4,9 @@ use crate::bodies::{Groups, Motion};
 use crate::rounding::narrow::narrow;
 use crate::simd::in_default_mode;
 
+/// The rotation that turns nothing, a quaternion (x, y, z, w).
+pub(crate) const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
 /// A body of a [`World`](crate::World): its shape, pose, motion, groups and contact margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
@@ -62,7 +65,7 @@ impl Default for Body {
         Self {
             shape: 0,
             motion: Motion::Dynamic,
-            rotation: [0.0, 0.0, 0.0, 1.0],
+            rotation: UNTURNED,
             translation: [0.0; 3],
             rounded: false,
             groups: Groups::ALL,

@@ -2,7 +2,7 @@
 
 use super::local_origins::Origins;
 use super::pair_log::WorldPairs;
-use super::{Groups, Ids, World, WorldError, renumber_column, renumbered_pairs};
+use super::{Groups, Ids, UNTURNED, World, WorldError, renumber_column, renumbered_pairs};
 use crate::strategy::RefinementRanks;
 
 impl World {
@@ -77,7 +77,7 @@ impl World {
         let plan = change(&mut self.ids);
         renumber_column(&mut self.bodies.shape, &plan, 0);
         renumber_column(&mut self.bodies.dynamic, &plan, true);
-        renumber_column(&mut self.bodies.rotation, &plan, [0.0; 4]);
+        renumber_column(&mut self.bodies.rotation, &plan, UNTURNED);
         renumber_column(&mut self.bodies.translation, &plan, [0.0; 3]);
         renumber_column(&mut self.resting, &plan, false);
         renumber_column(&mut self.is_of_interest, &plan, false);

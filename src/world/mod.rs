@@ -73,6 +73,8 @@ mod snapshot;
 #[cfg(feature = "serde")]
 mod snapshot_parts;
 
+#[cfg(feature = "shapes")]
+pub(crate) use self::body::UNTURNED;
 pub use crate::bodies::{Groups, Motion};
 #[cfg(feature = "shapes")]
 pub use body::Body;
@@ -229,7 +231,7 @@ impl World {
         }
         let slot = self.ids.next();
         if self.ids.take() {
-            self.bodies.push(0, true, [0.0f32; 4], [0.0f32; 3]);
+            self.bodies.push(0, true, UNTURNED, [0.0f32; 3]);
             self.resting.push(false);
             self.rounded.push(false);
             self.is_of_interest.push(false);

@@ -15,7 +15,7 @@ use super::snapshot_parts::{
     IdsSnapshot, PairsSnapshot, SnapshotError, Version, damaged, excluded_slots, flag_column,
     flagged_slots, restored_column, restored_excluded,
 };
-use super::{BodyId, Groups, Ids, LivePairs, World, check_margin, check_pose};
+use super::{BodyId, Groups, Ids, LivePairs, UNTURNED, World, check_margin, check_pose};
 use crate::bodies::Bodies;
 use crate::simd::in_default_mode;
 use crate::strategy::RefinementRanks;
@@ -124,7 +124,7 @@ impl World {
         let shape = restored_column("shape", snapshot.shape.iter().copied(), &plan, 0)?;
         let dynamic = restored_column("dynamic", snapshot.dynamic.iter().copied(), &plan, true)?;
         let rotation = snapshot.rotation.iter().map(|q| q.map(f32::from_bits));
-        let rotation = restored_column("rotation", rotation, &plan, [0.0; 4])?;
+        let rotation = restored_column("rotation", rotation, &plan, UNTURNED)?;
         let translation = snapshot.translation.iter().map(|t| t.map(f64::from_bits));
         let translation = restored_column("translation", translation, &plan, [0.0; 3])?;
         let margin = snapshot.margin.iter().copied().map(f32::from_bits);

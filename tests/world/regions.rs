@@ -176,7 +176,7 @@ fn refusals_follow_from_present_bodies() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(5));
     let mut world = world_of_far_meshes();
     let mut seen = [0; 2];
-    for frame in 0..400 {
+    for frame in 0..1200 {
         let body = |random: &mut Random| Body {
             motion: motion(random.below(3) > 0),
             rotation: [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]][random.below(2) as usize],
