@@ -73,7 +73,7 @@ pub fn tiny(seed: u64, evaluations: u64, floor: f32) -> f64 {
 fn touching_start(random: &mut ChaCha8Rng, scale: f32) -> [f32; 8] {
     let [ax, ay, az, bx, by, bz] = [(); 6].map(|()| random.random_range(-1.0..1.0) * scale);
     let length = squared_distance([ax, ay, az], [bx, by, bz]).sqrt();
-    let share = f64::from(random.random_range(0.0..1.0));
+    let share = random.random_range(0.0..1.0);
     let (ra, rb) = ((length * share) as f32, ((length * (1.0 - share)) as f32).next_up());
     [ax, ay, az, bx, by, bz, ra, rb]
 }

@@ -61,7 +61,7 @@ pub(super) fn cut(
         let face = Face::new(&points);
         let is_quad = polygon.corners == 4;
         let mut is_simple = face.is_convex();
-        if !is_simple && !(is_quad && face.is_far_from_flat) {
+        if !(is_simple || is_quad && face.is_far_from_flat) {
             let ears = face.ears().map_err(|TooManyTests| too_many_tests(polygon))?;
             is_simple = ears.is_some();
             for (triangle, ear) in mesh.triangles[place].iter_mut().zip(ears.unwrap_or_default()) {
