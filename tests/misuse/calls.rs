@@ -39,9 +39,9 @@ const METHODS: [(&str, &str, &str); 24] = [
     (
         "World",
         "",
-        "restore seconds set set_interest set_motion set_pose shapes shrink_to_fit slots",
+        "restore seconds set set_interest set_motion set_pose set_pose_f64 shapes shrink_to_fit",
     ),
-    ("World", "", "snapshot with"),
+    ("World", "", "slots snapshot with"),
     ("BoxWorld", "nnnnn", "cull cull_in_portions cull_up_to"),
     ("BoxWorld", "lllll", "events pairs"),
     ("BoxWorld", "", "bodies body contains counters exclude excluded ids include insert is_empty"),
@@ -51,7 +51,7 @@ const METHODS: [(&str, &str, &str); 24] = [
     ("Periodic", "lll--", "events pairs"),
     ("Periodic", "", "body contains exclude ids images include insert is_excluded periods remove"),
     ("Periodic", "", "set set_periods"),
-    ("PartCuller", "!!!!!", "cull"),
+    ("PartCuller", "!!!n!", "cull"),
     ("PartCuller", "lllll", "body_pairs pairs"),
 ];
 

@@ -13,7 +13,7 @@ fn caller_bodies_are_checked() {
     let refusal = |change: fn(&mut Bodies)| {
         let mut bodies = scene.bodies.clone();
         change(&mut bodies);
-        check_bodies(&bodies, &scene.shapes).unwrap_err().to_string()
+        check_bodies(&bodies, &scene.shapes).unwrap_err().problem()
     };
     check_bodies(&scene.bodies, &scene.shapes).unwrap();
     assert_eq!(refusal(|b| b.shape[2] = 1), "body 2: shape 1 of 1");
@@ -22,7 +22,7 @@ fn caller_bodies_are_checked() {
     let refused = |change: fn(&mut Velocities)| {
         let mut velocities = scene.velocities.clone();
         change(&mut velocities);
-        velocities.check(3).unwrap_err().to_string()
+        velocities.check(3).unwrap_err().problem()
     };
     assert_eq!(refused(|v| v.linear[2] = [f32::INFINITY; 3]), "body 2: velocity [inf, inf, inf]");
     assert_eq!(refused(|v| v.angular[2] = [0.0, 1.2e18, 0.0]), "body 2: spin [0.0, 1.2e18, 0.0]");
@@ -34,6 +34,6 @@ fn caller_bodies_are_checked() {
     assert_eq!(error.to_string(), "body 268435440: number 268435456 of 268435440 at most");
     let mut shapes = scene.shapes.clone();
     shapes[0].ball.radius = f32::NAN;
-    let error = check_bodies(&scene.bodies, &shapes).unwrap_err().to_string();
+    let error = check_bodies(&scene.bodies, &shapes).unwrap_err().problem();
     assert!(error.starts_with("body 0: shape box with reach 1"), "{error}");
 }
