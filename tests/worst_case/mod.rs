@@ -16,7 +16,7 @@ use sdop::rounding::{FINDER_FACTOR, U};
 const EPSILON: f64 = f64::EPSILON / 2.0;
 
 /// Steps of each short search.
-#[cfg(test)]
+#[allow(dead_code, reason = "the longer search has its own")]
 const EVALUATIONS: u64 = 400_000;
 
 /// The largest error that a search with a seed finds in a number of steps.
