@@ -149,10 +149,10 @@ pub unsafe extern "C" fn sdop_query_index_touching_ball(
 }
 
 /// Finds the body whose volume a segment may meet first: no other is met at a smaller s. `found`
-/// gets whether there is such a body, and `hit` gets it.
+/// gets whether there is such a body, and `hit`, unless it is null, gets it.
 ///
 /// # Safety
-/// `index` is a handle, `segment` a segment; `hit` and `found` may be written.
+/// `index` is a handle, `segment` a segment; `hit` is null or may be written, `found` may be.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_first(
     index: *const SdopQueryIndex,
@@ -163,11 +163,10 @@ pub unsafe extern "C" fn sdop_query_index_first(
     // SAFETY: the caller's promise.
     let (hit, found) = unsafe { (Out::new(hit), Out::new(found)) };
     answer(found, "found", || {
-        let hit = hit.checked("hit")?;
         // SAFETY: the caller's promise.
         let (it, segment) = unsafe { (shared(index, "index")?, *shared(segment, "segment")?) };
         let first = it.0.first(&segment.into())?;
-        if let Some(first) = first {
+        if let (Some(first), Ok(hit)) = (first, hit.checked("hit")) {
             // SAFETY: not null, so it may be written, by the caller's promise.
             unsafe { hit.write(first.into()) };
         }

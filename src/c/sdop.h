@@ -819,10 +819,10 @@ SdopStatus sdop_query_index_touching_ball(const SdopQueryIndex *index,
                                           size_t *count);
 
 // Finds the body whose volume a segment may meet first: no other is met at a smaller s. `found`
-// gets whether there is such a body, and `hit` gets it.
+// gets whether there is such a body, and `hit`, unless it is null, gets it.
 //
 // # Safety
-// `index` is a handle, `segment` a segment; `hit` and `found` may be written.
+// `index` is a handle, `segment` a segment; `hit` is null or may be written, `found` may be.
 SdopStatus sdop_query_index_first(const SdopQueryIndex *index,
                                   const SdopSegment *segment,
                                   SdopHit *hit,

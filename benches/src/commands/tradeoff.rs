@@ -220,6 +220,7 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miett
 ///
 /// # Errors
 /// Another text.
+#[cfg_attr(not(feature = "maintain"), allow(dead_code, reason = "pages alone need it"))]
 pub fn figures_of(recorded: &str) -> miette::Result<Vec<(String, String)>> {
     let recorded: RecordedTradeoff = serde_json::from_str(recorded).into_diagnostic()?;
     figures(&recorded.result)

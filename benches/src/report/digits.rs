@@ -68,6 +68,7 @@ impl std::fmt::Display for Quantity {
 }
 
 /// Writes a number with this many significant digits, without an exponent.
+#[cfg_attr(not(feature = "maintain"), allow(dead_code, reason = "pages alone need it"))]
 pub(super) fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();
@@ -97,6 +98,7 @@ pub fn thousands(x: f64) -> String {
 }
 
 /// The table of a Markdown text that comes `nth`, as rows of named cells: numbers as numbers.
+#[cfg_attr(not(feature = "maintain"), allow(dead_code, reason = "pages alone need it"))]
 pub(super) fn markdown_table(
     text: &str,
     nth: usize,

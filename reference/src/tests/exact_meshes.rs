@@ -178,7 +178,9 @@ fn inside_needs_a_closed_component() {
     let mut vertices: Vec<_> = faces.as_flattened().iter().enumerate().map(own).collect();
     let mut triangles: Vec<[u32; 3]> = (0..12).map(|t| [0, 1, 2].map(|i| 3 * t + i)).collect();
     let meets_inner = |vertices: &[[f32; 3]], triangles: &[[u32; 3]]| {
-        meets(&prepared(&(vertices.to_vec(), triangles.to_vec())), &inner, [1.0; 3])
+        // The middle of the box, near (1, 1, 1) before it is turned.
+        let middle = [-0.972, -0.007, 1.434];
+        meets(&prepared(&(vertices.to_vec(), triangles.to_vec())), &inner, middle)
     };
     assert!(meets_inner(&vertices, &triangles), "equal positions are one vertex");
     assert!(!meets_inner(&vertices, &triangles[1..]), "a triangle is missing");

@@ -165,6 +165,7 @@ fn disagreement(results: &Results) -> Option<String> {
 ///
 /// # Errors
 /// Another text.
+#[cfg_attr(not(feature = "maintain"), allow(dead_code, reason = "pages alone need it"))]
 pub fn figures_of(results: &str) -> miette::Result<Vec<(String, String)>> {
     figures::draw_all(&rows::Drawings::read(results)?)
 }

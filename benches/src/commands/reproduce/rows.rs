@@ -67,6 +67,7 @@ impl Drawings {
     ///
     /// # Errors
     /// Another text.
+    #[cfg_attr(not(feature = "maintain"), allow(dead_code, reason = "pages alone need it"))]
     pub fn read(results: &str) -> miette::Result<Self> {
         let mut read: Self = serde_json::from_str(results).into_diagnostic()?;
         for cell in &mut read.table_1 {
