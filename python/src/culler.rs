@@ -80,7 +80,7 @@ impl Culler {
             None => vec![true; n],
         };
         check_length("dynamic", dynamic.len(), n)?;
-        let builder = self::builder(strategy, finder, threads)?;
+        let builder = builder(strategy, finder, threads)?;
         let mut with_interest = builder.clone();
         if let Some(bodies) = &interest {
             with_interest = with_interest.interest(Interest::Bodies(bodies.clone()));
