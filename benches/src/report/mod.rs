@@ -3,7 +3,7 @@
 //!
 //! A record is a directory `data/record/<machine>/<experiment>` of tables and one [`Manifest`],
 //! which holds the command, the commit, the machine and a digest of every file. A page quotes
-//! records through its template ([`pages`]); rendering again must change nothing.
+//! records through its template (`pages`); rendering again must change nothing.
 
 mod clock;
 mod columns;
