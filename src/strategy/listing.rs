@@ -298,7 +298,8 @@ impl<T> Lister<'_, '_, T> {
         if let Some(filter) = self.filter {
             self.keep_passing(listed, filter);
         }
-        self.counters.hits += (self.out.len() - listed) as u64;
+        // A list for which there is no memory has lost what it had.
+        self.counters.hits += self.out.len().saturating_sub(listed) as u64;
         if self.out.len() >= self.flush.enough {
             (self.flush.call)(self.out);
         }

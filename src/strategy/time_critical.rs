@@ -35,7 +35,6 @@ pub(super) struct History {
 /// for pairs that were never refined; pairs that were last refined in the same frame have the same
 /// rank, and later frames have higher ranks, without gaps. Equal histories therefore compare equal,
 /// whatever the frames' numbers.
-#[cfg(feature = "serde")]
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct RefinementRanks(pub Vec<([u32; 2], u32)>);
 
