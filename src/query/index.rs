@@ -176,7 +176,7 @@ impl QueryIndex {
         shorten(&mut self.homes, rows);
         shorten(&mut self.ids, rows);
         if let Some(posed) = &mut self.posed {
-            shorten(&mut posed.bodies, rows);
+            posed.shorten(rows);
         }
     }
 

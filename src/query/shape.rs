@@ -209,6 +209,14 @@ pub(super) struct PosedBodies {
 }
 
 impl PosedBodies {
+    /// Removes the bodies of all rows from number `rows` on.
+    pub fn shorten(&mut self, rows: usize) {
+        self.bodies.truncate(rows);
+        if self.bodies.capacity() > 4 * rows {
+            self.bodies.shrink_to(2 * rows);
+        }
+    }
+
     /// The body in a slot.
     #[inline(always)]
     pub fn at(&self, slot: usize) -> Option<PosedShape<'_>> {
