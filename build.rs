@@ -11,7 +11,7 @@ fn main() {
     if std::env::var_os("OPT_LEVEL").is_some_and(|level| level == "0") {
         println!("cargo:rustc-cfg=unoptimised");
     }
-    // Kernels are compiled once per tier, and `SDOP_TIERS=avx2` leaves two of five. For development;
+    // Kernels are compiled once per tier; `SDOP_TIERS=avx2` leaves two of five. For development:
     // the pairs are the same.
     println!("cargo:rerun-if-env-changed=SDOP_TIERS");
     println!("cargo:rustc-check-cfg=cfg(omits, values(none(), \"{}\"))", TIERS.join("\", \""));
