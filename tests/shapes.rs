@@ -1,5 +1,7 @@
 //! Mesh files, and the volumes that contain their vertices.
 
+#[path = "support/answers.rs"]
+mod answers;
 #[path = "support/forms.rs"]
 mod forms;
 mod mesh;

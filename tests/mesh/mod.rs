@@ -13,8 +13,10 @@ mod tolerant;
 mod topology;
 mod tri;
 
-use crate::forms;
-use sdop::mesh::TriangleMesh;
+use std::path::Path;
+
+use crate::{answers, forms};
+use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 use sha2::{Digest, Sha256};
 
 /// Six times the signed volume is the sum of det(a, b, c): positive when counter-clockwise faces
@@ -28,4 +30,47 @@ fn signed_volume(mesh: &TriangleMesh) -> f64 {
 
 fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// What is said of each file: its size with warnings, or the error.
+#[test]
+fn files_get_their_messages() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mesh/errors.txt");
+    let (mut name, mut whole) = (String::new(), String::new());
+    answers::check(Path::new(path), |input| {
+        let text = match input.split_once(" =>") {
+            Some((from, to)) => {
+                let [from, to] = [from, to.strip_prefix(' ').unwrap_or(to)]
+                    .map(|part| part.replace("\\n", "\n"));
+                assert!(whole.contains(&from), "{from}");
+                whole.replacen(&from, &to, 1)
+            }
+            None => {
+                let (first, text) = input.split_once('\n').unwrap_or((input, ""));
+                name = first.to_owned();
+                whole = if text.is_empty() { String::new() } else { format!("{text}\n") };
+                whole.clone()
+            }
+        };
+        let format = MeshFormat::from_path(Path::new(&name)).unwrap();
+        match read_bytes(&name, format, &bytes(&text), &ReadOptions::default()) {
+            Err(error) => error.problem(),
+            Ok(mesh) => {
+                let size =
+                    format!("{} vertices, {} triangles", mesh.vertices.len(), mesh.triangles.len());
+                [vec![size], mesh.warnings].concat().join("\n")
+            }
+        }
+    });
+}
+
+/// `\xNN` is a byte.
+fn bytes(text: &str) -> Vec<u8> {
+    let mut parts = text.split("\\x");
+    let first = parts.next().unwrap_or_default().as_bytes().to_vec();
+    parts.fold(first, |mut bytes, part| {
+        bytes.push(u8::from_str_radix(&part[..2], 16).unwrap());
+        bytes.extend(part[2..].bytes());
+        bytes
+    })
 }

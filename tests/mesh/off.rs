@@ -47,26 +47,3 @@ fn lines_may_be_broken_anywhere() {
     assert_square("OFF\n4 1 4\n0 0 0 2 0 0\n2 2 0 0 2 0\n4 0 1\n2 3\n");
     assert_square("NOFF\n4 1 4\n0 0 0 0 0 1 2 0 0 0 0 1\n2 2 0 0 0 1 0 2 0 0 0 1\n4 0 1 2 3\n");
 }
-
-/// Bad off is refused with its line.
-#[test]
-fn invalid_off_is_rejected() {
-    let square = "OFF\n4 1 0\n0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2 3\n";
-    let with = |from: &str, to: &str| square.replacen(from, to, 1);
-    for (text, expected) in [
-        (String::new(), "a.off: the mesh has no vertices"),
-        ("solid\n".into(), "a.off:1: this is not OFF: found \"solid\""),
-        ("OFF BINARY\n".into(), "a.off:1: this is a binary OFF file"),
-        (with("OFF", "nOFF 4"), "a.off:1: vertices of nOFF have another number of dimensions"),
-        (with("4 1 0", "4 0 0").replace("4 0 1 2 3\n", ""), "a.off: the mesh has no triangles"),
-        (with("4 1", "0 1"), "a.off:2: the mesh has no vertices"),
-        (with("4 1", "-4 1"), "a.off:2: a count should not be negative, found -4"),
-        (with("4 1", "5 1"), "a.off:7: the file ends where face 0 of 1 should be"),
-        (with("4 1", "4 2"), "a.off:7: the file ends where face 1 of 2 should be"),
-        (with("2 2 0", "2 x 0"), "a.off:5: a coordinate should be a number, found \"x\""),
-        (with("1 2 3", "1 2 4"), "a.off:7: triangle 1 names vertex 4, but the vertices are 0 to 3"),
-        (with("4 0 1 2 3", "0"), "a.off: the mesh has no triangles"),
-    ] {
-        assert_eq!(off(&text).unwrap_err().problem(), expected, "{text}");
-    }
-}
