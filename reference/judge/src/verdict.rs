@@ -45,6 +45,12 @@ impl CaseVerdict {
         };
         matches!(trouble, AnswerError::Start { .. })
     }
+
+    /// Whether the time was over before an answer.
+    #[must_use]
+    pub fn is_late(&self) -> bool {
+        matches!(&self.outcome, Outcome::Error { trouble: AnswerError::Timeout { .. } })
+    }
 }
 
 /// The name and what is wrong, if anything is.
@@ -110,6 +116,8 @@ pub struct Verdict {
     pub cases: Vec<CaseVerdict>,
     /// The number of cases that were not run, because time was up or an earlier case failed.
     pub not_run: usize,
+    /// Large sets that were not judged, because the culler is too slow for them.
+    pub large_not_judged: usize,
     /// Known failures that pass: the list is stale.
     pub stale: Vec<String>,
     /// The most extra pairs for each required one that the culler allows itself.
@@ -128,7 +136,7 @@ impl Verdict {
             || self.cases.iter().any(|case| self.counts_against(case));
         if is_refuted {
             Conclusion::NotPassed
-        } else if self.judged() < self.asked() {
+        } else if self.judged() < self.asked() || self.cases.is_empty() {
             Conclusion::Incomplete
         } else if self.cases.iter().any(|case| case.outcome == Outcome::Pass) {
             Conclusion::Pass
@@ -253,11 +261,12 @@ impl fmt::Display for Verdict {
         });
         writeln!(
             f,
-            "claim {}: {}, {} of {} cases judged",
+            "claim {}: {}, {} of {} cases judged{}",
             self.claim,
             self.conclusion(),
             self.judged(),
-            self.asked()
+            self.asked(),
+            if self.large_not_judged > 0 { ", large sets not judged" } else { "" }
         )?;
         writeln!(
             f,

@@ -43,6 +43,7 @@ fn verdict(cases: Vec<CaseVerdict>) -> Verdict {
         seed: None,
         cases,
         not_run: 0,
+        large_not_judged: 0,
         stale: Vec::new(),
         extra_limit: None,
         smallest: None,
