@@ -246,9 +246,14 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
             count.missed += 1;
             miss = miss.or(Some(Miss { frame: number, pair: *pair }));
         }
-        for pair in list.iter().filter(|pair| required.binary_search(pair).is_err()) {
+        let extra = list.iter().filter(|pair| required.binary_search(pair).is_err());
+        for (n, pair) in extra.enumerate() {
             if truth.parts(frame, *pair) {
                 parted.push((number, *pair));
+            }
+            if n >= MOST_EXPLAINED {
+                count.extra += 1;
+                continue;
             }
             explain([&truth, &balls], frame, *pair, &mut count)?;
         }
@@ -272,6 +277,10 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
     let outcome = wrong.map_or(Outcome::Pass, |why| Outcome::Fail { why });
     Ok(CaseScore { outcome, count, miss, lists })
 }
+
+/// Extra pairs of a frame whose causes are looked for: a culler that reports all pairs of a large
+/// set has tens of millions.
+const MOST_EXPLAINED: usize = 1 << 16;
 
 /// Counts an extra pair by its cause.
 fn explain(

@@ -44,7 +44,9 @@ impl Truth {
         if let Some(meet) = self.by_boxes(frame, [i, j]) {
             return Ok(meet);
         }
-        if frame.parts.is_some() {
+        let has_parts =
+            |body: u32| frame.parts.as_ref().is_some_and(|p| !p[body as usize].is_empty());
+        if has_parts(i) || has_parts(j) {
             return Ok(self.meeting_parts(frame, [i, j])?.is_some());
         }
         let (a, b) = (self.body(frame, i)?, self.body(frame, j)?);
@@ -131,8 +133,8 @@ impl Truth {
         Ok(pairs)
     }
 
-    /// For a large set, intervals along each axis that the bodies that meet have in common. Generous:
-    /// they only save time. `None` for a small set, and where bodies have parts or images.
+    /// For a large set, intervals along each axis; those of bodies that meet overlap.
+    /// They only save time. `None` for a small set, and where boxes have images.
     fn bounds(&self, frame: &Frame) -> Option<Vec<[[f64; 2]; 3]>> {
         let has_periods = frame.periods.is_some_and(|periods| periods != [None; 3]);
         if frame.bodies.len() < LARGE || has_periods {
@@ -239,11 +241,15 @@ fn is_positive(terms: [f32; 4]) -> bool {
     leading.is_some_and(|part| *part > 0.0)
 }
 
-/// Can two meshes meet at all? Not when their origins are further apart than both reaches on some
-/// axis; √3 and the ulps are in the factor 2.
+/// Can two meshes meet at all? Not when their origins are further apart than corners of cubes of
+/// both reaches are; the rounding is in the factor 1.75, which is above √3.
 fn near((a, ta): (&reference::Shape, [f64; 3]), (b, tb): (&reference::Shape, [f64; 3])) -> bool {
-    let reach = 2.0 * (a.mesh().reach + b.mesh().reach);
-    (0..3).all(|axis| (ta[axis] - tb[axis]).abs() <= reach)
+    let reach = 1.75 * (a.mesh().reach + b.mesh().reach);
+    let apart = [0, 1, 2].map(|axis| (ta[axis] - tb[axis]).abs());
+    let square = apart.iter().map(|x| x * x).sum::<f64>();
+    // Squares of the least and the greatest sizes are not finite numbers.
+    let is_sound = (1e-100..1e100).contains(&square) && (1e-100..1e100).contains(&(reach * reach));
+    apart.iter().all(|x| *x <= reach) && (!is_sound || square <= reach * reach)
 }
 
 /// Bodies of a set in which not every pair is decided exactly.

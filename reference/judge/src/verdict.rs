@@ -158,13 +158,23 @@ impl Verdict {
         let is_skipped = |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. });
         match self.conclusion() {
             Conclusion::Pass => None,
-            Conclusion::Incomplete => Some(format!(
-                "{} of {} cases were judged: {} skipped, {} not run",
-                self.judged(),
-                self.asked(),
-                self.cases.iter().filter(is_skipped).count(),
-                self.not_run
-            )),
+            Conclusion::Incomplete => {
+                let late = self.cases.iter().filter(|case| case.is_late()).count();
+                let late = match late {
+                    0 => String::new(),
+                    _ if late == self.cases.len() => {
+                        format!(", {late} out of time: it hangs, or needs a longer --timeout")
+                    }
+                    _ => format!(", {late} out of time: give a longer --timeout"),
+                };
+                Some(format!(
+                    "{} of {} cases were judged: {} skipped, {} not run{late}",
+                    self.judged(),
+                    self.asked(),
+                    self.cases.iter().filter(is_skipped).count(),
+                    self.not_run
+                ))
+            }
             Conclusion::NotPassed => Some(self.refutation()),
         }
     }
@@ -191,17 +201,21 @@ impl Verdict {
         self.cases.len() + self.not_run
     }
 
-    /// Cases that were judged: run, and not skipped.
+    /// Cases that were judged: run, neither skipped nor out of time.
     #[must_use]
     pub fn judged(&self) -> usize {
-        let is_skipped = |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. });
+        let is_skipped =
+            |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. }) || case.is_late();
         self.cases.len() - self.cases.iter().filter(is_skipped).count()
     }
 
-    /// A case that failed or erred, and isn't known to.
+    /// A case that failed or erred, and isn't known to. A slow program on a busy machine is not
+    /// wrong: no answer in time is no failure, and no pass either.
     #[must_use]
     pub fn counts_against(&self, case: &CaseVerdict) -> bool {
-        !case.known && matches!(case.outcome, Outcome::Fail { .. } | Outcome::Error { .. })
+        !case.is_late()
+            && !case.known
+            && matches!(case.outcome, Outcome::Fail { .. } | Outcome::Error { .. })
     }
 
     /// Whether more extra pairs were reported than the culler allows itself.

@@ -80,19 +80,24 @@ impl WholeTurn {
     const NONE: Self =
         Self { quaternion: [0, 0, 0, 1], norm: 1, matrix: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] };
 
-    /// One whose squares have more digits than an f32.
+    /// One of whose matrix a column is longer than it is, by a sum of squares in f32.
     pub fn draw(rng: &mut impl Rng) -> Self {
-        let quaternion: [i32; 4] = std::array::from_fn(|_| rng.random_range(1..=48));
-        let [x, y, z, w] = quaternion;
-        Self {
-            quaternion,
+        let [x, y, z, w] = std::array::from_fn(|_| rng.random_range(40..=80));
+        let drawn = Self {
+            quaternion: [x, y, z, w],
             norm: x * x + y * y + z * z + w * w,
             matrix: [
                 [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
                 [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
                 [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
             ],
-        }
+        };
+        let norm = drawn.norm as f32;
+        let square = |column: usize| {
+            let [a, b, c] = drawn.matrix.map(|row| row[column] as f32);
+            a * a + b * b + c * c
+        };
+        if (0..3).any(|column| square(column) > norm * norm) { drawn } else { Self::draw(rng) }
     }
 
     /// The rotation after another one.

@@ -51,7 +51,7 @@ impl HistoryKind {
 
 const COUNT: usize = 20;
 const FRAMES: usize = 48;
-const MANY_FRAMES: usize = 320;
+const MANY_FRAMES: usize = 280;
 /// Places along each axis of the lattice; bodies reach from one to the next.
 const PLACES: i32 = 5;
 
@@ -140,8 +140,10 @@ fn step(frame: &mut Frame, size: f32, rng: &mut impl Rng) {
 
 /// The boxes of the solids themselves, which touch where they do.
 fn refit(frame: &mut Frame, size: f32, shapes: &[Shape]) -> Result<(), CatalogueError> {
-    if frame.parts.is_some() {
-        return Ok(frame.refit(shapes)?);
+    if let Some(parts) = frame.parts.take() {
+        let bodies = std::mem::take(&mut frame.bodies);
+        *frame = Frame { was: frame.was.take(), ..Frame::of_parts(bodies, parts, shapes)? };
+        return Ok(());
     }
     let solid = |&[x, y, z]: &[f32; 3]| -> WorldBox {
         [x - size, y - size, z - size, x + size, y + size, z + size]
