@@ -104,7 +104,7 @@ impl Default for Options {
             extra_limit: None,
             known: BTreeSet::new(),
             shrink_time: Duration::from_secs(4),
-            large_time: Duration::from_secs(20),
+            large_time: Duration::from_secs(60),
         }
     }
 }

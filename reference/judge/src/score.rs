@@ -144,7 +144,7 @@ fn in_other_orders(
     judged: &CaseScore,
 ) -> Result<Option<CaseScore>, InvalidInput> {
     let backwards = |count: usize| (0..count).rev().collect::<Vec<_>>();
-    let by_threes = |count| (0..3).flat_map(|first| (first..count).step_by(3)).collect();
+    let by_threes = |count: usize| (0..3).flat_map(|first| (first..count).step_by(3)).collect();
     for order in [backwards, by_threes] {
         let other = case.reordered(order);
         let mut again = match subject.answer(&other) {

@@ -213,9 +213,9 @@ impl Verdict {
     /// wrong: no answer in time is no failure, and no pass either.
     #[must_use]
     pub fn counts_against(&self, case: &CaseVerdict) -> bool {
-        !case.is_late()
-            && !case.known
-            && matches!(case.outcome, Outcome::Fail { .. } | Outcome::Error { .. })
+        let fails =
+            !case.known && matches!(case.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
+        fails && !case.is_late()
     }
 
     /// Whether more extra pairs were reported than the culler allows itself.

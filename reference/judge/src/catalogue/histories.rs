@@ -220,7 +220,7 @@ fn other_set(frame: &Frame, rng: &mut impl Rng) -> Frame {
 }
 
 /// Sets of more and more bodies, the last one with more than 16 bits count.
-const SETS: [usize; 2] = [1 << 13, 70_000];
+const SETS: [usize; 2] = [1 << 12, 70_000];
 /// Half sizes from a place to the next one: bodies there are far apart.
 const SPACING: f32 = 6.0;
 

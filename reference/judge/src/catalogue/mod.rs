@@ -182,7 +182,6 @@ sdop_data::with_hard_cases! { groups! {
     oblique_corner_to_corner "oblique/corner-to-corner", 3, CaseDraw::Oblique(exact_touches::Touch::Corners), "volumes in f32 without a margin, in directions off the axes";
     oblique_tip_on_face "oblique/tip-on-face", 3, CaseDraw::Oblique(exact_touches::Touch::TipOnFace), "volumes in f32 without a margin, in directions off the axes";
     oblique_tip_to_tip "oblique/tip-to-tip", 6, CaseDraw::Oblique(exact_touches::Touch::Tips), "balls in f32 without a margin, in directions off the axes";
-    oblique_boxes "oblique/boxes", 4, CaseDraw::Boxes(BoxKind::Oblique), "balls around boxes in f32 without a margin";
     grid_cell_border "grid/cell-border", 12, CaseDraw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
     buffer_growth "buffer/growth", 2, CaseDraw::Crowd(CrowdKind::Growth), "a full buffer of pairs, and one that is never emptied";
     buffer_hub "buffer/hub", 2, CaseDraw::Crowd(CrowdKind::Hub), "a full buffer of one body's partners";
@@ -200,6 +199,7 @@ sdop_data::with_hard_cases! { groups! {
     box_ulp "box/ulp", 8, CaseDraw::Boxes(BoxKind::Ulp), "ends rounded inward, centre and half size in place of ends";
     box_flat "box/flat", 8, CaseDraw::Boxes(BoxKind::Flat), "boxes without a volume, zeros of both signs";
     box_range "box/range", 8, CaseDraw::Boxes(BoxKind::Range), "overflow and underflow of areas and volumes";
+    oblique_boxes "oblique/boxes", 4, CaseDraw::Boxes(BoxKind::Oblique), "balls around boxes in f32 without a margin";
     crowd_new_pairs "crowd/new-pairs", 2, CaseDraw::Crowd(CrowdKind::NewPairs), "a fixed buffer of new pairs", after "mujoco_warp #1461, newton #3702 and Box3D's \"ignoring this pair\"";
     crowd_partners "crowd/partners", 1, CaseDraw::Crowd(CrowdKind::Partners), "a fixed buffer of one body's partners, a fixed stack or pool of nodes", after "Jolt #1520 and #1235";
     stale_reshape "stale/reshape", 6, CaseDraw::Stale(StaleKind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";

@@ -36,6 +36,8 @@ impl<W: LivingWorld> Living<W> {
         for i in 0..self.held.len() {
             let body = self.world.body(&self.frame, i)?;
             let id = match self.held[i] {
+                // What stays is not set again: a world has to know it.
+                Some((id, from)) if from == body => id,
                 Some((id, from)) => self.world.world().change(id, from, body).map(|()| id)?,
                 None => self.world.world().insert(body)?,
             };

@@ -86,7 +86,7 @@ impl Subject for EveryWay {
 const SHARES: u64 = 5;
 
 /// Bodies of a set that is culled by the fastest finder alone.
-const LARGE: usize = 1 << 12;
+const LARGE: usize = 1 << 11;
 
 /// The pairs that all of these answers contain, frame by frame.
 fn all_report(
