@@ -325,6 +325,7 @@ impl CaseGroup {
         let mut rng = ChaCha8Rng::seed_from_u64(key(self.name));
         rng.set_stream(u64::from(number) + (2 << 32));
         Ok(match self.draw {
+            CaseDraw::Boxes(BoxKind::Oblique) => None, // not among the stored vectors
             CaseDraw::Contact(..) | CaseDraw::Far(_) | CaseDraw::Exact(_) | CaseDraw::Boxes(_) => {
                 let drawn = self.drawn(number, None, [1, 1, 2], &mut rng)?;
                 Some(self.named(self.case_name(number, None), drawn))
