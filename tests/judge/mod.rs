@@ -3,13 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod catalogue;
-mod cheats;
 mod cullers;
+mod flawed;
+mod flaws;
+mod ours;
 mod parts;
 mod periodic;
 mod programs;
 mod rust;
-mod twins;
 mod vectors;
 
 /// `tests/cmd/judge.console`: cases, answers to them, smallest cases as scenes and unit tests.

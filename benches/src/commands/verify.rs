@@ -54,7 +54,7 @@ pub struct Args {
     group: Vec<String>,
     /// Judge every configuration that makes this claim by the claim's cases, as `sdop judge` judges
     /// a program
-    #[arg(long, value_name = "CLAIM", conflicts_with_all = ["scenes", "group", "shard"], value_parser = one_of::<Claim>(&EveryWay::CLAIMS.map(Claim::name)))]
+    #[arg(long, value_name = "CLAIM", conflicts_with_all = ["scenes", "group", "shard"], value_parser = one_of::<Claim>(Claim::NAMES))]
     claims: Option<Claim>,
     /// Seeded rounds: each judges 8,192 near and 89,400 random pairs
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(..=1_000_000))]

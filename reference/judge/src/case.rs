@@ -274,6 +274,23 @@ impl Case {
         }
     }
 
+    /// The case with the bodies of each frame in another order, which depends on their number.
+    #[must_use]
+    pub fn reordered(&self, order: impl Fn(usize) -> Vec<usize>) -> Self {
+        let mut before = Vec::new();
+        let frame = |frame: &Frame| {
+            let now = order(frame.bodies.len());
+            let former =
+                |was: u32| before.iter().position(|&i| i == was as usize).map(|i| i as u32);
+            let was = frame.was.as_ref();
+            let was = was.map(|was| now.iter().map(|&i| was[i].and_then(former)).collect());
+            let frame = Frame { was, ..frame.picked(&now) };
+            before = now;
+            frame
+        };
+        Self { frames: self.frames.iter().map(frame).collect(), ..self.clone() }
+    }
+
     /// Whether a frame depends on earlier ones: its set of bodies changes, or it restores a state.
     #[must_use]
     pub fn has_history(&self) -> bool {

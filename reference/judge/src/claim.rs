@@ -41,6 +41,18 @@ impl Claim {
     pub const POSED: &'static [Self] =
         &[Self::Sphere, Self::OrDop, Self::Hull, Self::Mesh, Self::Parts];
 
+    /// The claim that it is the same as without its own input: it gets all cases of that one, too.
+    #[must_use]
+    pub fn base(self) -> Option<Self> {
+        match self {
+            Self::Filter | Self::Order | Self::Restore | Self::Margin | Self::Periodic => {
+                Some(Self::Aabb)
+            }
+            Self::Parts => Some(Self::Mesh),
+            Self::Sphere | Self::Aabb | Self::OrDop | Self::Hull | Self::Mesh => None,
+        }
+    }
+
     /// Whether it is about given boxes.
     #[must_use]
     pub fn is_of_boxes(self) -> bool {

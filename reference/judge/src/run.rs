@@ -1,7 +1,7 @@
 //! Runs a culler on the cases of its claim.
 
-use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -9,6 +9,7 @@ use sdop::choice::nearest;
 use sdop::periodic::PeriodicError;
 use sdop::volume::Shape;
 
+use super::answer::{Answer, StopReason};
 use super::case::{Case, Frame};
 use super::catalogue::{CaseId, CatalogueError, select};
 use super::claim::Claim;
@@ -88,6 +89,8 @@ pub struct Options {
     pub known: BTreeSet<String>,
     /// The time for reducing a failing case.
     pub shrink_time: Duration,
+    /// The longest that a culler may take for a large set, as estimated from a smaller one.
+    pub large_time: Duration,
 }
 
 impl Default for Options {
@@ -101,6 +104,7 @@ impl Default for Options {
             extra_limit: None,
             known: BTreeSet::new(),
             shrink_time: Duration::from_secs(4),
+            large_time: Duration::from_secs(60),
         }
     }
 }
@@ -223,29 +227,78 @@ pub fn examine(
     let deadline = options.time.and_then(|time| Instant::now().checked_add(time));
     let stop = AtomicBool::new(false);
     let done = std::sync::atomic::AtomicUsize::new(0);
+    let subject = Timed { subject, took: AtomicU64::new(0) };
     let run = |id: &CaseId| -> Result<Option<(Case, CaseVerdict)>, JudgeError> {
         if stop.load(Ordering::Relaxed) || deadline.is_some_and(|end| Instant::now() >= end) {
             return Ok(None);
         }
         let case = id.case()?;
+        if id.is_large() {
+            subject.took.store(0, Ordering::Relaxed);
+        }
         // Every group's first case runs twice: equal input must have equal answers.
-        let judged = judge_case(subject, &case, id.number == 0)?;
+        let judged = judge_case(&subject, &case, id.number == 0)?;
         let verdict = line(&case, &judged, &options.known);
         let failed = matches!(verdict.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
         stop.fetch_or(options.fail_fast && failed && !verdict.known, Ordering::Relaxed);
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
         Ok(Some((case, verdict)))
     };
-    let (first, rest) = jobs.split_at(jobs.len().min(STARTS));
+    let (usual, large) = jobs.split_at(jobs.partition_point(|id| !id.is_large()));
+    let (first, rest) = usual.split_at(usual.len().min(STARTS));
     let mut ran: Vec<Option<(Case, CaseVerdict)>> =
         first.par_iter().map(run).collect::<Result<_, _>>()?;
     // A program that can't start for these cases can't start for others.
     let starts = |one: &Option<(Case, CaseVerdict)>| {
         one.as_ref().is_none_or(|(_, verdict)| !verdict.is_without_start())
     };
-    stop.fetch_or(!ran.iter().any(starts), Ordering::Relaxed);
+    stop.fetch_or(!first.is_empty() && !ran.iter().any(starts), Ordering::Relaxed);
     ran.extend(rest.par_iter().map(run).collect::<Result<Vec<_>, _>>()?);
-    Ok(conclude(subject, options, ran))
+    let mut pace = BTreeMap::new();
+    let mut large_not_judged = 0;
+    for id in large {
+        let judged = match is_too_slow(id, &pace, options)? {
+            true => None,
+            false => run(id)?,
+        };
+        match judged.filter(|(_, verdict)| !verdict.is_late()) {
+            Some((case, verdict)) => {
+                let took = subject.took.load(Ordering::Relaxed) as f64;
+                pace.insert(id.group.name, took / case.pairs().max(1) as f64);
+                ran.push(Some((case, verdict)));
+            }
+            None => large_not_judged += 1,
+        }
+    }
+    Ok(Verdict { large_not_judged, ..conclude(&subject, options, ran) })
+}
+
+/// Whether a culler that takes time for each pair, as it did in a smaller set of the same group,
+/// would take too long.
+fn is_too_slow(
+    id: &CaseId,
+    pace: &BTreeMap<&str, f64>,
+    options: &Options,
+) -> Result<bool, CatalogueError> {
+    let Some(pace) = pace.get(id.group.name) else {
+        return Ok(false);
+    };
+    Ok(pace * id.case()?.pairs() as f64 > options.large_time.as_nanos() as f64)
+}
+
+/// A subject with the longest time that it took for a case, in nanoseconds.
+struct Timed<'a> {
+    subject: &'a dyn Subject,
+    took: AtomicU64,
+}
+
+impl Subject for Timed<'_> {
+    fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
+        let start = Instant::now();
+        let answers = self.subject.answer(case);
+        self.took.fetch_max(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+        answers
+    }
 }
 
 /// Runs a case that is given, such as a counter-example from a file; its name and its claim don't
@@ -296,6 +349,7 @@ fn conclude(
         stale: stale(options, &cases),
         cases,
         not_run,
+        large_not_judged: 0,
         extra_limit: options.extra_limit,
         smallest,
     }

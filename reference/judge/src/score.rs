@@ -143,20 +143,20 @@ fn in_other_orders(
     case: &Case,
     judged: &CaseScore,
 ) -> Result<Option<CaseScore>, InvalidInput> {
-    let bodies = case.frames.first().map_or(0, |frame| frame.bodies.len());
-    let by_threes = (0..3).flat_map(|first| (first..bodies).step_by(3));
-    for order in [(0..bodies).rev().collect::<Vec<_>>(), by_threes.collect()] {
-        let other = case.picked(&order);
+    let backwards = |count: usize| (0..count).rev().collect::<Vec<_>>();
+    let by_threes = |count: usize| (0..3).flat_map(|first| (first..count).step_by(3)).collect();
+    for order in [backwards, by_threes] {
+        let other = case.reordered(order);
         let mut again = match subject.answer(&other) {
             Ok(answers) => judge_answers(&other, &answers)?,
             Err(stop) => stopped(&other, stop)?,
         };
-        let original = |pair: &[u32; 2]| {
-            let [i, j] = pair.map(|body| order[body as usize] as u32);
-            [i.min(j), i.max(j)]
-        };
-        for list in &mut again.lists {
-            *list = list.iter().map(original).collect();
+        for (list, frame) in again.lists.iter_mut().zip(&case.frames) {
+            let order = order(frame.bodies.len());
+            for pair in &mut *list {
+                let [i, j] = pair.map(|body| order[body as usize] as u32);
+                *pair = [i.min(j), i.max(j)];
+            }
             list.sort_unstable();
         }
         if again.outcome == Outcome::Pass && again.lists != judged.lists {
@@ -246,9 +246,14 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
             count.missed += 1;
             miss = miss.or(Some(Miss { frame: number, pair: *pair }));
         }
-        for pair in list.iter().filter(|pair| required.binary_search(pair).is_err()) {
+        let extra = list.iter().filter(|pair| required.binary_search(pair).is_err());
+        for (n, pair) in extra.enumerate() {
             if truth.parts(frame, *pair) {
                 parted.push((number, *pair));
+            }
+            if n >= MOST_EXPLAINED {
+                count.extra += 1;
+                continue;
             }
             explain([&truth, &balls], frame, *pair, &mut count)?;
         }
@@ -273,6 +278,10 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
     Ok(CaseScore { outcome, count, miss, lists })
 }
 
+/// Extra pairs of a frame whose causes are looked for: a culler that reports all pairs of a large
+/// set has tens of millions.
+const MOST_EXPLAINED: usize = 1 << 16;
+
 /// Counts an extra pair by its cause.
 fn explain(
     [truth, balls]: [&Truth; 2],
@@ -282,11 +291,13 @@ fn explain(
 ) -> Result<(), InvalidInput> {
     count.extra += 1;
     let is_fixed = |body: &u32| !frame.bodies.dynamic[*body as usize];
+    // The two alone: sets may be large.
+    let alone = frame.picked(&pair.map(|body| body as usize));
     if pair.iter().all(is_fixed) {
         count.both_static += 1;
-    } else if truth.pair(&nearer(frame, pair), pair) == Ok(true) {
+    } else if truth.pair(&nearer(&alone, [0, 1]), [0, 1]) == Ok(true) {
         count.by_rounding += 1;
-    } else if meet_loosely([truth, balls], frame, pair)? {
+    } else if meet_loosely([truth, balls], &alone, [0, 1])? {
         count.by_looseness += 1;
     }
     Ok(())

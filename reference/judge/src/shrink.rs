@@ -80,9 +80,13 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    fn is_over(&self) -> bool {
+        Instant::now() > self.deadline
+    }
+
     /// Takes over a case if something is wrong with it.
     fn try_case(&mut self, case: Case) -> bool {
-        if Instant::now() > self.deadline {
+        if self.is_over() {
             return false;
         }
         let Some((miss, pairs)) = (self.wrong)(&case) else {
@@ -111,12 +115,18 @@ impl Search<'_> {
         if self.case.has_history() {
             return;
         }
-        let mut n = 0;
-        while n < self.case.frames.len() {
-            let kept: Vec<usize> = (0..self.case.frames.len()).filter(|m| *m != n).collect();
-            if !self.try_case(with(&self.case, &kept)) {
-                n += 1;
+        let mut chunk = self.case.frames.len().div_ceil(2);
+        while chunk > 0 {
+            let mut start = 0;
+            while start < self.case.frames.len() && !self.is_over() {
+                let all = 0..self.case.frames.len();
+                let kept: Vec<usize> =
+                    all.filter(|n| !(start..start + chunk).contains(n)).collect();
+                if kept.is_empty() || !self.try_case(with(&self.case, &kept)) {
+                    start += chunk;
+                }
             }
+            chunk /= 2;
         }
     }
 
@@ -136,7 +146,7 @@ impl Search<'_> {
         let mut chunk = bodies(self).div_ceil(2);
         while chunk > 0 {
             let mut start = 0;
-            while start < bodies(self) {
+            while start < bodies(self) && !self.is_over() {
                 let kept: Vec<usize> =
                     (0..bodies(self)).filter(|i| !(start..start + chunk).contains(i)).collect();
                 let smaller = self.case.picked(&kept);
@@ -157,7 +167,7 @@ impl Search<'_> {
                 parts.filter_map(|all| all.get(body)).map(Vec::len).max().unwrap_or(0)
             };
             let mut part = 0;
-            while part < most(&self.case) {
+            while part < most(&self.case) && !self.is_over() {
                 if !without_part(&self.case, body, part).is_some_and(|case| self.try_case(case)) {
                     part += 1;
                 }
@@ -188,7 +198,7 @@ impl Search<'_> {
         }
         for shape in 0..self.case.shapes.len() {
             let mut t = 0;
-            while t < self.case.shapes[shape].triangles.len() && Instant::now() <= self.deadline {
+            while t < self.case.shapes[shape].triangles.len() && !self.is_over() {
                 let smaller = without_triangle(&self.case, shape, t);
                 if !smaller.is_some_and(|case| self.try_case(case)) {
                     t += 1;

@@ -44,7 +44,9 @@ impl Truth {
         if let Some(meet) = self.by_boxes(frame, [i, j]) {
             return Ok(meet);
         }
-        if frame.parts.is_some() {
+        let has_parts =
+            |body: u32| frame.parts.as_ref().is_some_and(|p| !p[body as usize].is_empty());
+        if has_parts(i) || has_parts(j) {
             return Ok(self.meeting_parts(frame, [i, j])?.is_some());
         }
         let (a, b) = (self.body(frame, i)?, self.body(frame, j)?);
@@ -113,12 +115,55 @@ impl Truth {
     /// A pose outside the contract.
     pub fn pairs(&self, frame: &Frame) -> Result<Vec<[u32; 2]>, InvalidInput> {
         let mut pairs = Vec::new();
-        for (i, j) in reference::broad_phase::all_pairs(&frame.bodies.dynamic) {
-            if self.pair(frame, [i, j])? {
-                pairs.push([i, j]);
+        let mut decide = |pair| -> Result<(), InvalidInput> {
+            pairs.extend(self.pair(frame, pair)?.then_some(pair));
+            Ok(())
+        };
+        match self.bounds(frame) {
+            Some(bounds) => near_pairs(&bounds).into_iter().try_for_each(|pair| {
+                let moves = pair.iter().any(|&body| frame.bodies.dynamic[body as usize]);
+                if moves { decide(pair) } else { Ok(()) }
+            })?,
+            None => {
+                let mut all = reference::broad_phase::all_pairs(&frame.bodies.dynamic);
+                all.try_for_each(|(i, j)| decide([i, j]))?;
             }
         }
+        pairs.sort_unstable();
         Ok(pairs)
+    }
+
+    /// For a large set, intervals along each axis; those of bodies that meet overlap.
+    /// They only save time. `None` for a small set, and where boxes have images.
+    fn bounds(&self, frame: &Frame) -> Option<Vec<[[f64; 2]; 3]>> {
+        let has_periods = frame.periods.is_some_and(|periods| periods != [None; 3]);
+        if frame.bodies.len() < LARGE || has_periods {
+            return None;
+        }
+        let of_parts = |i: usize| {
+            let parts = frame.parts.as_ref().map_or(&[][..], |parts| &parts[i]);
+            parts.iter().map(|part| {
+                let offset = part.rotation_and_translation().1;
+                reach(&self.shapes[part.shape as usize])
+                    + 2.0 * offset.map(f64::abs).iter().sum::<f64>()
+            })
+        };
+        let bound = |i: usize| {
+            let shape = &self.shapes[frame.bodies.shape[i] as usize];
+            let reach = of_parts(i).fold(reach(shape), f64::max);
+            let margin = 2.0 * f64::from(frame.margins.as_ref().map_or(0.0, |margins| margins[i]));
+            [0, 1, 2].map(|axis| match self.claim.is_of_boxes() {
+                true => {
+                    let [lo, hi] = [axis, axis + 3].map(|end| f64::from(frame.boxes[i][end]));
+                    [lo - margin, hi + margin]
+                }
+                false => {
+                    let t = f64::from(frame.bodies.translation[i][axis]);
+                    [t - reach, t + reach]
+                }
+            })
+        };
+        Some((0..frame.bodies.len()).map(bound).collect())
     }
 
     /// A point that both bodies share; `None` when the claim doesn't hold of them. In space that
@@ -196,11 +241,46 @@ fn is_positive(terms: [f32; 4]) -> bool {
     leading.is_some_and(|part| *part > 0.0)
 }
 
-/// Can two meshes meet at all? Not when their origins are further apart than both reaches on some
-/// axis; √3 and the ulps are in the factor 2.
+/// Can two meshes meet at all? Not when their origins are further apart than corners of cubes of
+/// both reaches are; the rounding is in the factor 1.75, which is above √3.
 fn near((a, ta): (&reference::Shape, [f64; 3]), (b, tb): (&reference::Shape, [f64; 3])) -> bool {
-    let reach = 2.0 * (a.mesh().reach + b.mesh().reach);
-    (0..3).all(|axis| (ta[axis] - tb[axis]).abs() <= reach)
+    let reach = 1.75 * (a.mesh().reach + b.mesh().reach);
+    let apart = [0, 1, 2].map(|axis| (ta[axis] - tb[axis]).abs());
+    let square = apart.iter().map(|x| x * x).sum::<f64>();
+    // Squares of the least and the greatest sizes are not finite numbers.
+    let is_sound = (1e-100..1e100).contains(&square) && (1e-100..1e100).contains(&(reach * reach));
+    apart.iter().all(|x| *x <= reach) && (!is_sound || square <= reach * reach)
+}
+
+/// Bodies of a set in which not every pair is decided exactly.
+const LARGE: usize = 2048;
+
+/// The pairs i < j whose intervals have a point in common along each axis.
+fn near_pairs(bounds: &[[[f64; 2]; 3]]) -> Vec<[u32; 2]> {
+    let mut order: Vec<usize> = (0..bounds.len()).collect();
+    order.sort_by(|&a, &b| bounds[a][0][0].total_cmp(&bounds[b][0][0]));
+    let mut pairs = Vec::new();
+    for (at, &i) in order.iter().enumerate() {
+        for &j in order[at + 1..].iter().take_while(|&&j| bounds[j][0][0] <= bounds[i][0][1]) {
+            let meet = |axis: usize| {
+                let [[lo, hi], [other_lo, other_hi]] = [i, j].map(|body: usize| bounds[body][axis]);
+                lo <= other_hi && other_lo <= hi
+            };
+            if meet(1) && meet(2) {
+                pairs.push([i.min(j) as u32, i.max(j) as u32]);
+            }
+        }
+    }
+    pairs
+}
+
+/// More than a shape's distance from its origin, whichever of its volumes is meant.
+fn reach(shape: &reference::Shape) -> f64 {
+    let ball = &shape.ball;
+    let slabs = shape.slabs.lo.iter().chain(&shape.slabs.hi).copied().map(f32::abs);
+    let [x, y, z] = ball.centre.map(|x| f64::from(x.abs()));
+    let ball = x + y + z + f64::from(ball.radius);
+    2.0 * slabs.map(f64::from).fold(ball.max(shape.mesh().reach), f64::max)
 }
 
 /// The numbers that a claim is about; or-DOPs are expensive to prepare and left trivial for the

@@ -45,6 +45,12 @@ impl CaseVerdict {
         };
         matches!(trouble, AnswerError::Start { .. })
     }
+
+    /// Whether the time was over before an answer.
+    #[must_use]
+    pub fn is_late(&self) -> bool {
+        matches!(&self.outcome, Outcome::Error { trouble: AnswerError::Timeout { .. } })
+    }
 }
 
 /// The name and what is wrong, if anything is.
@@ -110,6 +116,8 @@ pub struct Verdict {
     pub cases: Vec<CaseVerdict>,
     /// The number of cases that were not run, because time was up or an earlier case failed.
     pub not_run: usize,
+    /// Large sets that were not judged, because the culler is too slow for them.
+    pub large_not_judged: usize,
     /// Known failures that pass: the list is stale.
     pub stale: Vec<String>,
     /// The most extra pairs for each required one that the culler allows itself.
@@ -128,7 +136,7 @@ impl Verdict {
             || self.cases.iter().any(|case| self.counts_against(case));
         if is_refuted {
             Conclusion::NotPassed
-        } else if self.judged() < self.asked() {
+        } else if self.judged() < self.asked() || self.cases.is_empty() {
             Conclusion::Incomplete
         } else if self.cases.iter().any(|case| case.outcome == Outcome::Pass) {
             Conclusion::Pass
@@ -150,13 +158,23 @@ impl Verdict {
         let is_skipped = |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. });
         match self.conclusion() {
             Conclusion::Pass => None,
-            Conclusion::Incomplete => Some(format!(
-                "{} of {} cases were judged: {} skipped, {} not run",
-                self.judged(),
-                self.asked(),
-                self.cases.iter().filter(is_skipped).count(),
-                self.not_run
-            )),
+            Conclusion::Incomplete => {
+                let late = self.cases.iter().filter(|case| case.is_late()).count();
+                let late = match late {
+                    0 => String::new(),
+                    _ if late == self.cases.len() => {
+                        format!(", {late} out of time: it hangs, or needs a longer --timeout")
+                    }
+                    _ => format!(", {late} out of time: give a longer --timeout"),
+                };
+                Some(format!(
+                    "{} of {} cases were judged: {} skipped, {} not run{late}",
+                    self.judged(),
+                    self.asked(),
+                    self.cases.iter().filter(is_skipped).count(),
+                    self.not_run
+                ))
+            }
             Conclusion::NotPassed => Some(self.refutation()),
         }
     }
@@ -183,17 +201,21 @@ impl Verdict {
         self.cases.len() + self.not_run
     }
 
-    /// Cases that were judged: run, and not skipped.
+    /// Cases that were judged: run, neither skipped nor out of time.
     #[must_use]
     pub fn judged(&self) -> usize {
-        let is_skipped = |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. });
+        let is_skipped =
+            |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. }) || case.is_late();
         self.cases.len() - self.cases.iter().filter(is_skipped).count()
     }
 
-    /// A case that failed or erred, and isn't known to.
+    /// A case that failed or erred, and isn't known to. A slow program on a busy machine is not
+    /// wrong: no answer in time is no failure, and no pass either.
     #[must_use]
     pub fn counts_against(&self, case: &CaseVerdict) -> bool {
-        !case.known && matches!(case.outcome, Outcome::Fail { .. } | Outcome::Error { .. })
+        let fails =
+            !case.known && matches!(case.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
+        fails && !case.is_late()
     }
 
     /// Whether more extra pairs were reported than the culler allows itself.
@@ -253,11 +275,12 @@ impl fmt::Display for Verdict {
         });
         writeln!(
             f,
-            "claim {}: {}, {} of {} cases judged",
+            "claim {}: {}, {} of {} cases judged{}",
             self.claim,
             self.conclusion(),
             self.judged(),
-            self.asked()
+            self.asked(),
+            if self.large_not_judged > 0 { ", large sets not judged" } else { "" }
         )?;
         writeln!(
             f,

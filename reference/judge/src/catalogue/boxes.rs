@@ -2,6 +2,7 @@
 
 use rand::{Rng, RngExt};
 
+use super::exact_touches::WholeTurn;
 use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use crate::contestant::WorldBox;
@@ -20,6 +21,9 @@ pub enum BoxKind {
     Flat,
     /// Subnormal, and up to 2⁶⁰.
     Range,
+    /// Corner to corner in the direction of both diagonals, whose lengths are whole numbers: balls
+    /// around the boxes touch exactly where the boxes do.
+    Oblique,
 }
 
 /// Draws `count` boxes of a kind, in one frame.
@@ -48,6 +52,14 @@ pub fn boxes(kind: BoxKind, count: usize, rng: &mut impl Rng) -> Result<DrawnCas
                     [lo, lo + rng.random_range(0.0..2.0) * scale]
                 })
             }
+            BoxKind::Oblique if n % 2 == 1 => corner_to_corner(&boxes[n - 1], rng),
+            BoxKind::Oblique => {
+                let half = WholeTurn::draw(rng).matrix[0];
+                from_ends(|axis| {
+                    let lo = rng.random_range(-(1 << 20)..1 << 20);
+                    [lo as f32, (lo + 2 * half[axis].abs()) as f32]
+                })
+            }
         };
         boxes.push(drawn);
     }
@@ -69,6 +81,19 @@ fn beside(other: &WorldBox, rng: &mut impl Rng) -> WorldBox {
     let end = other[axis + 3];
     next[axis] = [end, end.next_up(), end.next_down()][rng.random_range(0..3)];
     next[axis + 3] = next[axis] + rng.random_range(0.1..1.0_f32);
+    next
+}
+
+/// A box of the same aspect at a corner of another: it touches that, or is an ulp away or inside.
+fn corner_to_corner(other: &WorldBox, rng: &mut impl Rng) -> WorldBox {
+    let scale = [1.0, 0.5, 2.0][rng.random_range(0..3)];
+    let mut next = from_ends(|axis| {
+        let [lo, hi] = [other[axis], other[axis + 3]];
+        let side = scale * (hi - lo);
+        if rng.random() { [hi, hi + side] } else { [lo - side, lo] }
+    });
+    let end = rng.random_range(0..6);
+    next[end] = [next[end], next[end].next_up(), next[end].next_down()][rng.random_range(0..3)];
     next
 }
 

@@ -49,7 +49,7 @@ pub fn with_input(
             let frame = |n: usize| Frame {
                 filter: Some(match (kind, n) {
                     (ClaimInputKind::Groups, _) | (ClaimInputKind::AtRest, 0 | 1 | 4) => {
-                        groups(rng)
+                        groups(COUNT, rng)
                     }
                     (ClaimInputKind::AtRest, 3) => admits(Vec::new()),
                     _ => admits(excluded(first, rng)),
@@ -64,7 +64,7 @@ pub fn with_input(
 
 /// Each body is in one of eight groups, including that of the highest bit, and has a mask of any of
 /// them.
-fn groups(rng: &mut impl Rng) -> Filter {
+pub(super) fn groups(count: usize, rng: &mut impl Rng) -> Filter {
     let bit = |rng: &mut _| 1_u32 << [0, 1, 2, 3, 7, 15, 30, 31][RngExt::random_range(rng, 0..8)];
     let group = |_| {
         let own = bit(rng);
@@ -76,7 +76,7 @@ fn groups(rng: &mut impl Rng) -> Filter {
         };
         [own, mask]
     };
-    Filter { groups: (0..COUNT).map(group).collect(), excluded: Vec::new() }
+    Filter { groups: (0..count).map(group).collect(), excluded: Vec::new() }
 }
 
 fn admits(excluded: Vec<[u32; 2]>) -> Filter {

@@ -13,6 +13,8 @@ mod contacts;
 mod crowds;
 mod exact_touches;
 mod grid;
+mod histories;
+mod neutral_inputs;
 mod parts;
 mod periodic;
 mod sleep;
@@ -36,6 +38,7 @@ use boxes::BoxKind;
 pub use boxes::of_boxes;
 use claim_inputs::ClaimInputKind;
 use crowds::CrowdKind;
+use histories::HistoryKind;
 use parts::PartsKind;
 use periodic::PeriodicKind;
 use stale_data::StaleKind;
@@ -76,6 +79,8 @@ enum CaseDraw {
     Far(ContactKind),
     /// Cubes and octahedra on short binary coordinates.
     Exact(exact_touches::Touch),
+    /// The same in oblique directions.
+    Oblique(exact_touches::Touch),
     /// Tips that touch across the borders of cells.
     CellBorder,
     /// Crowds and what happens to them.
@@ -96,6 +101,10 @@ enum CaseDraw {
     Parts(PartsKind),
     /// Boxes in space that repeats.
     Periodic(PeriodicKind),
+    /// Many frames, for all claims that are about such bodies or for one.
+    Long(HistoryKind),
+    /// More bodies than 16 bits count.
+    Many,
     /// A file of the hard cases.
     Hard(&'static str),
 }
@@ -168,6 +177,11 @@ sdop_data::with_hard_cases! { groups! {
     exact_corner_to_corner "exact/corner-to-corner", 8, CaseDraw::Exact(exact_touches::Touch::Corners), "touching taken for apart: < in place of <=";
     exact_tip_on_face "exact/tip-on-face", 8, CaseDraw::Exact(exact_touches::Touch::TipOnFace), "touching taken for apart: < in place of <=";
     exact_tip_to_tip "exact/tip-to-tip", 8, CaseDraw::Exact(exact_touches::Touch::Tips), "touching taken for apart: < in place of <=";
+    oblique_face_to_face "oblique/face-to-face", 3, CaseDraw::Oblique(exact_touches::Touch::Faces), "volumes in f32 without a margin, in directions off the axes";
+    oblique_edge_to_edge "oblique/edge-to-edge", 3, CaseDraw::Oblique(exact_touches::Touch::Edges), "volumes in f32 without a margin, in directions off the axes";
+    oblique_corner_to_corner "oblique/corner-to-corner", 3, CaseDraw::Oblique(exact_touches::Touch::Corners), "volumes in f32 without a margin, in directions off the axes";
+    oblique_tip_on_face "oblique/tip-on-face", 3, CaseDraw::Oblique(exact_touches::Touch::TipOnFace), "volumes in f32 without a margin, in directions off the axes";
+    oblique_tip_to_tip "oblique/tip-to-tip", 6, CaseDraw::Oblique(exact_touches::Touch::Tips), "balls in f32 without a margin, in directions off the axes";
     grid_cell_border "grid/cell-border", 12, CaseDraw::CellBorder, "cells exactly as large as the largest body: a partner two cells away";
     buffer_growth "buffer/growth", 2, CaseDraw::Crowd(CrowdKind::Growth), "a full buffer of pairs, and one that is never emptied";
     buffer_hub "buffer/hub", 2, CaseDraw::Crowd(CrowdKind::Hub), "a full buffer of one body's partners";
@@ -185,6 +199,7 @@ sdop_data::with_hard_cases! { groups! {
     box_ulp "box/ulp", 8, CaseDraw::Boxes(BoxKind::Ulp), "ends rounded inward, centre and half size in place of ends";
     box_flat "box/flat", 8, CaseDraw::Boxes(BoxKind::Flat), "boxes without a volume, zeros of both signs";
     box_range "box/range", 8, CaseDraw::Boxes(BoxKind::Range), "overflow and underflow of areas and volumes";
+    oblique_boxes "oblique/boxes", 4, CaseDraw::Boxes(BoxKind::Oblique), "balls around boxes in f32 without a margin";
     crowd_new_pairs "crowd/new-pairs", 2, CaseDraw::Crowd(CrowdKind::NewPairs), "a fixed buffer of new pairs", after "mujoco_warp #1461, newton #3702 and Box3D's \"ignoring this pair\"";
     crowd_partners "crowd/partners", 1, CaseDraw::Crowd(CrowdKind::Partners), "a fixed buffer of one body's partners, a fixed stack or pool of nodes", after "Jolt #1520 and #1235";
     stale_reshape "stale/reshape", 6, CaseDraw::Stale(StaleKind::Reshape), "stale bounds of bodies that get another shape", after "avian #654";
@@ -205,6 +220,15 @@ sdop_data::with_hard_cases! { groups! {
     parts_touch "parts/touch", 6, CaseDraw::Parts(PartsKind::Still), "parts whose own rotation or offset is left out or not turned with the body, all parts but the first left out", after "Physijs #28 and bepuphysics2 #244";
     parts_move "parts/move", 3, CaseDraw::Parts(PartsKind::Moving), "parts that stay behind when their body moves or turns";
     parts_reframe "parts/reframe", 3, CaseDraw::Parts(PartsKind::Reframed), "stale parts after the frame of a body has changed", after "newton #4008 and playcanvas #3695";
+    long_bodies "long/bodies", 3, CaseDraw::Long(HistoryKind::Bodies), "what is done for some frames only, and caches kept for too long";
+    long_sets "long/sets", 2, CaseDraw::Long(HistoryKind::Sets), "bodies that come and go after many frames";
+    long_filters "long/filters", 2, CaseDraw::Long(HistoryKind::Filters), "filters that are read once or with other changes alone";
+    long_margins "long/margins", 2, CaseDraw::Long(HistoryKind::Margins), "margins that are read once or with other changes alone";
+    long_states "long/states", 3, CaseDraw::Long(HistoryKind::States), "states saved and restored between any two frames";
+    long_parts "long/parts", 2, CaseDraw::Long(HistoryKind::Parts), "parts that are read once, or stay behind";
+    long_periods "long/periods", 2, CaseDraw::Long(HistoryKind::Periods), "periods that are read once or with other changes alone";
+    large_frames "large/frames", 2, CaseDraw::Long(HistoryKind::Frames), "caches and counters that fill after hundreds of frames";
+    large_bodies "large/bodies", 2, CaseDraw::Many, "numbers of 16 bits, buffers of 65,536";
     periodic_face "periodic/face", 6, CaseDraw::Periodic(PeriodicKind::Face), "images left out, touching taken for apart";
     periodic_edge "periodic/edge", 3, CaseDraw::Periodic(PeriodicKind::Edge), "images across one border alone";
     periodic_corner "periodic/corner", 3, CaseDraw::Periodic(PeriodicKind::Corner), "images across one border or two alone";
@@ -258,6 +282,7 @@ impl CaseGroup {
             CaseDraw::ClaimInput(_, claims) => claims,
             CaseDraw::Parts(_) => &[Claim::Parts],
             CaseDraw::Periodic(_) => &[Claim::Periodic],
+            CaseDraw::Long(kind) => kind.claims(),
             // So many bodies that meshes would take minutes.
             CaseDraw::Crowd(CrowdKind::NewPairs | CrowdKind::Partners) => {
                 &[Claim::Sphere, Claim::Aabb]
@@ -300,6 +325,7 @@ impl CaseGroup {
         let mut rng = ChaCha8Rng::seed_from_u64(key(self.name));
         rng.set_stream(u64::from(number) + (2 << 32));
         Ok(match self.draw {
+            CaseDraw::Boxes(BoxKind::Oblique) => None, // not among the stored vectors
             CaseDraw::Contact(..) | CaseDraw::Far(_) | CaseDraw::Exact(_) | CaseDraw::Boxes(_) => {
                 let drawn = self.drawn(number, None, [1, 1, 2], &mut rng)?;
                 Some(self.named(self.case_name(number, None), drawn))
@@ -337,7 +363,8 @@ impl CaseGroup {
                 let (turn, origin) = (TurnKind::Any, Some([8.0, 20.0]));
                 Ok(contacts::around_a_probe(kind, turn, origin, number, near, rng)?)
             }
-            CaseDraw::Exact(touch) => exact_touches::touching(touch, number, exact, rng),
+            CaseDraw::Exact(touch) => exact_touches::touching((touch, false), number, exact, rng),
+            CaseDraw::Oblique(touch) => exact_touches::touching((touch, true), number, 24, rng),
             CaseDraw::CellBorder => grid::tips_across_borders(number, rng),
             CaseDraw::Crowd(kind) => Ok(crowds::crowd(kind, number, rng)?),
             CaseDraw::Changes(kind, crowds) if number < crowds => {
@@ -351,6 +378,8 @@ impl CaseGroup {
             CaseDraw::ClaimInput(kind, _) => claim_inputs::with_input(kind, number, rng),
             CaseDraw::Parts(kind) => parts::touching(kind, number, rng),
             CaseDraw::Periodic(kind) => periodic::touching(kind, number, rng),
+            CaseDraw::Long(kind) => histories::history(kind, number, rng),
+            CaseDraw::Many => histories::many(number, rng),
             CaseDraw::Hard(text) => hard_case(text, number, seed),
         }
     }
@@ -393,19 +422,28 @@ impl CaseId {
         self.group.case_name(self.number, self.seed)
     }
 
-    /// Draws it.
+    /// Draws it. A case of the claim that this one is based on gets an input that changes nothing.
     ///
     /// # Errors
     /// As [`CaseGroup::case`].
     pub fn case(&self) -> Result<Case, CatalogueError> {
-        let claim = self.claim;
         let drawn = self.group.case(self.number, self.seed)?;
-        Ok(Case { claim, ..drawn })
+        match self.group.claims().contains(&self.claim) {
+            true => Ok(Case { claim: self.claim, ..drawn }),
+            false => Ok(neutral_inputs::judged_by(self.claim, drawn)),
+        }
+    }
+
+    /// Whether it is so large that a culler may be too slow for it.
+    #[must_use]
+    pub fn is_large(&self) -> bool {
+        self.group.name.starts_with("large/")
     }
 }
 
 /// The selected cases, alternating between groups so that every bug is looked for early. Groups
-/// that are only about this claim come first.
+/// that are only about this claim come first, large sets last. A claim that is as another one gets
+/// all cases of that one, too.
 ///
 /// # Errors
 /// As [`groups`].
@@ -416,12 +454,17 @@ pub fn select(
 ) -> Result<Vec<CaseId>, CatalogueError> {
     let mut groups = groups()?;
     groups.sort_by_key(|group| group.claims() != [claim]);
-    groups.retain(|group| group.claims().contains(&claim));
+    groups.retain(|group| {
+        let is_about = |claim: Claim| group.claims().contains(&claim);
+        is_about(claim) || claim.base().is_some_and(is_about)
+    });
     let most = groups.iter().map(|group| group.cases).max().unwrap_or(0);
     let turn = |number| {
         let has = groups.iter().filter(move |group| number < group.cases);
         has.map(move |&group| CaseId { group, number, seed, claim })
     };
     let all = (0..most).flat_map(turn);
-    Ok(all.filter(|id| matches(pattern, &id.name())).collect())
+    let mut all: Vec<CaseId> = all.filter(|id| matches(pattern, &id.name())).collect();
+    all.sort_by_key(CaseId::is_large);
+    Ok(all)
 }

@@ -3,10 +3,10 @@
 
 pub mod ledger;
 mod lives;
-mod parts;
 pub mod rounds;
 pub mod run;
 pub mod subject;
+mod worlds;
 
 pub use ledger::{Failure, Ledger, LedgerKey};
 pub use run::{RoundError, Run};

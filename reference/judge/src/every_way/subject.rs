@@ -1,20 +1,21 @@
 //! Our cullers as a subject: in every way that they have, each in the mode whose turn it is.
 
-use super::run::RoundError;
-use super::{lives, parts};
+use super::lives::Living;
+use super::worlds::{MeshLife, asked};
 use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
-use crate::contestant::WorldBox;
+use crate::contestant::{Contestant, WorldBox};
 use crate::ours::boxes::BoxCell;
 use crate::ours::compare::{culler, settings};
 use crate::ours::configurations::{Mode, Rotation, ways};
-use crate::ours::histories::HistoryError;
-use crate::shrink::Lists;
-use crate::subject::Subject;
+use crate::ours::histories::{HistoryError, culler as world_culler};
+use crate::subject::{ContestantFactory, Scene, Subject};
 use sdop::bodies::Aabb;
+use sdop::boxes::BoxWorld;
+use sdop::culler::{CullError, Culler};
 use sdop::periodic::PeriodicBoxes;
-use sdop::settings::{CullSettings, Strategy};
+use sdop::settings::{Budget, CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet};
 
 /// Whether a strategy makes a claim: it reports every pair of which the claim holds.
@@ -46,100 +47,129 @@ impl EveryWay {
         Self { rotation }
     }
 
-    /// The claims that our cullers make.
-    pub const CLAIMS: [Claim; 8] = [
-        Claim::Sphere,
-        Claim::Aabb,
-        Claim::OrDop,
-        Claim::Hull,
-        Claim::Mesh,
-        Claim::Order,
-        Claim::Parts,
-        Claim::Periodic,
-    ];
-
-    fn lists(&self, case: &Case) -> Result<Lists, RoundError> {
+    fn answers(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
+        // All pairs of a large set would take minutes, and every way of it an hour.
+        let is_large = case.frames.iter().any(|frame| frame.bodies.len() > LARGE);
+        let is_fast = |finder: Finder| !is_large || finder == Finder::Grid;
+        // Another turn for each case.
+        let turn = case.name.bytes().map(u64::from).sum::<u64>();
         if case.claim.is_of_boxes() {
-            let cells = BoxCell::all(&self.rotation);
-            return all_report(cells.map(|(cell, mode)| match case.claim {
-                Claim::Periodic => Ok(periodic(case, cell, mode)?),
-                _ => boxes(case, cell, mode),
-            }));
+            // Claims that have the same cases share the cells.
+            let share = if case.claim.base().is_some() && !is_large { SHARES } else { 1 };
+            let cells = BoxCell::all(&self.rotation).filter(|(cell, _)| is_fast(cell.finder));
+            let cells = (turn..).zip(cells).filter(|(n, _)| n.is_multiple_of(share));
+            return all_report(cells.map(|(n, (cell, mode))| boxes(n / share, case, cell, mode)));
         }
         let ways = ways(DirectionSet::K18, Axes::Principal).into_iter();
-        let ways = ways.filter(|way| makes(way.strategy, case.claim));
-        // Another turn for each case.
-        let turn = case.name.bytes().map(u64::from).sum();
+        let ways = ways.filter(|way| makes(way.strategy, case.claim) && is_fast(way.pairs));
         let modes = self.rotation.turn(turn);
-        let lists = |(way, &mode): (CullSettings, &Mode)| match case.claim {
-            Claim::Parts => Ok(parts::lists(case, &way, mode)?),
-            _ => posed(case, &way, mode),
+        let lists = |(n, (way, &mode)): (u64, (CullSettings, &Mode))| {
+            // A culler for all, and a world for some, other ones of each case.
+            let in_world = case.claim == Claim::Parts || (n + turn).is_multiple_of(WORLDS);
+            let culler = (case.claim != Claim::Parts).then(|| posed(case, &way, mode));
+            all_report(culler.into_iter().chain(in_world.then(|| meshes(case, &way, mode))))
         };
-        all_report(ways.zip(modes.iter().cycle()).map(lists))
+        all_report((0..).zip(ways.zip(modes.iter().cycle())).map(lists))
     }
 }
+
+/// Of so many ways, one is that of a long-lived world of meshes as well.
+const WORLDS: u64 = 5;
 
 impl Subject for EveryWay {
     fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
-        let lists = self.lists(case).map_err(|error| AnswerError::Crashed {
-            how: error.to_string(),
-            answered: 0,
-            said: String::new(),
-        })?;
-        let answer = |pairs| Answer { pairs, ns: None };
-        Ok(lists.into_iter().map(answer).collect())
+        self.answers(case)
     }
 }
 
-/// The pairs that all of these lists contain, frame by frame; the lists are sorted.
+/// Of so many cells, one is judged by each case of another claim.
+const SHARES: u64 = 5;
+
+/// Bodies of a set that is culled by the fastest finder alone.
+const LARGE: usize = 1 << 11;
+
+/// The pairs that all of these answers contain, frame by frame.
 fn all_report(
-    mut lists: impl Iterator<Item = Result<Lists, RoundError>>,
-) -> Result<Lists, RoundError> {
-    let mut common = lists.next().transpose()?.unwrap_or_default();
-    for other in lists {
-        for (common, other) in common.iter_mut().zip(other?) {
-            common.retain(|pair| other.binary_search(pair).is_ok());
+    mut all: impl Iterator<Item = Result<Vec<Answer>, StopReason>>,
+) -> Result<Vec<Answer>, StopReason> {
+    let mut common = all.next().transpose()?.unwrap_or_default();
+    for other in all {
+        for (common, mut other) in common.iter_mut().zip(other?) {
+            other.pairs.sort_unstable();
+            common.pairs.retain(|pair| other.pairs.binary_search(pair).is_ok());
         }
     }
     Ok(common)
 }
 
+/// What a contestant answers; one that can't be made has crashed.
+fn lived<C: Contestant>(
+    case: &Case,
+    make: impl Fn(&Scene<'_>) -> Result<C, HistoryError> + Sync,
+) -> Result<Vec<Answer>, StopReason> {
+    let make = |scene: &Scene<'_>| make(scene).unwrap_or_else(|error| panic!("{error}"));
+    ContestantFactory(make).answer(case)
+}
+
+/// The frames in a long-lived world of meshes.
+fn meshes(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
+    let way = CullSettings { budget: Some(Budget::Tests(3)), ..way.clone() };
+    let world = |scene: &Scene<'_>| MeshLife::new(scene.shapes, &world_culler(&way, mode));
+    lived(case, |scene| world(scene).map(Living::new))
+}
+
 /// The frames by one way; the culler is made anew for another set of bodies.
-fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Lists, RoundError> {
+fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
     let made = |frame: &Frame| {
         let way = settings(way.strategy, way, frame.bodies.len());
         culler(&case.shapes, &frame.bodies, &way, mode)
     };
-    let (mut ours, mut lists) = (None, Vec::new());
+    let (mut ours, mut answers) = (None, Vec::new());
     for frame in &case.frames {
         let kept = ours.take().filter(|_| frame.was.is_none());
-        let mut culler = kept.map_or_else(|| made(frame), Ok)?;
-        lists.push(culler.cull(&frame.bodies)?.sorted());
+        let culled = kept.map_or_else(|| made(frame), Ok).and_then(|mut culler: Culler| {
+            let pairs = culler.cull(&frame.bodies)?.sorted();
+            Ok((culler, Answer { pairs, ns: None }))
+        });
+        let (culler, answer) = culled.map_err(|error| AnswerError::Crashed {
+            how: error.to_string(),
+            answered: answers.len(),
+            said: String::new(),
+        })?;
+        answers.push(answer);
         ours = Some(culler);
     }
-    Ok(lists)
+    Ok(answers)
 }
 
-/// The given boxes by one finder.
-fn boxes(case: &Case, cell: BoxCell, mode: Mode) -> Result<Lists, RoundError> {
-    let mut culler = cell.culler(mode)?;
-    let aabb = |&[x0, y0, z0, x1, y1, z1]: &WorldBox| Aabb::new([x0, y0, z0], [x1, y1, z1]);
-    let list = |frame: &Frame| {
-        let boxes: Vec<Aabb> = frame.boxes.iter().map(aabb).collect();
-        Ok(culler.cull(&boxes)?.sorted())
-    };
-    case.frames.iter().map(list).collect()
-}
-
-/// The boxes and their images by one finder, in one world for all frames.
-fn periodic(case: &Case, cell: BoxCell, mode: Mode) -> Result<Lists, HistoryError> {
-    let periods = |frame: &Frame| frame.periods.unwrap_or_default();
-    let first = case.frames.first().map_or([None; 3], periods);
-    let mut world = PeriodicBoxes::with(&cell.builder(mode), first)?;
-    lives::lists(&mut world, case, Frame::periodic_box, |world, frame| {
-        if world.periods() != periods(frame) {
-            world.set_periods(periods(frame))?;
+/// The given boxes by one finder: in a long-lived world, by an index of one or by a culler,
+/// whose turn it is and which can have the case's input; or in space that repeats.
+fn boxes(n: u64, case: &Case, cell: BoxCell, mode: Mode) -> Result<Vec<Answer>, StopReason> {
+    let builder = cell.builder(mode);
+    let is_plain = matches!(case.claim, Claim::Aabb | Claim::Order);
+    match n % if is_plain { 3 } else { 2 } {
+        _ if case.claim == Claim::Periodic => {
+            lived(case, |_| Ok(Living::new(PeriodicBoxes::with(&builder, [None; 3])?)))
         }
-        Ok(())
-    })
+        0 => lived(case, |_| Ok(Living::new(BoxWorld::with(&builder)?))),
+        1 => lived(case, |_| Ok(Living::new(asked(&builder, mode)?))),
+        _ => frames(case, cell, mode),
+    }
+}
+
+fn frames(case: &Case, cell: BoxCell, mode: Mode) -> Result<Vec<Answer>, StopReason> {
+    let crashed = |error: CullError| AnswerError::Crashed {
+        how: error.to_string(),
+        answered: 0,
+        said: String::new(),
+    };
+    let mut culler = cell.culler(mode).map_err(crashed)?;
+    let aabb = |&[x0, y0, z0, x1, y1, z1]: &WorldBox| Aabb::new([x0, y0, z0], [x1, y1, z1]);
+    let mut answers = Vec::new();
+    for frame in &case.frames {
+        let boxes: Vec<Aabb> = frame.boxes.iter().map(aabb).collect();
+        let pairs = culler.cull(&boxes).map_err(crashed)?.sorted();
+        answers.push(Answer { pairs, ns: None });
+    }
+    Ok(answers)
 }

@@ -74,6 +74,21 @@ impl NaiveMisses {
     }
 }
 
+/// Whether balls, boxes around the vertices or or-DOPs meet, by a naive test.
+#[must_use]
+pub fn naive_overlap(shapes: &Shapes, bodies: &Bodies, pair: [u32; 2], by: Predicate) -> bool {
+    let [a, b] = pair.map(|body| {
+        let body = body as usize;
+        let pose = (bodies.rotation[body], bodies.translation[body]);
+        PosedVolumes::new(shapes, bodies.shape[body] as usize, pose)
+    });
+    match by {
+        Predicate::Sphere => spheres(&a, &b),
+        Predicate::OrDop(_) => ordops(&a, &b),
+        _ => boxes(&a, &b),
+    }
+}
+
 /// Mesh pairs that meet by containment alone: their surfaces, decided exactly, don't.
 fn contained(shapes: &Shapes, bodies: &Bodies, answers: &Answers) -> Result<u64, InvalidInput> {
     let open = |shape: &reference::Shape| -> Mesh {

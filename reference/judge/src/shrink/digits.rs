@@ -8,7 +8,8 @@ impl Search<'_> {
     pub(super) fn fewer_periods(&mut self) {
         for (frame, axis) in (0..3 * self.case.frames.len()).map(|at| (at / 3, at % 3)) {
             let periods = self.case.frames[frame].periods;
-            let Some(full) = periods.and_then(|periods| periods[axis]) else {
+            let Some(full) = periods.and_then(|periods| periods[axis]).filter(|_| !self.is_over())
+            else {
                 continue;
             };
             let digits = [2, 4, 8, 12, 16, 20].map(|digits| rounded(full as f32, digits));
@@ -30,6 +31,9 @@ impl Search<'_> {
     pub(super) fn fewer_digits(&mut self) {
         for frame in 0..self.case.frames.len() {
             for body in 0..self.case.frames[frame].bodies.len() {
+                if self.is_over() {
+                    return;
+                }
                 if self.case.claim.is_of_boxes() {
                     for n in 0..6 {
                         let end = self.case.frames[frame].boxes[body][n];

@@ -1,3 +1,5 @@
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use super::*;
 use crate::answer::AnswerError;
 
@@ -43,6 +45,7 @@ fn verdict(cases: Vec<CaseVerdict>) -> Verdict {
         seed: None,
         cases,
         not_run: 0,
+        large_not_judged: 0,
         stale: Vec::new(),
         extra_limit: None,
         smallest: None,
@@ -81,6 +84,23 @@ fn less_than_asked_is_incomplete() {
     let known_only = verdict(vec![known(failed("a/0")), skipped("a/1")]);
     let why = "1 of 2 cases were judged: 1 skipped, 0 not run";
     assert_concludes(&known_only, "INCOMPLETE", [1, 2], Some(why));
+}
+
+/// Busy is not wrong, and no pass: the reason names the option.
+#[test]
+fn late_cases_are_incomplete() {
+    let late = |name| {
+        let trouble = AnswerError::Timeout { frame: 0, seconds: crate::answer::Seconds(1.0) };
+        case(name, Outcome::Error { trouble }, [0; 4])
+    };
+    let some = verdict(vec![passed("a/0"), late("b/0")]);
+    let why =
+        "1 of 2 cases were judged: 0 skipped, 0 not run, 1 out of time: give a longer --timeout";
+    assert_concludes(&some, "INCOMPLETE", [1, 2], Some(why));
+    let hanging = verdict(vec![late("b/0")]);
+    assert!(hanging.why().unwrap().contains("it hangs, or needs"), "{hanging}");
+    let wrong = verdict(vec![failed("a/0"), late("b/0")]);
+    assert_eq!(wrong.conclusion(), Conclusion::NotPassed);
 }
 
 #[test]

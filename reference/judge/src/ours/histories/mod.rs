@@ -22,6 +22,7 @@ pub use draw::{draw_boxes, draw_meshes, history_shapes};
 pub(crate) use judge::culler;
 pub use judge::{judge_boxes, judge_meshes};
 pub use periodic::{Repeated, judge_periodic_boxes, judge_periodic_meshes};
+pub(crate) use queries::Asked;
 pub use queries::{judge_queries_of_boxes, judge_queries_of_meshes};
 pub use robots::Robots;
 pub(crate) use worlds::{CompoundWorld, JudgedWorld};

@@ -19,7 +19,7 @@ use crate::ours::configurations::Mode;
 use crate::ours::reference_shapes::Shapes;
 
 /// A world that can be asked about the volumes of its own bodies.
-trait AskedWorld: JudgedWorld + QuerySource {
+pub trait AskedWorld: JudgedWorld + QuerySource {
     /// All bodies, sorted by slot.
     fn all(&self) -> Vec<(BodyId, Self::Body)>;
     fn excludes(&self, pair: [BodyId; 2]) -> bool;
@@ -61,14 +61,14 @@ impl AskedWorld for World {
 }
 
 /// A world and its index.
-struct Asked<W> {
-    world: W,
+pub struct Asked<W> {
+    pub world: W,
     index: QueryIndex,
     shapes: Vec<QueryShape>,
 }
 
 impl<W: AskedWorld> Asked<W> {
-    fn new(world: W, shapes: &Shapes, mode: Mode) -> Result<Self, HistoryError> {
+    pub fn new(world: W, shapes: &Shapes, mode: Mode) -> Result<Self, HistoryError> {
         let index = QueryIndex::with_threads(mode.threads)?;
         Ok(Self {
             world,
