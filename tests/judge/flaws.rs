@@ -154,7 +154,7 @@ fn run(flaw: Flaw, claim: Claim, pattern: &str, seed: Option<u64>, shrink: u64) 
 }
 
 /// The cases that may show a flaw. Parts take long to judge, so that only some groups of them run.
-fn cases<'a>(flaw: Flaw, claim: Claim, pattern: &'a str) -> &'a str {
+fn cases(flaw: Flaw, claim: Claim, pattern: &str) -> &str {
     match flaw {
         _ if claim != Claim::Parts || pattern != "*" => pattern,
         Flaw::Naive(_) | Flaw::Strict | Flaw::ByGroup => pattern,

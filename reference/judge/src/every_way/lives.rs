@@ -12,6 +12,9 @@ use sdop::world::BodyId;
 /// The bodies of the last frame: their ids and what they are; none for those that are to come.
 type Held<W> = Vec<Option<(BodyId, <<W as LivingWorld>::World as JudgedWorld>::Body)>>;
 
+/// A world's saved state, its bodies and the excluded pairs.
+type Saved<W> = (<W as LivingWorld>::Saved, Held<W>, BTreeSet<[u32; 2]>);
+
 /// A long-lived world as a contestant. What a world refuses is a panic, which the judge reports.
 pub struct Living<W: LivingWorld> {
     world: W,
@@ -20,7 +23,7 @@ pub struct Living<W: LivingWorld> {
     held: Held<W>,
     excluded: BTreeSet<[u32; 2]>,
     pairs: Vec<[u32; 2]>,
-    saved: Option<(W::Saved, Held<W>, BTreeSet<[u32; 2]>)>,
+    saved: Option<Saved<W>>,
 }
 
 impl<W: LivingWorld> Living<W> {
