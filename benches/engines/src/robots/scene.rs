@@ -121,6 +121,7 @@ fn tree(random: &mut Stream) -> Vec<Part> {
             shape: (number % HALF_SIDES.len()) as u32,
             rotation: random.rotation(),
             translation: [0, 1, 2].map(|axis| from[axis] + 0.75 * f64::from(way[axis])),
+            rounded: false,
         });
     }
     parts
