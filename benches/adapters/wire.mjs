@@ -59,8 +59,8 @@ function change(head, bodies) {
  * Answers cases on standard input until it ends. `find` returns the pairs of a frame, which has
  * `boxes` or `poses`, the other inputs of its claim, `bodies` and `shapes`, and what stays for the
  * whole case: `kept`, an object; `objects`, for whatever the library has for each body, undefined
- * for a new one; and `gone`, those of bodies that are removed. With `--version`, prints the version
- * of a package.
+ * for a new one; and `gone`, those of bodies that are removed. With `restore`, bodies and objects
+ * are those of the saved state. With `--version`, prints the version of a package.
  */
 export async function serve(name, find) {
   if (process.argv.includes("--version")) {
@@ -83,6 +83,7 @@ export async function serve(name, find) {
       continue;
     }
     if (head === null) continue; // the rest of a case that it has skipped
+    if (frame.restore) Object.assign(head, { ...head.saved, objects: [...head.saved.objects] });
     if (frame.bodies) change(head, frame.bodies);
     let answer;
     const start = process.hrtime.bigint();
@@ -91,6 +92,7 @@ export async function serve(name, find) {
       if (bodies.some((body) => body.parts)) throw new CaseSkipped("its bodies are single shapes");
       const found = await find({ ...frame, shapes, bodies, kept, objects, gone: head.gone.splice(0) });
       answer = { pairs: asked(found, head.bodies), ns: Number(process.hrtime.bigint() - start) };
+      if (frame.save) head.saved = { bodies: head.bodies, objects: [...objects] };
     } catch (error) {
       if (!(error instanceof CaseSkipped)) throw error;
       answer = { skipped: error.message };

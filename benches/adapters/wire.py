@@ -140,7 +140,7 @@ def serve(make: type[Culler], package: str) -> None:
     for line in sys.stdin:
         frame = json.loads(line)
         if "format" in frame:
-            culler, head = None, frame
+            culler, head, changed = None, frame, False
             shapes = [{**it, "ball": (it["ball"][:3], it["ball"][3])} for it in head["shapes"]]
             bodies = head["bodies"]
             continue
@@ -159,6 +159,9 @@ def serve(make: type[Culler], package: str) -> None:
         try:
             if any(parts) and not make.takes_parts:
                 raise CaseSkipped("its bodies are single shapes")
+            if changed and "restore" in frame:
+                raise CaseSkipped("a state is of the bodies that it was saved with")
+            changed = (changed or "bodies" in frame) and "save" not in frame
             if culler is None:
                 culler = make(SimpleNamespace(shapes=shapes, body_shapes=numbers, dynamic=dynamic))
             elif "bodies" in frame:

@@ -22,6 +22,7 @@ class Adapter(Culler):
         edges = np.asfortranarray(np.arange(2 * n, dtype=np.int32).reshape(-1, 2))
         phase = PHASES[sys.argv[1]]()
         if "groups" in self.given:
+            ipctk.set_num_threads(1)  # others would wait for this one, which has Python's lock
             phase.can_vertices_collide = ipctk.CollisionFilter(self.filter())
         phase.build(vertices, edges, np.asfortranarray(np.empty((0, 3), np.int32)), self.inflation())
         return self.pairs([(it.edge0_id, it.edge1_id) for it in phase.detect_edge_edge_candidates()])

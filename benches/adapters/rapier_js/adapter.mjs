@@ -13,8 +13,7 @@ await serve("@dimforge/rapier3d-compat", ({ boxes, save, restore, kept, objects,
   const given = centresAndHalves(boxes);
   if (restore) {
     world.free();
-    world = rapier.World.restoreSnapshot(kept.saved.bytes);
-    objects.splice(0, objects.length, ...kept.saved.objects);
+    world = rapier.World.restoreSnapshot(kept.saved);
   } else if (!kept.begun) {
     world?.free();
     world = new rapier.World({ x: 0, y: 0, z: 0 });
@@ -29,7 +28,7 @@ await serve("@dimforge/rapier3d-compat", ({ boxes, save, restore, kept, objects,
   });
   world.step();
   const found = pairs(objects, given);
-  if (save) kept.saved = { bytes: world.takeSnapshot(), objects: [...objects] };
+  if (save) kept.saved = world.takeSnapshot();
   return found;
 });
 
