@@ -2,6 +2,8 @@
 
 #[path = "support/answers.rs"]
 mod answers;
+#[path = "support/changed.rs"]
+mod changed;
 mod domain;
 mod effects;
 mod far_scenes;

@@ -2,6 +2,8 @@
 
 #[path = "support/answers.rs"]
 mod answers;
+#[path = "support/changed.rs"]
+mod changed;
 #[path = "support/forms.rs"]
 mod forms;
 mod mesh;

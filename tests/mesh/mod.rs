@@ -15,6 +15,7 @@ mod tri;
 
 use std::path::Path;
 
+use crate::changed::changed;
 use crate::{answers, forms};
 use sdop::mesh::{MeshFormat, ReadOptions, TriangleMesh, read_bytes};
 use sha2::{Digest, Sha256};
@@ -38,20 +39,12 @@ fn files_get_their_messages() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mesh/errors.txt");
     let (mut name, mut whole) = (String::new(), String::new());
     answers::check(Path::new(path), |input| {
-        let text = match input.split_once(" =>") {
-            Some((from, to)) => {
-                let [from, to] = [from, to.strip_prefix(' ').unwrap_or(to)]
-                    .map(|part| part.replace("\\n", "\n"));
-                assert!(whole.contains(&from), "{from}");
-                whole.replacen(&from, &to, 1)
-            }
-            None => {
-                let (first, text) = input.split_once('\n').unwrap_or((input, ""));
-                name = first.to_owned();
-                whole = if text.is_empty() { String::new() } else { format!("{text}\n") };
-                whole.clone()
-            }
-        };
+        let text = changed(input, &whole).unwrap_or_else(|| {
+            let (first, text) = input.split_once('\n').unwrap_or((input, ""));
+            name = first.to_owned();
+            whole = if text.is_empty() { String::new() } else { format!("{text}\n") };
+            whole.clone()
+        });
         let format = MeshFormat::from_path(Path::new(&name)).unwrap();
         match read_bytes(&name, format, &bytes(&text), &ReadOptions::default()) {
             Err(error) => error.problem(),

@@ -10,6 +10,7 @@ use miette::Diagnostic;
 use sdop_bench::scene::{Scene, SceneError, SceneFile};
 
 use crate::answers;
+use crate::changed::changed;
 
 const HERE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scene_errors");
 const SOUND: &str = include_str!("sound.toml");
@@ -34,13 +35,11 @@ fn scenes_are_rejected_with_a_remedy() {
     assert_eq!(answer(SOUND), "3 bodies, side Some(20.0)");
     let mut scene = SOUND.to_owned();
     answers::check(&Path::new(HERE).join("errors.txt"), |input| {
-        let Some((from, to)) = input.split_once(" =>") else {
-            scene = format!("{input}\n");
-            return answer(&scene);
-        };
-        let [from, to] = [from, to.strip_prefix(' ').unwrap_or(to)].map(|t| t.replace("\\n", "\n"));
-        assert!(scene.contains(&from), "{from}");
-        answer(&scene.replacen(&from, &to, 1))
+        if let Some(changed) = changed(input, &scene) {
+            return answer(&changed);
+        }
+        scene = format!("{input}\n");
+        answer(&scene)
     });
 }
 

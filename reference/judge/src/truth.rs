@@ -274,13 +274,17 @@ fn near_pairs(bounds: &[[[f64; 2]; 3]]) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// More than a shape's distance from its origin, whichever of its volumes is meant.
+/// No point of a shape, whichever volume is meant, is further from its origin along an axis.
 fn reach(shape: &reference::Shape) -> f64 {
     let ball = &shape.ball;
-    let slabs = shape.slabs.lo.iter().chain(&shape.slabs.hi).copied().map(f32::abs);
     let [x, y, z] = ball.centre.map(|x| f64::from(x.abs()));
     let ball = x + y + z + f64::from(ball.radius);
-    2.0 * slabs.map(f64::from).fold(ball.max(shape.mesh().reach), f64::max)
+    // Slab ends are in lengths of the basis vectors.
+    let basis = shape.slabs.basis[0].map(f64::from);
+    let length = basis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let ends = shape.slabs.lo.iter().chain(&shape.slabs.hi).map(|end| f64::from(end.abs()));
+    let slabs = ends.fold(0.0, f64::max) / length;
+    2.0 * ball.max(slabs).max(shape.mesh().reach) // a cube's corner is √3 times as far
 }
 
 /// The numbers that a claim is about; or-DOPs are expensive to prepare and left trivial for the
@@ -350,5 +354,32 @@ mod tests {
         let from_zero = [-1.0, 0.0, 0.0, 0.0, 1.0, 1.0];
         let near = boxes_near(&from_zero, &beside(rounded), [0.1, 0.2]);
         assert_eq!(near, f64::from(rounded) <= exact);
+    }
+
+    /// In a large set, of which not every pair is decided, or-DOPs of a short basis meet as alone.
+    #[test]
+    fn large_sets_have_the_pairs_of_small_ones() -> Result<(), InvalidInput> {
+        let slabs = reference::Slabs {
+            directions: reference::DirectionSet::K6,
+            basis: [[0.25, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]],
+            lo: vec![-0.25; 3],
+            hi: vec![0.25; 3],
+        };
+        let ball = reference::Ball { centre: [0.0; 3], radius: 0.0 };
+        let shape = reference::Shape::new(ball, slabs, vec![[0.0; 3]; 3], vec![[0, 1, 2]])?;
+        let mut bodies = sdop::bodies::Bodies::default();
+        for i in 0..LARGE {
+            bodies.push(
+                0,
+                true,
+                [0.0, 0.0, 0.0, 1.0],
+                [if i < 2 { 2.0 } else { 8.0 } * i as f32, 0.0, 0.0],
+            );
+        }
+        let frame = Frame { bodies, boxes: vec![[0.0; 6]; LARGE], ..Frame::default() };
+        let truth = Truth { claim: Claim::OrDop, shapes: vec![shape] };
+        assert!(truth.pair(&frame, [0, 1])?);
+        assert_eq!(truth.pairs(&frame)?, [[0, 1]]);
+        Ok(())
     }
 }

@@ -80,7 +80,8 @@ impl WholeTurn {
     const NONE: Self =
         Self { quaternion: [0, 0, 0, 1], norm: 1, matrix: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] };
 
-    /// One of whose matrix a column is longer than it is, by a sum of squares in f32.
+    /// Draws a rotation. In f32, the squares of some column of its matrix have a sum above the
+    /// column's true squared length, so a ball test in f32 takes touching for apart.
     pub fn draw(rng: &mut impl Rng) -> Self {
         let [x, y, z, w] = std::array::from_fn(|_| rng.random_range(40..=80));
         let drawn = Self {
@@ -185,8 +186,7 @@ mod tests {
     use crate::truth::Truth;
 
     /// In oblique directions meshes touch to the bit, too: those meet that are not an ulp away, and
-    /// of the others some don't. Balls touch where tips or
-    /// corners do.
+    /// of the others some don't. Balls touch where tips or corners do.
     #[test]
     fn oblique_touches_are_exact() {
         for touch in [Touch::Faces, Touch::Edges, Touch::Corners, Touch::TipOnFace, Touch::Tips] {

@@ -162,11 +162,11 @@ impl LivingWorld for PeriodicBoxes {
     }
 }
 
-/// Meshes, each of one shape or of several parts; with margins also boxes, each a shape of its own.
+/// Meshes, each of one shape or of several parts.
 pub struct MeshLife {
     world: CompoundWorld,
     shapes: Vec<Shape>,
-    /// The numbers of shapes that were added, by their parts or corners.
+    /// The numbers of shapes that were added, by their parts.
     added: HashMap<Vec<u32>, u32>,
 }
 
