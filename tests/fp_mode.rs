@@ -10,21 +10,12 @@ use sdop::simd::FpMode;
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 use sdop::world::{Body, PairTest, World};
 use sdop::{Aabb, BoxCuller, BoxWorld, Culler, Finder, Strategy};
+use sdop_judge::ours::random::Random;
 
 const FRAMES: usize = 4;
 
-/// Numbers in [0, 1).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn vector(&mut self, size: f64) -> [f64; 3] {
-        [0; 3].map(|_| self.next() * size)
-    }
+fn vector(random: &mut Random, size: f64) -> [f64; 3] {
+    [0; 3].map(|_| f64::from(random.unit()) * size)
 }
 
 /// Radii of bodies: ordinary, such that squares of distances are subnormal, and subnormal ones.
@@ -60,12 +51,12 @@ fn shape(size: f64) -> Shape {
 
 /// Poses of so many bodies, two sizes apart in the mean.
 fn poses(count: usize, size: f64, frame: usize) -> Vec<([f32; 4], [f32; 3])> {
-    let (mut still, mut moved) = (Random(5), Random(frame as u64));
+    let (mut still, mut moved) = (Random::new(5), Random::new(frame as u64));
     let side = 1.6 * size * (count as f64).cbrt();
     (0..count)
         .map(|_| {
-            let (at, by) = (still.vector(side), moved.vector(0.2 * size));
-            let rotation = [0; 4].map(|_| (still.next() - 0.5) as f32);
+            let (at, by) = (vector(&mut still, side), vector(&mut moved, 0.2 * size));
+            let rotation = [0; 4].map(|_| (f64::from(still.unit()) - 0.5) as f32);
             (rotation, [0, 1, 2].map(|k| (at[k] + by[k]) as f32))
         })
         .collect()
@@ -122,10 +113,10 @@ fn cullers_ignore_fp_mode() {
 
 /// Boxes whose sides and distances are of this size.
 fn boxes(size: f64, frame: usize) -> Vec<Aabb> {
-    let mut random = Random(3 + frame as u64);
+    let mut random = Random::new(3 + frame as u64);
     (0..200)
         .map(|_| {
-            let (min, sides) = (random.vector(6.0 * size), random.vector(size));
+            let (min, sides) = (vector(&mut random, 6.0 * size), vector(&mut random, size));
             let max = [0, 1, 2].map(|k| (min[k] + sides[k]) as f32);
             Aabb::new(min.map(|x| x as f32), max)
         })
@@ -165,11 +156,15 @@ fn worlds_ignore_fp_mode() {
     for size in SIZES {
         assert_same("a world", || {
             let mut world = World::new(vec![shape(size)]).unwrap();
-            let mut random = Random(9);
+            let mut random = Random::new(9);
             for (q, t) in given(|| poses(200, size, 0)) {
                 let body = given(|| Body {
-                    margin: (0.01 * size * random.next()) as f32,
-                    ..Body::at(0, q, t.map(|x| f64::from(x) + random.next() * 1e-12 * size))
+                    margin: (0.01 * size * f64::from(random.unit())) as f32,
+                    ..Body::at(
+                        0,
+                        q,
+                        t.map(|x| f64::from(x) + f64::from(random.unit()) * 1e-12 * size),
+                    )
                 });
                 world.insert(body).unwrap();
             }

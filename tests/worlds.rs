@@ -4,6 +4,8 @@ mod boxes;
 mod compound;
 #[path = "support/forms.rs"]
 mod forms;
+#[path = "support/histories.rs"]
+mod histories;
 mod periodic;
 mod queries;
 mod world;

@@ -26,7 +26,7 @@ fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {
 /// The shapes of each or-DOP, built once.
 fn shapes(variant: usize) -> &'static Shapes {
     static BUILT: OnceLock<Vec<Shapes>> = OnceLock::new();
-    let build = |variant| history_shapes(variant, 1).expect("its forms can be built");
+    let build = |variant| history_shapes(variant, 1, false).expect("its forms can be built");
     &BUILT.get_or_init(|| variants().map(build).collect())[variant]
 }
 
@@ -38,7 +38,7 @@ fuzz_target!(|data: &[u8]| {
     let (is_of_boxes, kind) = (below(2) == 0, below(3));
     let is_periodic = kind == 0;
     let judged = if is_of_boxes {
-        let history = draw_boxes(&mut below);
+        let history = draw_boxes(!is_periodic, &mut below);
         if is_periodic {
             judge_periodic_boxes(&Repeated::boxes(&history, &mut below), &[mode])
         } else {

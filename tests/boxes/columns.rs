@@ -7,7 +7,8 @@ use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Motion, Tier, WorldError};
 
 use crate::boxes::lives::{drawn, pairs};
 use crate::boxes::misuse::wrong;
-use crate::boxes::scenes::{Kind, Random, boxes, moved};
+use crate::boxes::scenes::{Kind, boxes, moved};
+use sdop_judge::ours::random::Random;
 
 /// More boxes than are checked at once, so many that columns end within a vector.
 const COUNT: usize = 1203;
@@ -25,7 +26,7 @@ fn world_of(kind: Kind, world: &mut BoxWorld, random: &mut Random) -> BTreeMap<B
 fn columns_move_boxes() {
     for (kind, seed) in [Kind::Cubes, Kind::Lattice, Kind::Needles].into_iter().zip(40..) {
         for tier in Tier::available() {
-            let random = &mut Random(seed);
+            let random = &mut Random::new(seed);
             let mut world = BoxWorld::with(&BoxCuller::builder().tier(tier)).unwrap();
             let mut bodies = world_of(kind, &mut world, random);
             world.cull().unwrap();
@@ -89,7 +90,7 @@ fn column_moves_a_fixed_box() {
 /// Boxes before a refused one have moved, no others have, and the error tells which it is.
 #[test]
 fn refused_boxes_end_a_column() {
-    let random = &mut Random(3);
+    let random = &mut Random::new(3);
     let mut world = BoxWorld::new();
     let ids: Vec<_> = (0..COUNT).map(|_| world.insert(Aabb::default()).unwrap()).collect();
     let gone = world.insert(Aabb::default()).unwrap();

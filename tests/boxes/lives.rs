@@ -3,9 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use sdop::boxes::{BoxBody, BoxWorldSnapshot};
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion, Tier, WorldError};
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion, WorldError};
 
-use crate::boxes::scenes::{Kind, Random, boxes, expected, moved};
+use crate::boxes::scenes::{Kind, boxes, expected};
+use crate::histories::{HistoryKind, live};
+use sdop_judge::ours::random::Random;
 
 pub fn drawn(random: &mut Random, kind: Kind) -> BoxBody {
     let bounds = boxes(kind, 8, random)[random.below(8)];
@@ -30,118 +32,16 @@ pub fn pairs(bodies: &BTreeMap<BodyId, BoxBody>) -> BTreeSet<[BodyId; 2]> {
     found.into_iter().map(|pair| pair.map(|i| ids[i as usize])).collect()
 }
 
-/// Inserts, removes, changes and moves boxes, and holds what the world says against the definition.
-/// `before_frame` may put another world in the place of this one, if it makes no difference.
-fn live(world: &mut BoxWorld, kind: Kind, seed: u64, before_frame: fn(&mut BoxWorld, usize)) {
-    let random = &mut Random(seed);
-    let mut bodies: BTreeMap<BodyId, BoxBody> = BTreeMap::new();
-    let mut gone: Vec<BodyId> = Vec::new();
-    let mut before = BTreeSet::new();
-    for frame in 0..40 {
-        before_frame(world, frame);
-        let calls = [0, 1, 30][random.below(3)];
-        for _ in 0..calls {
-            let body = drawn(random, kind);
-            let ids: Vec<BodyId> = bodies.keys().copied().collect();
-            let one = (!ids.is_empty()).then(|| ids[random.below(ids.len())]);
-            match (random.below(6), one) {
-                (0, Some(id)) => {
-                    world.remove(id).unwrap();
-                    assert!(world.remove(id).is_err() && world.body(id).is_err());
-                    bodies.remove(&id);
-                    gone.push(id);
-                }
-                (1, Some(id)) => {
-                    world.set(id, body).unwrap();
-                    bodies.insert(id, body);
-                }
-                (2, Some(id)) => {
-                    world.set_bounds(id, body.bounds).unwrap();
-                    bodies.get_mut(&id).unwrap().bounds = body.bounds;
-                }
-                _ => {
-                    let id = world.insert(body).unwrap();
-                    assert!(!gone.contains(&id) && bodies.insert(id, body).is_none());
-                }
-            }
-        }
-        for (&id, body) in bodies.iter_mut().filter(|(_, body)| body.motion == Motion::Dynamic) {
-            moved(std::slice::from_mut(&mut body.bounds), 0.02, random);
-            world.set_bounds(id, body.bounds).unwrap();
-        }
-        world.cull().unwrap();
-        let wanted = pairs(&bodies);
-        assert_eq!(world.len(), bodies.len());
-        assert!(bodies.iter().all(|(&id, &body)| world.body(id).unwrap() == body));
-        let listed: Vec<[BodyId; 2]> = world.pairs().collect();
-        let found: BTreeSet<[BodyId; 2]> = listed.iter().copied().collect();
-        assert!(listed.iter().is_sorted(), "{kind:?}, frame {frame}");
-        assert!(world.ids().eq(bodies.keys().copied()));
-        assert!(found == wanted && listed.len() == found.len(), "{kind:?}, frame {frame}");
-        let events = world.events();
-        assert!(events.begun().eq(wanted.difference(&before).copied()), "{kind:?}, frame {frame}");
-        assert!(
-            events.persisting().eq(wanted.intersection(&before).copied()),
-            "{kind:?}, frame {frame}"
-        );
-        assert!(events.ended().eq(before.difference(&wanted).copied()), "{kind:?}, frame {frame}");
-        before = wanted;
-    }
-}
-
 /// After any insertions and removals, pairs and events match the definition.
 #[test]
-fn random_histories_match_definition() {
-    for (kind, seed) in Kind::ALL.into_iter().zip(10..) {
-        live(&mut BoxWorld::new(), kind, seed, |_, _| ());
-        for &finder in Finder::ALL {
-            let way =
-                BoxCuller::builder().finder(finder).tier(Tier::SCALAR).threads(2).worth_waking(0);
-            live(&mut BoxWorld::with(&way).unwrap(), kind, seed + 100, |_, _| ());
-        }
-    }
-}
-
-pub fn through_text(world: &BoxWorld) -> BoxWorldSnapshot {
-    serde_json::from_str(&serde_json::to_string(&world.snapshot()).unwrap()).unwrap()
-}
-
-/// Goes astray in a clone and rolls it back, or restores the world in another that culls by another
-/// finder.
-fn restore(world: &mut BoxWorld, frame: usize) {
-    let saved = through_text(world);
-    let mut other = if frame.is_multiple_of(3) {
-        world.clone()
-    } else {
-        let finder = Finder::ALL[frame % Finder::ALL.len()];
-        BoxWorld::with(&BoxCuller::builder().finder(finder)).unwrap()
-    };
-    let ids: Vec<BodyId> = other.ids().collect();
-    for &id in ids.iter().step_by(2) {
-        other.remove(id).unwrap();
-    }
-    other.cull().unwrap();
-    other.events();
-    other.insert(Aabb::new([-1.0e9; 3], [1.0e9; 3])).and_then(|id| other.remove(id)).unwrap();
-    other.restore(&saved).unwrap();
-    assert_eq!(other.snapshot(), saved);
-    if frame % 5 == 4 {
-        other.shrink_to_fit();
-    }
-    *world = other;
-}
-
-#[test]
-fn restored_worlds_of_boxes_go_on() {
-    for (kind, seed) in Kind::ALL.into_iter().zip(40..) {
-        live(&mut BoxWorld::new(), kind, seed, restore);
-    }
+fn histories_of_boxes() {
+    live(HistoryKind::Boxes, 2..60);
 }
 
 /// Numbers that no world has written.
 #[test]
 fn damaged_snapshots_of_boxes_are_refused() {
-    let (mut world, mut random) = (BoxWorld::new(), Random(3));
+    let (mut world, mut random) = (BoxWorld::new(), Random::new(3));
     let ids: Vec<BodyId> =
         (0..20).map(|_| world.insert(drawn(&mut random, Kind::ALL[0])).unwrap()).collect();
     world.cull().unwrap();

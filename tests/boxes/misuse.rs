@@ -10,7 +10,8 @@
 
 use sdop::{Aabb, BoxCuller, BoxWorld, CullError, Finder, Groups, WorldError};
 
-use crate::boxes::scenes::{Kind, Random, boxes, expected};
+use crate::boxes::scenes::{Kind, boxes, expected};
+use sdop_judge::ours::random::Random;
 
 /// Invalid boxes.
 pub fn wrong() -> Vec<Aabb> {
@@ -41,7 +42,7 @@ pub fn wrong() -> Vec<Aabb> {
 fn invalid_box_is_named() {
     for &finder in Finder::ALL {
         for count in [1, 40, 300] {
-            let sound = boxes(Kind::Cubes, count, &mut Random(count as u64));
+            let sound = boxes(Kind::Cubes, count, &mut Random::new(count as u64));
             let wanted = expected(&sound, |_| true, |_| Groups::ALL);
             let mut culler = BoxCuller::builder().finder(finder).build().unwrap();
             for (number, bad) in wrong().into_iter().enumerate() {
@@ -79,7 +80,7 @@ fn world_rejects_invalid_boxes() {
 #[test]
 fn groups_of_another_length_are_told() {
     let mut culler = BoxCuller::new();
-    let now = boxes(Kind::Crowd, 5, &mut Random(1));
+    let now = boxes(Kind::Crowd, 5, &mut Random::new(1));
     culler.cull(&now).unwrap();
     for length in [0, 4, 6] {
         culler.set_groups(Some(vec![Groups::ALL; length]));
@@ -88,4 +89,23 @@ fn groups_of_another_length_are_told() {
     }
     culler.set_groups(None);
     assert!(!culler.cull(&now).unwrap().is_empty());
+}
+
+#[test]
+fn damaged_exclusions_are_refused() {
+    let mut world = BoxWorld::new();
+    let aabb = Aabb::new([0.0; 3], [1.0; 3]);
+    let [a, b, gone] = [(); 3].map(|()| world.insert(aabb).unwrap());
+    world.exclude(b, a).unwrap();
+    world.exclude(gone, a).unwrap();
+    world.remove(gone).unwrap();
+    let saved = serde_json::to_value(world.snapshot()).unwrap();
+    assert_eq!(saved["excluded"], serde_json::json!([[0, 1]]));
+    for bad in [vec![[1, 0]], vec![[0, 2]], vec![[0, 1], [0, 1]]] {
+        let mut damaged = saved.clone();
+        damaged["excluded"] = serde_json::json!(bad);
+        let error = world.restore(&serde_json::from_value(damaged).unwrap()).unwrap_err();
+        assert!(error.to_string().contains("excluded pairs"), "{error}");
+    }
+    assert!(world.is_excluded(a, b));
 }

@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod columns;
-mod excluded;
 mod lives;
 mod misuse;
 mod movers;
@@ -12,7 +11,8 @@ pub mod scenes;
 use sdop::boxes::BoxCullerBuilder;
 use sdop::{Aabb, BoxCuller, Finder, Groups, Tier};
 
-use scenes::{Kind, Random, boxes, expected, moved};
+use scenes::{Kind, boxes, expected, moved};
+use sdop_judge::ours::random::Random;
 
 /// Every way to find the same pairs: finders, tiers, threads.
 fn ways() -> Vec<(String, BoxCuller)> {
@@ -48,7 +48,7 @@ fn assert_exact(kind: Kind, count: usize, frames: usize, step: f32, random: &mut
 /// Exactly the pairs of the definition are listed.
 #[test]
 fn pairs_match_definition() {
-    let random = &mut Random(1);
+    let random = &mut Random::new(1);
     for kind in Kind::ALL {
         for (count, frames) in [(0, 2), (1, 2), (2, 3), (7, 4), (64, 6), (65, 24), (300, 24)] {
             let step = if frames % 4 == 0 { 0.05 } else { 0.4 };
@@ -60,7 +60,7 @@ fn pairs_match_definition() {
 /// The pairs of a hundred boxes are exact.
 #[test]
 fn hundred_boxes_are_exact() {
-    let random = &mut Random(6);
+    let random = &mut Random::new(6);
     for kind in Kind::ALL {
         assert_exact(kind, 100, 3, 0.05, random);
     }
@@ -70,7 +70,7 @@ fn hundred_boxes_are_exact() {
 /// blocks.
 #[test]
 fn near_cubes_touch_or_miss() {
-    let random = &mut Random(7);
+    let random = &mut Random::new(7);
     let mut ends = |at: usize| {
         let (lo, hi) = (at as f32, at as f32 + 1.0);
         [lo, [hi, hi.next_down(), hi + 0.015_625][random.below(3)]]
@@ -97,7 +97,7 @@ fn near_cubes_touch_or_miss() {
 /// are followed meanwhile.
 #[test]
 fn growing_long_boxes_are_found() {
-    let random = &mut Random(8);
+    let random = &mut Random::new(8);
     for by in [0.05_f32, 0.4, 3.0] {
         let (mut ways, mut now) = (ways(), boxes(Kind::Needles, 300, random));
         for frame in 0..24 {
@@ -119,7 +119,7 @@ fn growing_long_boxes_are_found() {
 /// Lists are the same in every tier and on any number of threads.
 #[test]
 fn lists_equal_in_tiers_and_threads() {
-    let random = &mut Random(2);
+    let random = &mut Random::new(2);
     for kind in [Kind::Cubes, Kind::Needles, Kind::Nested, Kind::Crowd] {
         let build = |of: BoxCullerBuilder| of.build().unwrap();
         let mut ways: Vec<BoxCuller> = Tier::available()
@@ -152,7 +152,7 @@ fn lists_equal_in_tiers_and_threads() {
 /// Boxes may come and go between frames and groups filter them.
 #[test]
 fn boxes_change_between_frames() {
-    let random = &mut Random(3);
+    let random = &mut Random::new(3);
     let mut culler = BoxCuller::new();
     for kind in Kind::ALL {
         for count in [90, 300, 40, 0, 200] {
@@ -177,7 +177,7 @@ fn boxes_change_between_frames() {
 /// A crowd comes in portions in the order of the list and takes no memory.
 #[test]
 fn portions_keep_list_order() {
-    let now = vec![boxes(Kind::Crowd, 1, &mut Random(4))[0]; 3000];
+    let now = vec![boxes(Kind::Crowd, 1, &mut Random::new(4))[0]; 3000];
     let pairs = 3000 * 2999 / 2;
     for threads in [1, 3] {
         let way = BoxCuller::builder().threads(threads).worth_waking(0);
@@ -205,7 +205,7 @@ fn portions_keep_list_order() {
 /// Cubes are answered without a look at many candidates.
 #[test]
 fn cubes_have_few_candidates() {
-    let random = &mut Random(5);
+    let random = &mut Random::new(5);
     for (kind, most) in [(Kind::Cubes, 8), (Kind::Needles, 400)] {
         let mut culler = BoxCuller::builder().finder(Finder::Grid).build().unwrap();
         let now = boxes(kind, 4000, random);
@@ -219,7 +219,7 @@ fn cubes_have_few_candidates() {
 #[test]
 fn small_frames_stay_on_one_thread() {
     let here = std::thread::current().id();
-    let now = boxes(Kind::Nested, 90, &mut Random(6));
+    let now = boxes(Kind::Nested, 90, &mut Random::new(6));
     let mut culler = BoxCuller::builder().finder(Finder::Grid).threads(3).build().unwrap();
     for _ in 0..50 {
         let take = |_: &sdop::PairList| assert_eq!(std::thread::current().id(), here);

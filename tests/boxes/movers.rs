@@ -1,172 +1,11 @@
 //! Worlds in which few boxes change per frame: whatever the history, pairs and events are those of
 //! the definition.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use sdop::boxes::BoxBody;
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion, Tier};
+use sdop::{Aabb, BodyId, BoxWorld, Groups, Motion};
 
-use crate::boxes::lives::{drawn, pairs, through_text};
-use crate::boxes::scenes::{Kind, Random, boxes, expected, moved};
-
-/// A world, what it should hold, and what events should be read against.
-struct History {
-    world: BoxWorld,
-    bodies: BTreeMap<BodyId, BoxBody>,
-    watched: BTreeSet<[BodyId; 2]>,
-    kind: Kind,
-    random: Random,
-}
-
-impl History {
-    fn new(world: BoxWorld, kind: Kind, seed: u64, count: usize) -> Self {
-        let mut history = Self {
-            world,
-            bodies: BTreeMap::new(),
-            watched: BTreeSet::new(),
-            kind,
-            random: Random(seed),
-        };
-        for bounds in boxes(kind, count, &mut history.random) {
-            let body = drawn(&mut history.random, kind);
-            history.insert(BoxBody { bounds, ..body });
-        }
-        history
-    }
-
-    fn insert(&mut self, body: BoxBody) {
-        let id = self.world.insert(body).unwrap();
-        assert!(self.bodies.insert(id, body).is_none());
-    }
-
-    /// Changes one box in one way, or lets one come or go.
-    fn change(&mut self) {
-        let (random, other) = (&mut self.random, drawn(&mut Random(7), self.kind));
-        let mut drawn = drawn(random, self.kind);
-        let ids: Vec<BodyId> = self.bodies.keys().copied().collect();
-        let id = ids[random.below(ids.len())];
-        let mut body = self.bodies[&id];
-        match random.below(12) {
-            0 => return self.insert(drawn),
-            1 if ids.len() > 40 => {
-                self.world.remove(id).unwrap();
-                self.bodies.remove(&id);
-                return;
-            }
-            2 => body.groups = drawn.groups,
-            3 => body.motion = drawn.motion,
-            // Somewhere else, or just where another box is.
-            4 => body.bounds = drawn.bounds,
-            5 => body.bounds = self.bodies[&ids[random.below(ids.len())]].bounds,
-            6 => (body, drawn) = (drawn, other),
-            7 => {} // the same box again
-            _ => moved(std::slice::from_mut(&mut body.bounds), 0.3, random),
-        }
-        let former = self.bodies.insert(id, body).unwrap();
-        let (moves, rests) = (former.bounds != body.bounds, former.motion != body.motion);
-        if former.groups != body.groups || (moves && rests) || drawn.motion == Motion::Fixed {
-            self.world.set(id, body).unwrap();
-        } else if rests {
-            self.world.set_motion(id, body.motion).unwrap();
-        } else {
-            self.world.set_bounds(id, body.bounds).unwrap();
-        }
-    }
-
-    fn assert_exact(&mut self, reads_events: bool, frame: usize) {
-        let what = format!("{:?}, frame {frame}", self.kind);
-        self.world.cull().unwrap();
-        let wanted = pairs(&self.bodies);
-        let listed: Vec<[BodyId; 2]> = self.world.pairs().collect();
-        assert!(listed.iter().eq(&wanted), "{what}");
-        assert_eq!(self.world.pairs().len(), wanted.len(), "{what}");
-        for (&id, &body) in &self.bodies {
-            assert_eq!(self.world.body(id).unwrap(), body, "{what}");
-        }
-        if reads_events {
-            let events = self.world.events();
-            let before = &self.watched;
-            assert!(events.begun().eq(wanted.difference(before).copied()), "{what}");
-            assert!(events.ended().eq(before.difference(&wanted).copied()), "{what}");
-            let lasting = wanted.intersection(before).copied();
-            assert!(events.persisting().eq(lasting), "{what}");
-            assert_eq!(events.iter().count(), wanted.union(before).count(), "{what}");
-            self.watched = wanted;
-        }
-    }
-
-    /// Frames of few changes each; now and then of none, and of many. `before_frame` may put
-    /// another world in the place of this one, if it makes no difference.
-    fn live(&mut self, frames: usize, mut before_frame: impl FnMut(&mut BoxWorld, usize)) {
-        for frame in 0..frames {
-            before_frame(&mut self.world, frame);
-            let changes = match self.random.below(20) {
-                0 => 30,
-                calls => calls % 5,
-            };
-            (0..changes).for_each(|_| self.change());
-            let reads_events = self.random.below(3) > 0;
-            self.assert_exact(reads_events, frame);
-        }
-    }
-}
-
-#[test]
-fn few_movers_leave_exact_pairs() {
-    for (kind, seed) in Kind::ALL.into_iter().zip(100..) {
-        History::new(BoxWorld::new(), kind, seed, 100).live(150, |_, _| ());
-        for &finder in Finder::ALL {
-            let way = BoxCuller::builder().finder(finder).tier(Tier::SCALAR);
-            let world = BoxWorld::with(&way.threads(2).worth_waking(0)).unwrap();
-            History::new(world, kind, seed + 50, 60).live(60, |_, _| ());
-        }
-    }
-}
-
-/// Clones, worlds restored by another finder, worlds that have given their memory back, and those
-/// that were culled otherwise.
-#[test]
-fn few_movers_in_random_histories() {
-    for (kind, seed) in Kind::ALL.into_iter().zip(200..) {
-        History::new(BoxWorld::new(), kind, seed, 80).live(150, |world, frame| match frame % 9 {
-            1 => *world = world.clone(),
-            3 => {
-                let saved = through_text(world);
-                let finder = Finder::ALL[frame % Finder::ALL.len()];
-                let mut other = BoxWorld::with(&BoxCuller::builder().finder(finder)).unwrap();
-                other.restore(&saved).unwrap();
-                assert_eq!(other.snapshot(), saved);
-                *world = other;
-            }
-            5 => world.shrink_to_fit(),
-            6 => drop(world.cull_in_portions(|_| ())),
-            8 => drop(world.cull_up_to(frame).map(|pairs| pairs.len())),
-            _ => {}
-        });
-    }
-}
-
-/// Equal calls leave equal snapshots, whether a world was restored on the way or not.
-#[test]
-fn restored_movers_report_as_the_original() {
-    for (kind, seed) in Kind::ALL.into_iter().zip(300..) {
-        let mut one = History::new(BoxWorld::new(), kind, seed, 60);
-        one.live(20, |_, _| ());
-        let mut other = History {
-            world: BoxWorld::new(),
-            bodies: one.bodies.clone(),
-            watched: one.watched.clone(),
-            kind,
-            random: Random(one.random.0),
-        };
-        other.world.restore(&through_text(&one.world)).unwrap();
-        for _ in 0..30 {
-            one.live(1, |_, _| ());
-            other.live(1, |_, _| ());
-            assert_eq!(one.world.snapshot(), other.world.snapshot());
-        }
-    }
-}
+use crate::boxes::scenes::{Kind, boxes, expected, moved};
+use sdop_judge::ours::random::Random;
 
 fn cube(x: f32) -> Aabb {
     Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0])
@@ -254,7 +93,7 @@ fn groups_change_resting_pairs() {
 /// Counted, not timed: what is looked at doesn't depend on how many boxes there are.
 #[test]
 fn a_frame_costs_what_changes() {
-    let random = &mut Random(5);
+    let random = &mut Random::new(5);
     let tests_of = |count: usize, random: &mut Random| {
         let mut world = BoxWorld::new();
         let all = boxes(Kind::Cubes, count, random);
@@ -330,7 +169,7 @@ fn parked_boxes_cost_their_changes() {
 /// they are the same.
 #[test]
 fn moving_giants_stay_cheap() {
-    let random = &mut Random(6);
+    let random = &mut Random::new(6);
     let all = boxes(Kind::Cubes, 2000, random);
     let mut world = BoxWorld::new();
     let mut bounds: Vec<Aabb> = all;

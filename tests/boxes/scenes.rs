@@ -2,29 +2,7 @@
 
 use sdop::{Aabb, Groups};
 
-/// Knuth's MMIX generator.
-pub struct Random(pub u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        self.0 >> 33
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        self.next() as usize % n
-    }
-
-    /// In [0, 1).
-    pub fn unit(&mut self) -> f32 {
-        (self.next() >> 7) as f32 / (1 << 24) as f32
-    }
-
-    pub fn within(&mut self, reach: f32) -> f32 {
-        (2.0 * self.unit() - 1.0) * reach
-    }
-}
+use sdop_judge::ours::random::Random;
 
 /// What boxes are like.
 #[derive(Clone, Copy, Debug)]

@@ -97,7 +97,7 @@ fn cone(direction: [f64; 3], width: f64, directions: DirectionSet) -> Shape {
 /// The pair is reported, and no longer once the cone is moved away a little.
 #[test]
 fn touching_corners_are_reported() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for directions in DIRECTIONS {
         for at in [[0.0; 3], [1.0e6, -1.0e9, 0.0]] {
             for kind in [(false, false), (false, true), (true, false), (true, true)] {

@@ -3,6 +3,7 @@
 use sdop::Motion;
 
 use super::*;
+use crate::histories::{HistoryKind, live};
 
 fn random_body(random: &mut Random) -> Body {
     Body {
@@ -15,9 +16,16 @@ fn random_body(random: &mut Random) -> Body {
     }
 }
 
+/// No two parts that meet are missed, whatever has happened to their bodies.
+#[test]
+fn histories_of_compounds() {
+    live(HistoryKind::Compounds, 2..3);
+}
+
+/// Parts of a number that change.
 #[test]
 fn followed_world_gives_fresh_pairs() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let shapes = shapes(DirectionSet::K18);
     let mut build = |count| Compound::build("t", &shapes, &tree(count, 4, &mut random)).unwrap();
     let mut compounds = vec![(0, build(5)), (1, build(12))];

@@ -5,17 +5,13 @@
 mod corners;
 mod lives;
 mod misuse;
-mod robots;
 mod volumes;
 
-use crate::boxes::scenes;
-use crate::forms;
 use sdop::compound::{Compound, Part, PartCuller, PartPair};
 use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{Body, BodyId, ProceduralShape, Shape, World};
-use sdop_reference::WidePose;
 
-use crate::compound::scenes::Random;
+use sdop_judge::ours::random::Random;
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
@@ -53,37 +49,6 @@ fn apply(turn: [[i64; 3]; 3], v: [i64; 3]) -> [i64; 3] {
     turn.map(|row| (0..3).map(|i| row[i] * v[i]).sum())
 }
 
-/// The product of quaternions of which one has whole components below 2⁴ and the other f32
-/// components on a grid of 2⁻²³, or below 2²⁴: exact in f64.
-fn product([x, y, z, w]: [f64; 4], [a, b, c, d]: [f64; 4]) -> [f64; 4] {
-    [
-        w * a + x * d + y * c - z * b,
-        w * b - x * c + y * d + z * a,
-        w * c + x * b - y * a + z * d,
-        w * d - x * a - y * b - z * c,
-    ]
-}
-
-/// The exact pose of a part of a body with a whole quaternion, and its translation.
-fn composed(body: &Body, part: &Part) -> (WidePose, [f64; 3]) {
-    let q = product(body.rotation.map(f64::from), part.rotation.map(f64::from));
-    let steps = part.translation.map(|x| {
-        let steps = x / STEP;
-        assert_eq!(steps, steps.round());
-        assert_eq!(steps as i64 % SQUARE, 0);
-        steps as i64 / SQUARE
-    });
-    let whole = body.rotation.map(|x| x as i64);
-    assert_eq!(whole.map(|x| x as f32), body.rotation);
-    let turned = apply(turn(whole), steps);
-    let t = [0, 1, 2].map(|axis| {
-        let sum = body.translation[axis] + turned[axis] as f64 * STEP;
-        assert_eq!(sum - body.translation[axis], turned[axis] as f64 * STEP, "exact");
-        sum
-    });
-    (WidePose::new(q, t).unwrap(), t)
-}
-
 /// Meshes of all kinds: with faces on the axes, round, thin, and with a dent.
 fn shapes(directions: DirectionSet) -> Vec<Shape> {
     let forms = [
@@ -97,11 +62,6 @@ fn shapes(directions: DirectionSet) -> Vec<Shape> {
         Shape::build(&form.build().unwrap(), &spec).unwrap()
     };
     forms.map(build).into()
-}
-
-/// The mesh of a shape as the reference has it.
-fn reference(shape: &Shape) -> sdop_reference::Shape {
-    sdop_reference::Shape::of_mesh(shape.vertices.clone(), shape.triangles.clone()).unwrap()
 }
 
 /// Parts as the links of a tree: each at an end of an earlier one, turned by any angle.

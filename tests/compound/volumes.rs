@@ -27,7 +27,7 @@ fn volumes(shape: &Shape) -> ([Ball; 2], Slabs) {
 /// Parts anywhere, so that f32 rounds every vertex of the compound.
 #[test]
 fn shape_contains_all_parts() {
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     for directions in DIRECTIONS {
         let shapes = shapes(directions);
         for count in [1, 2, 5, 30] {

@@ -5,6 +5,7 @@ use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 use sdop::{Aabb, BoxCuller, Culler, Finder, Strategy};
+use sdop_judge::ours::random::Random;
 
 /// Frames: the first ones, and those in which lists are tried again.
 const FRAMES: usize = 20;
@@ -24,26 +25,16 @@ const MIXES: [(&str, [i32; 15]); 3] = [
     ("some specks", [0, 0, -80, 1, 0, -90, 2, 0, -20, 3, 0, -70, 0, 0, -80]),
 ];
 
-/// Numbers in [0, 1).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 /// Positions of bodies, two radii of the ordinary size apart in the mean. `frame` moves them, and
 /// every eighth one shuffles them.
 fn placed(exponent: i32, frame: usize) -> Vec<[f32; 3]> {
-    let (mut still, mut moved) = (Random(7 + (frame / 8) as u64), Random(frame as u64));
+    let (mut still, mut moved) = (Random::new(7 + (frame / 8) as u64), Random::new(frame as u64));
     let side = 2.0 * (N as f64).cbrt();
     let size = 2f64.powi(exponent);
     // Within the contract, whatever the size.
     let most = 2f64.powi(60);
     (0..N)
-        .map(|_| [0; 3].map(|_| still.next() * side + 0.03 * moved.next()))
+        .map(|_| [0; 3].map(|_| f64::from(still.unit()) * side + 0.03 * f64::from(moved.unit())))
         .map(|at| at.map(|x| (x * size).min(most) as f32))
         .collect()
 }

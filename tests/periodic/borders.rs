@@ -33,7 +33,7 @@ fn pairs_of(shape: &Shape, at: [[f64; 3]; 2], periods: [Option<f64>; 3]) -> Vec<
 /// one by the period rounds its place by a part of its size, away from the other or toward it.
 #[test]
 fn rounded_images_touch() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let (mut rounded, mut missed) = (0, 0);
     for _ in 0..2000 {
         // Steps at half of the period are 2⁻²⁴ below it and 2⁻²³ above.

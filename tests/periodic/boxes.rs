@@ -1,10 +1,10 @@
 //! Periodic boxes: exactly the pairs of the definition, in exact fractions.
 
 use sdop::periodic::PeriodicError;
-use sdop::{BoxCuller, Finder};
 use sdop_reference::exact::period::meeting_images;
 
 use super::*;
+use crate::histories::{HistoryKind, live};
 
 /// Where the ends of boxes are.
 #[derive(Clone, Copy, Debug)]
@@ -126,39 +126,14 @@ fn allow_half(error: PeriodicError) {
 }
 
 #[test]
-fn histories_give_exact_pairs() {
-    let mut random = Random(1);
-    let (mut all, mut across) = (0, 0);
-    for lengths in [[3.0, 5.0, 8.0], [0.1, 7.3, 1.0 / 3.0]] {
-        for periods in subsets(lengths) {
-            for kind in ENDS {
-                let finders = [Finder::Auto, Finder::Grid, Finder::Sweep, Finder::AllPairs];
-                let builder = BoxCuller::builder().finder(finders[random.below(4)]);
-                let mut boxes = PeriodicBoxes::with(&builder, periods).unwrap();
-                let mut ids = Vec::new();
-                for round in 0..16 {
-                    for _ in 0..1 + 24 / (round + 1) {
-                        change(&mut boxes, &mut ids, kind, &mut random);
-                    }
-                    let expected = expected(&boxes);
-                    assert_eq!(
-                        boxes.cull().unwrap(),
-                        expected,
-                        "{periods:?} {kind:?} round {round}"
-                    );
-                    all += expected.len();
-                    across += expected.iter().filter(|pair| pair.image != [0; 3]).count();
-                }
-            }
-        }
-    }
-    assert!(all > 8000 && 2 * across > all, "{across} of {all}");
+fn histories_in_periodic_space() {
+    live(HistoryKind::Periodic, 2..4);
 }
 
 /// Other periods are other pairs, and where a box is too large for them nothing changes.
 #[test]
 fn periods_can_change() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let (mut refused, mut changed) = (0, 0);
     let mut boxes = PeriodicBoxes::new([Some(4.0), Some(4.0), None]).unwrap();
     for _ in 0..20 {
@@ -213,7 +188,7 @@ fn images_are_few() {
 /// neighbours serve in the others; also if the user keeps them within the period.
 #[test]
 fn slow_boxes_seldom_jump() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     let periods = [Some(10.0), Some(8.0), None];
     for is_wrapped in [false, true] {
         let mut boxes = PeriodicBoxes::new(periods).unwrap();
@@ -266,24 +241,5 @@ fn giants_come_late() {
         let wanted = expected(&boxes);
         assert_eq!(wanted.len(), most);
         assert_eq!(boxes.cull().unwrap(), wanted);
-    }
-}
-
-/// A clone goes on as the original does.
-#[test]
-fn clones_go_on() {
-    let mut random = Random(3);
-    let mut boxes = PeriodicBoxes::new([Some(1.0), None, Some(2.0)]).unwrap();
-    let mut ids = Vec::new();
-    for _ in 0..40 {
-        change(&mut boxes, &mut ids, Ends::Anywhere, &mut random);
-    }
-    boxes.cull().unwrap();
-    let mut clone = boxes.clone();
-    for _ in 0..10 {
-        let seed = random.0;
-        change(&mut boxes, &mut ids.clone(), Ends::Anywhere, &mut Random(seed));
-        change(&mut clone, &mut ids, Ends::Anywhere, &mut random);
-        assert_eq!(boxes.cull().unwrap(), clone.cull().unwrap());
     }
 }

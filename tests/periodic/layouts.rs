@@ -61,7 +61,7 @@ fn drift(at: &mut [f64; 3], periods: [Option<f64>; 3], random: &mut Random) {
 
 #[test]
 fn boxes_meet_as_laid_out() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     for (periods, sizes) in subsets([6.0, 7.0, 8.0]).zip([[8, 250], [128, 129]].into_iter().cycle())
     {
         let n = 600;
@@ -118,7 +118,7 @@ fn shapes() -> Vec<Shape> {
 /// Translations are exact, so pairs are those of the same tests, the spheres' and the or-DOPs'.
 #[test]
 fn meshes_meet_as_laid_out() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for periods in subsets([6.0, 7.0, 8.0]) {
         let n = 240;
         let (shapes, shifts) = (shapes(), shifts(periods));

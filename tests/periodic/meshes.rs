@@ -97,7 +97,7 @@ fn near_images([a, b]: [[f64; 3]; 2], periods: [Option<f64>; 3]) -> Vec<[i32; 3]
 #[test]
 fn no_meeting_image_is_missed() {
     let lengths = [3.0, 3.5, 2.75 + STEP];
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     let strategies = forms::strategies_that_report_all();
     let (mut met, mut reported) = (0, 0);
     for (number, periods) in subsets(lengths).enumerate() {

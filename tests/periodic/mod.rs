@@ -10,12 +10,11 @@ mod meshes;
 mod misuse;
 mod queries;
 
-use crate::boxes::scenes;
 use crate::forms;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicPair, PeriodicWorld};
 use sdop::{Body, BodyId, Groups, Motion};
 
-use crate::periodic::scenes::Random;
+use sdop_judge::ours::random::Random;
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 

@@ -40,7 +40,7 @@ fn volume(kind: Ends, periods: [Option<f64>; 3], random: &mut Random) -> [[f64; 
 /// Boxes in boxes, exactly, while they come, move and go, with and without a cull before.
 #[test]
 fn boxes_are_found_exactly() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let (mut found, mut across) = (0, 0);
     for lengths in [[3.0, 5.0, 8.0], [0.1, 7.3, 1.0 / 3.0]] {
         for periods in subsets(lengths) {
@@ -104,7 +104,7 @@ fn near(
 /// and of cubes of side 2.
 #[test]
 fn balls_miss_nothing() {
-    let mut random = Random(12);
+    let mut random = Random::new(12);
     let lengths = [8.0, 12.0, 16.0];
     let mut boxes = PeriodicBoxes::new(lengths.map(Some)).unwrap();
     let mut cubes = PeriodicWorld::new(vec![cube(2.0)], lengths.map(Some)).unwrap();
@@ -141,7 +141,7 @@ fn balls_miss_nothing() {
 /// A posed shape finds what a box of the same ends finds, and no more where faces decide.
 #[test]
 fn posed_shapes_find_what_boxes_find() {
-    let mut random = Random(13);
+    let mut random = Random::new(13);
     let cube = cube(2.0);
     let (shape, margin) = (QueryShape::new(&cube), 0.0);
     let periods = [Some(12.0), None, Some(0.1 * 128.0)];

@@ -8,8 +8,8 @@ use sdop_reference::exact::meeting::meet;
 use sdop_reference::exact::query::{ExactLine, ball_meets_mesh, is_no_later, line_meets_mesh};
 
 use crate::queries::forms::BOX_FACES;
-use crate::queries::scenes::Random;
 use crate::queries::{UNTURNED, contains, cube, mesh, reference, shapes, tiers};
+use sdop_judge::ours::random::Random;
 
 fn pose_of(body: &Body) -> Pose {
     Pose::from_f64(body.rotation, body.translation).unwrap()
@@ -93,7 +93,7 @@ fn scenes(seed: u64) -> impl Iterator<Item = (Scene, Random)> {
     let places = [[0.0; 3], [1.0e9 + 0.1, -7.0e8, 0.3]];
     ways.into_iter().enumerate().flat_map(move |(n, directions)| {
         places.map(|at| {
-            let mut random = Random(seed + n as u64);
+            let mut random = Random::new(seed + n as u64);
             (Scene::new(shapes(directions), at, 60, &mut random), random)
         })
     })

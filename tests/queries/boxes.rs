@@ -4,8 +4,9 @@ use sdop::query::QueryError;
 use sdop::{Aabb, BodyId, BoxWorld, Line, QueryIndex, QueryVolume};
 use sdop_reference::exact::query::{ExactLine, ball_meets_box, is_no_later, line_meets_box};
 
-use crate::queries::scenes::{Kind, Random, boxes};
+use crate::queries::scenes::{Kind, boxes};
 use crate::queries::tiers;
+use sdop_judge::ours::random::Random;
 
 /// Closer than that, relative to the coordinates, rounding may report what only nearly touches.
 const NEAR: f64 = 1e-12;
@@ -56,7 +57,7 @@ fn point(boxes: &[Aabb], random: &mut Random) -> [f64; 3] {
 /// Boxes that meet a box are found exactly.
 #[test]
 fn box_finds_boxes_exactly() {
-    let random = &mut Random(1);
+    let random = &mut Random::new(1);
     for kind in Kind::ALL {
         let all = boxes(kind, 300, random);
         let (index, ids) = index_of(&all);
@@ -89,7 +90,7 @@ fn box_finds_boxes_exactly() {
 /// Boxes that meet a ball are found.
 #[test]
 fn ball_finds_boxes() {
-    let random = &mut Random(2);
+    let random = &mut Random::new(2);
     let (mut met, mut touched) = (0, 0);
     for kind in Kind::ALL {
         let all = boxes(kind, 200, random);
@@ -118,7 +119,7 @@ fn ball_finds_boxes() {
 /// Boxes along a line are found in order.
 #[test]
 fn line_finds_boxes_in_order() {
-    let random = &mut Random(3);
+    let random = &mut Random::new(3);
     let mut met = 0;
     for kind in Kind::ALL {
         let all = boxes(kind, 200, random);
@@ -160,7 +161,7 @@ fn line_finds_boxes_in_order() {
 /// is.
 #[test]
 fn lines_that_graze_are_not_lost() {
-    let random = &mut Random(4);
+    let random = &mut Random::new(4);
     let aabb = Aabb::new([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]);
     let (index, ids) = index_of(&[aabb]);
     let mut inexact = 0;
@@ -200,7 +201,7 @@ fn lines_that_graze_are_not_lost() {
 /// Balls that touch a corner in exact arithmetic, where the squares are no f64.
 #[test]
 fn exactly_touching_balls_are_found() {
-    let random = &mut Random(5);
+    let random = &mut Random::new(5);
     let aabb = Aabb::new([0.0; 3], [1.0; 3]);
     let (index, _) = index_of(&[aabb]);
     for _ in 0..4000 {
@@ -265,7 +266,7 @@ fn caller_judges_the_first() {
 /// Batches are the queries one by one.
 #[test]
 fn batches_equal_single_queries() {
-    let random = &mut Random(6);
+    let random = &mut Random::new(6);
     let all = boxes(Kind::Needles, 500, random);
     let mut world = BoxWorld::new();
     for aabb in &all {

@@ -6,7 +6,7 @@ use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{Body, Line, QueryIndex, Shape, TriangleMesh, World};
 
 use crate::queries::UNTURNED;
-use crate::queries::scenes::Random;
+use sdop_judge::ours::random::Random;
 
 /// A step of all places.
 const STEP: f64 = 1.0 / 1024.0;
@@ -63,7 +63,7 @@ fn tetrahedron(corners: [[f32; 3]; 4], directions: DirectionSet) -> Shape {
 #[test]
 fn touched_corners_are_found() {
     let ways = [DirectionSet::K6, DirectionSet::K14, DirectionSet::K18, DirectionSet::K26];
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     for directions in ways {
         for _ in 0..60 {
             let turned = TurnedCorners::new(directions, &mut random);

@@ -5,8 +5,9 @@ use sdop::query::QuerySource;
 use sdop::volume::DirectionSet;
 use sdop::{Aabb, Body, BodyId, BoxWorld, Line, Motion, QueryIndex, QueryVolume, World};
 
-use crate::queries::scenes::Random;
+use crate::histories::{HistoryKind, live};
 use crate::queries::{UNTURNED, cube, shapes};
+use sdop_judge::ours::random::Random;
 
 fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random) {
     let mut fresh = QueryIndex::new();
@@ -26,86 +27,10 @@ fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random
     assert_eq!(index.pairs_with(&fresh).unwrap(), fresh.pairs_with(&fresh).unwrap());
 }
 
+/// The bodies that an index finds in each body's own volume.
 #[test]
-fn an_index_follows_boxes() {
-    let random = &mut Random(1);
-    let mut world = BoxWorld::new();
-    let mut index = QueryIndex::new();
-    let mut ids: Vec<BodyId> = Vec::new();
-    let draw = |random: &mut Random| {
-        let min = [(); 3].map(|()| random.within(8.0));
-        BoxBody {
-            motion: [Motion::Fixed, Motion::Resting, Motion::Dynamic][random.below(3)],
-            ..Aabb::new(min, min.map(|x| x + random.unit())).into()
-        }
-    };
-    for frame in 0..60 {
-        for _ in 0..random.below(60) {
-            match random.below(4) {
-                0 if !ids.is_empty() => {
-                    let gone = ids.swap_remove(random.below(ids.len()));
-                    world.remove(gone).unwrap();
-                }
-                1 if !ids.is_empty() => {
-                    let id = ids[random.below(ids.len())];
-                    world.set(id, draw(random)).unwrap();
-                }
-                2 => ids.push(world.insert(draw(random)).unwrap()),
-                _ if frame < 30 => ids.push(world.insert(draw(random)).unwrap()),
-                _ => {}
-            }
-        }
-        if frame % 3 > 0 {
-            index.update(&world);
-            assert_same(&index, &world, random);
-        }
-    }
-    assert!(ids.len() > 200, "{}", ids.len());
-    for id in ids {
-        world.remove(id).unwrap();
-    }
-    index.update(&world);
-    assert!(index.is_empty());
-    assert_same(&index, &world, random);
-}
-
-#[test]
-fn an_index_follows_bodies() {
-    let random = &mut Random(2);
-    let mut world = World::new(shapes(DirectionSet::K18)).unwrap();
-    let mut index = QueryIndex::new();
-    let mut ids: Vec<BodyId> = Vec::new();
-    let draw = |random: &mut Random| Body {
-        shape: random.below(4) as u32,
-        motion: [Motion::Fixed, Motion::Dynamic][random.below(2)],
-        rotation: [(); 4].map(|()| random.within(1.0)),
-        translation: [(); 3].map(|()| f64::from(random.within(8.0))),
-        margin: [0.0, 0.25][random.below(2)],
-        ..Body::default()
-    };
-    for _ in 0..40 {
-        for _ in 0..random.below(20) {
-            match random.below(3) {
-                0 if ids.len() > 40 => {
-                    let gone = ids.swap_remove(random.below(ids.len()));
-                    world.remove(gone).unwrap();
-                }
-                1 if !ids.is_empty() => {
-                    let id = ids[random.below(ids.len())];
-                    world.set(id, draw(random)).unwrap();
-                }
-                _ => ids.push(world.insert(draw(random)).unwrap()),
-            }
-        }
-        index.update(&world);
-        assert_same(&index, &world, random);
-    }
-    for id in ids {
-        world.remove(id).unwrap();
-    }
-    index.update(&world);
-    assert!(index.is_empty());
-    assert_same(&index, &world, random);
+fn histories_that_are_asked() {
+    live(HistoryKind::Queries, 2..6);
 }
 
 /// A body that is equal to the removed one whose slot it has is another body.
@@ -152,7 +77,7 @@ fn replaced_shape_is_seen() {
 /// Worlds of both kinds, one after the other, with the same slots.
 #[test]
 fn another_world_is_another_set() {
-    let random = &mut Random(3);
+    let random = &mut Random::new(3);
     let mut index = QueryIndex::new();
     let mut bodies = World::new(vec![cube()]).unwrap();
     bodies.insert(Body::at(0, UNTURNED, [3.0, 0.0, 0.0])).unwrap();

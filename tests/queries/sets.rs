@@ -6,8 +6,9 @@ use sdop::{Aabb, Body, BodyId, BoxWorld, Motion, QueryIndex, World};
 use sdop_reference::Pose;
 use sdop_reference::exact::meeting::meet;
 
-use crate::queries::scenes::{Kind, Random, boxes};
+use crate::queries::scenes::{Kind, boxes};
 use crate::queries::{UNTURNED, cube, reference, shapes, tiers};
+use sdop_judge::ours::random::Random;
 
 fn box_world(boxes: &[Aabb]) -> BoxWorld {
     let mut world = BoxWorld::new();
@@ -20,7 +21,7 @@ fn box_world(boxes: &[Aabb]) -> BoxWorld {
 
 #[test]
 fn boxes_of_two_sets_meet_exactly() {
-    let random = &mut Random(1);
+    let random = &mut Random::new(1);
     for kind in Kind::ALL {
         let all = boxes(kind, 400, random);
         let (one, other) = all.split_at(150);
@@ -50,7 +51,7 @@ fn boxes_of_two_sets_meet_exactly() {
 /// origins of their own.
 #[test]
 fn sets_find_meeting_meshes() {
-    let random = &mut Random(2);
+    let random = &mut Random::new(2);
     let shapes = shapes(DirectionSet::K18);
     let meshes: Vec<_> = shapes.iter().map(reference).collect();
     for far in [[0.0; 3], [1.0e9 + 0.1, 0.7, -3.0e10]] {
@@ -112,7 +113,7 @@ fn sets_of_other_origins_meet() {
 /// Boxes against meshes are what each box finds as a query.
 #[test]
 fn boxes_against_meshes_are_queries() {
-    let random = &mut Random(3);
+    let random = &mut Random::new(3);
     let shapes = shapes(DirectionSet::K18);
     let mut world = World::new(shapes).unwrap();
     for _ in 0..150 {

@@ -67,7 +67,7 @@ fn rounded_box(random: &mut Random) -> (TriangleMesh, f64) {
 /// turn of a quarter about z has the offset go round, too.
 #[test]
 fn far_boxes_that_touch_are_reported() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(21));
+    let mut random = Random::new(21);
     let mut moved = 0;
     for round in 0..40 {
         let (mesh, length) = rounded_box(&mut random);

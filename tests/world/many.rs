@@ -1,8 +1,6 @@
 //! Worlds of many shapes, margins and places: whether a pair is reported depends only on its two
 //! bodies, and not on others.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Strategy};
@@ -43,10 +41,10 @@ fn rounding(body: &Body) -> f64 {
 fn drawn(random: &mut Random) -> Body {
     let margin = match random.below(3) {
         0 => 0.0,
-        _ => 0.01 * 1.6_f32.powi(random.below(12) as i32) * (1.0 + 0.05 * random.unit()),
+        _ => 0.01 * 1.6_f32.powi(random.below(12) as i32) * (1.0 + 0.05 * random.within(1.0)),
     };
     let place = PLACES[random.below(PLACES.len() as u32) as usize];
-    let mut translation = [(); 3].map(|()| f64::from(random.unit()) * 16.0);
+    let mut translation = [(); 3].map(|()| f64::from(random.within(1.0)) * 16.0);
     translation[random.below(2) as usize] += place;
     Body {
         shape: random.below(SHAPES),
@@ -99,7 +97,7 @@ fn pairs_follow_from_their_own_bodies() {
             let settings = CullSettings { strategy, pairs: finder, ..CullSettings::default() };
             let builder = Culler::builder().settings(&settings);
             let mut world = World::with(shapes(), &builder).unwrap();
-            let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
+            let mut random = Random::new(seed);
             for _ in 0..400 {
                 world.insert(drawn(&mut random)).unwrap();
             }

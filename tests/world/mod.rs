@@ -10,7 +10,6 @@ mod far;
 mod lives;
 mod many;
 mod margins;
-mod movers;
 mod pair_test;
 mod regions;
 mod saves;
@@ -18,40 +17,25 @@ mod single_changes;
 mod turned;
 
 use crate::forms;
-use std::collections::{BTreeSet, HashMap};
+use crate::histories::{HistoryKind, live};
+use sdop_judge::ours::random::Random;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
-use sdop::bodies::Bodies;
 use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Finder, Strategy, Updates};
 use sdop::volume::{Origin, Shape, ShapeSpec};
-use sdop::world::{Body, BodyId, Groups, Motion, PairLookup, World, WorldError};
+use sdop::world::{Body, Groups, Motion, World, WorldError};
 
 use forms::FORMS;
 
-struct Random(ChaCha8Rng);
-
-impl Random {
-    fn below(&mut self, n: u32) -> u32 {
-        self.0.next_u32() % n
-    }
-
-    /// In [−1, 1], of 24 bits.
-    fn unit(&mut self) -> f32 {
-        (self.0.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0
-    }
-
-    fn body(&mut self, shapes: u32) -> Body {
-        Body {
-            shape: self.below(shapes),
-            motion: motion(self.below(4) > 0),
-            rotation: [(); 4].map(|()| self.unit()),
-            translation: [(); 3].map(|()| f64::from(self.unit() * 6.0)),
-            groups: Groups { member: 1 << self.below(3), mask: 7 & !(1 << self.below(3)) },
-            ..Body::default()
-        }
+fn drawn(random: &mut Random, shapes: u32) -> Body {
+    Body {
+        shape: random.below(shapes),
+        motion: motion(random.below(4) > 0),
+        rotation: [(); 4].map(|()| random.within(1.0)),
+        translation: [(); 3].map(|()| f64::from(random.within(6.0))),
+        groups: Groups { member: 1 << random.below(3), mask: 7 & !(1 << random.below(3)) },
+        ..Body::default()
     }
 }
 
@@ -86,118 +70,14 @@ fn ways() -> Vec<CullSettings> {
     ways
 }
 
-type Pairs = BTreeSet<[BodyId; 2]>;
-
-/// What a newly built culler reports of the same bodies.
-fn afresh(shapes: &[Shape], way: &CullSettings, bodies: &HashMap<BodyId, Body>) -> Pairs {
-    let mut order: Vec<BodyId> = bodies.keys().copied().collect();
-    order.sort();
-    let mut columns = Bodies::default();
-    for id in &order {
-        let body = bodies[id];
-        let t = body.translation.map(|x| x as f32);
-        columns.push(body.shape, body.motion.is_dynamic(), body.rotation, t);
-    }
-    let settings = CullSettings {
-        interest: Some(sdop::settings::Interest::Bodies(Vec::new())),
-        ..way.clone()
-    };
-    let mut culler = Culler::builder().settings(&settings).build(shapes, &columns).unwrap();
-    let pairs = culler.cull(&columns).unwrap().iter();
-    pairs
-        .map(|pair| pair.map(|i| order[i as usize]))
-        .filter(|[a, b]| {
-            let [a, b] = [a, b].map(|id| bodies[id].groups);
-            a.member & b.mask > 0 && b.member & a.mask > 0
-        })
-        .collect()
+fn world_of(shapes: &[Shape], way: &CullSettings) -> World {
+    World::with(shapes.to_vec(), &Culler::builder().settings(way)).unwrap()
 }
 
-/// A world reports what a newly built culler would.
+/// Whatever has happened to its bodies, a world reports what a new one would.
 #[test]
-fn world_equals_new_culler() {
-    let shapes = shapes();
-    for way in ways() {
-        let deterministic = way.strategy != Strategy::SDopTimeCritical;
-        let mut random = Random(ChaCha8Rng::seed_from_u64(7));
-        let builder = Culler::builder().settings(&way);
-        let mut world = World::with(shapes.clone(), &builder).unwrap();
-        let mut pool = World::with(shapes.clone(), &builder.threads(3).worth_waking(0)).unwrap();
-        let mut bodies = HashMap::new();
-        let mut before = Pairs::new();
-        let mut lookup = PairLookup::default();
-        let mut seen = 0;
-        for frame in 0..12 {
-            let come_and_go = frame % 3 < 2;
-            change(&mut random, &mut bodies, [&mut world, &mut pool], come_and_go);
-            world.cull().unwrap();
-            pool.cull().unwrap();
-            let now: Pairs = world.pairs().collect();
-            assert_eq!(now.len(), world.pairs().len(), "each pair once");
-            lookup.refill(&world);
-            for (&a, &b) in bodies.keys().zip(bodies.keys().cycle().skip(frame)) {
-                let reported = now.contains(&[a, b]) || now.contains(&[b, a]);
-                assert_eq!(lookup.contains(a, b), reported, "{way:?}: {a}, {b}");
-            }
-            assert!(now.iter().all(|&[a, b]| lookup.contains(a, b) && lookup.contains(b, a)));
-            assert!(world.pairs().eq(pool.pairs()), "{way:?}: threads");
-            if deterministic {
-                let expected = afresh(&shapes, &way, &bodies);
-                assert_eq!(now, expected, "{way:?}, frame {frame}");
-            }
-            let events = world.events();
-            assert!(events.begun().eq(now.difference(&before).copied()));
-            assert!(events.persisting().eq(now.intersection(&before).copied()));
-            assert!(events.ended().eq(before.difference(&now).copied()));
-            seen += now.len();
-            before = now;
-        }
-        assert!(seen > 0 || way.strategy == Strategy::None, "{way:?}");
-        assert_eq!(world.len(), bodies.len());
-    }
-}
-
-/// Moves, changes, inserts and removes bodies in some frames, in both worlds alike.
-fn change(
-    random: &mut Random,
-    bodies: &mut HashMap<BodyId, Body>,
-    worlds: [&mut World; 2],
-    come_and_go: bool,
-) {
-    let mut ids: Vec<BodyId> = bodies.keys().copied().collect();
-    ids.sort();
-    let [world, pool] = worlds;
-    for id in ids {
-        match random.below(10) {
-            0 if come_and_go => {
-                world.remove(id).unwrap();
-                pool.remove(id).unwrap();
-                assert_eq!(world.remove(id), Err(WorldError::Gone(id)));
-                bodies.remove(&id);
-            }
-            1 if come_and_go => {
-                let body = random.body(3);
-                world.set(id, body).unwrap();
-                pool.set(id, body).unwrap();
-                bodies.insert(id, body);
-            }
-            2..5 => {
-                let Body { rotation, translation, .. } = random.body(3);
-                world.set_pose(id, rotation, translation).unwrap();
-                pool.set_pose(id, rotation, translation).unwrap();
-                let body = bodies.get_mut(&id).unwrap();
-                (body.rotation, body.translation) = (rotation, translation);
-                assert_eq!(world.body(id).unwrap(), *body);
-            }
-            _ => {}
-        }
-    }
-    for _ in 0..if come_and_go { random.below(30) } else { 0 } {
-        let body = random.body(3);
-        let id = world.insert(body).unwrap();
-        assert_eq!(pool.insert(body).unwrap(), id);
-        assert_eq!(bodies.insert(id, body), None, "{id} is new");
-    }
+fn histories_of_worlds() {
+    live(HistoryKind::Meshes, 2..4);
 }
 
 /// Two unit cubes, one next to the other with a gap, under every strategy.
@@ -228,7 +108,7 @@ fn margins_have_stated_reach() {
 /// thousands, 10⁹ away, where f32 steps by 64.
 #[test]
 fn touching_spheres_meet_in_f64() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(3));
+    let mut random = Random::new(3);
     let form = ProceduralShape::Icosphere { radius: 1.0, subdivisions: 0 };
     let (mut tried, mut rounded) = (0, 0);
     while tried < 2_000 {

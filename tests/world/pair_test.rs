@@ -6,13 +6,11 @@ use sdop::volume::DirectionSet;
 use sdop::world::{Body, PairTest, World};
 
 use super::{Random, shapes};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 
 /// A pair has the same verdict as in a world of two bodies.
 #[test]
 fn pair_test_equals_world() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(11));
+    let mut random = Random::new(11);
     let mut seen = [0; 2];
     for &k in DirectionSet::ALL {
         let shapes: Vec<_> = shapes().into_iter().map(|shape| shape.with_directions(k)).collect();
@@ -23,7 +21,7 @@ fn pair_test_equals_world() {
         let grown: Vec<u32> = numbers.iter().map(|&n| test.grown(n, 0.40625).unwrap()).collect();
         for round in 0..400 {
             let [a, b] = [random.below(3) as usize, random.below(3) as usize];
-            let body = random.body(3);
+            let body = super::drawn(&mut random, 3);
             let translation = body.translation.map(|t| (t * 0.5) as f32);
             let margin = [0.0, 0.375][round % 2];
             let mut world =

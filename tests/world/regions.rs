@@ -1,8 +1,6 @@
 //! Bodies in far-apart regions: pairs are those of the exact f64 translations, follow from the
 //! bodies as they are now, and are hardly more than each region alone has.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use sdop::culler::Culler;
 use sdop::mesh::{ProceduralShape, TriangleMesh};
 use sdop::settings::{CullSettings, Strategy};
@@ -27,7 +25,7 @@ fn world() -> World {
 /// An ordinary or small body somewhere in a place: unturned, so that cubes meet exactly where no
 /// axis separates them.
 fn near(random: &mut Random, base: [f64; 3], wide: f64) -> Body {
-    let unit = [(); 3].map(|()| f64::from(random.unit()));
+    let unit = [(); 3].map(|()| f64::from(random.within(1.0)));
     Body {
         shape: random.below(2),
         motion: motion(random.below(4) > 0),
@@ -67,7 +65,7 @@ fn afresh(bodies: &[(BodyId, Body)]) -> Vec<[BodyId; 2]> {
 /// merge and split, translations that are f32 among others, and times when all are.
 #[test]
 fn pairs_follow_from_present_bodies() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(1));
+    let mut random = Random::new(1);
     let mut world = world();
     let mut seen = 0;
     for frame in 0..150 {
@@ -112,13 +110,13 @@ fn regions_add_few_pairs() {
     for (seed, regions, wide, least, most) in
         [(1, 1000, 5.0, 9.0, 15.0), (2, 3, 2.0, 9.0, 15.0), (3, 60, 5.0, 3.0, 6.0)]
     {
-        let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
+        let mut random = Random::new(seed);
         let mut whole = world();
         let mut alone = 0;
         whole.insert(Body::default()).unwrap(); // one translation is f32
         for _ in 0..regions {
             let base = [(); 3].map(|()| {
-                let unit = f64::from(random.unit());
+                let unit = f64::from(random.within(1.0));
                 unit.signum() * 10_f64.powf(least + (most - least) * unit.abs())
             });
             let mut one = world();
@@ -138,10 +136,10 @@ fn regions_add_few_pairs() {
 /// Giants in one place leave the small bodies of others as finely placed as they are alone.
 #[test]
 fn giants_elsewhere_add_few_pairs() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(4));
+    let mut random = Random::new(4);
     let (mut whole, mut alone) = (world(), 0);
     for place in 0..40 {
-        let base = [(); 3].map(|()| f64::from(random.unit()) * [1.0e9, 1.0e6][place % 2]);
+        let base = [(); 3].map(|()| f64::from(random.within(1.0)) * [1.0e9, 1.0e6][place % 2]);
         let mut one = world();
         for _ in 0..30 {
             let mut body = near(&mut random, base, 1.5);
@@ -173,7 +171,7 @@ fn world_of_far_meshes() -> World {
 /// but not on both sides of the world.
 #[test]
 fn refusals_follow_from_present_bodies() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(5));
+    let mut random = Random::new(5);
     let mut world = world_of_far_meshes();
     let mut seen = [0; 2];
     for frame in 0..1200 {
@@ -182,7 +180,7 @@ fn refusals_follow_from_present_bodies() {
             rotation: [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]][random.below(2) as usize],
             translation: std::array::from_fn(|i| match i {
                 0 => 1.1e18 * (f64::from(random.below(3)) - 1.0),
-                _ => f64::from(random.unit()) * 2.0e16,
+                _ => f64::from(random.within(1.0)) * 2.0e16,
             }),
             margin: [0.0, 4.0e15][random.below(2) as usize],
             ..Body::default()

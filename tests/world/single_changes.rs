@@ -1,16 +1,13 @@
 //! One change at a time: bodies that rest, are woken, leave, or change anything else a verdict
 //! depends on.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Strategy};
 use sdop::volume::{Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Groups, Motion, World};
 use sdop_judge::ours::configurations::{variants, ways as judged_ways};
 
-use super::movers::world_of;
-use super::{Random, shapes};
+use super::{Random, shapes, world_of};
 
 /// A row of boxes, each of which meets the next, culled.
 fn row(count: u16, motion: Motion, way: &CullSettings) -> (World, Vec<BodyId>) {
@@ -236,11 +233,12 @@ fn touching_bodies_freeze_and_thaw() {
 #[test]
 fn a_frame_costs_what_changes() {
     let volumes_of = |count: u32, far: f64| {
-        let mut random = Random(ChaCha8Rng::seed_from_u64(5));
+        let mut random = Random::new(5);
         let mut world = World::new(shapes()).unwrap();
         let side = f64::from(count).cbrt();
-        let place =
-            |random: &mut Random| [(); 3].map(|()| far + 2.0 * side * f64::from(random.unit()));
+        let place = |random: &mut Random| {
+            [(); 3].map(|()| far + 2.0 * side * f64::from(random.within(1.0)))
+        };
         let ids: Vec<BodyId> = (0..count)
             .map(|i| {
                 world.insert(Body::at(i % 3, [0.0, 0.0, 0.6, 0.8], place(&mut random))).unwrap()

@@ -27,7 +27,7 @@ fn tip_and_plate() -> Shapes {
 fn touch(random: &mut Random, shapes: &Shapes) -> ([f64; 4], [f64; 3]) {
     let plate = WidePose::new([0.0, 0.0, 0.0, 1.0], [0.0; 3]).unwrap();
     loop {
-        let [x, y, z, w] = [(); 4].map(|()| f64::from(random.unit()));
+        let [x, y, z, w] = [(); 4].map(|()| f64::from(random.within(1.0)));
         // About z, by an angle that grows with s.
         let turned = |s: f64| [x + y * s, y - x * s, z + w * s, w - z * s];
         let along = (x * x - y * y - z * z + w * w) / (x * x + y * y + z * z + w * w);
@@ -52,7 +52,7 @@ fn touch(random: &mut Random, shapes: &Shapes) -> ([f64; 4], [f64; 3]) {
 #[test]
 fn turned_bodies_that_touch_are_reported() {
     let shapes = tip_and_plate();
-    let mut random = Random(ChaCha8Rng::seed_from_u64(31));
+    let mut random = Random::new(31);
     let touches: Vec<_> = (0..24).map(|_| touch(&mut random, &shapes)).collect();
     let mut lost = 0;
     for way in ways().into_iter().filter(|way| way.strategy != Strategy::None) {
@@ -79,7 +79,7 @@ fn turned_bodies_that_touch_are_reported() {
 fn turned_queries_parts_and_images_are_found() {
     let shapes = tip_and_plate();
     let [tip, plate] = &shapes.built[..] else { panic!("two shapes") };
-    let mut random = Random(ChaCha8Rng::seed_from_u64(32));
+    let mut random = Random::new(32);
     let [mut tips, mut plates] = [tip, plate].map(|shape| World::new(vec![shape.clone()]).unwrap());
     let id = tips.insert(Body::default()).unwrap();
     let fixed = plates.insert(Body::default()).unwrap();

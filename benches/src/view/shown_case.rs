@@ -40,7 +40,7 @@ impl ShownRun {
         }
         let mut messages = Vec::new();
         if !case.flag.is_empty() {
-            messages.push(format!("The case aims at: {}.", case.flag));
+            messages.push(format!("This case is also meant to catch: {}.", case.flag));
         }
         if shown.len() < case.frames.len() {
             let (first, last) = (shown.start, shown.end - 1);

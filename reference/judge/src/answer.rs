@@ -21,12 +21,20 @@ pub enum AnswerError {
         /// What the system says.
         why: String,
     },
-    /// Time ran out.
+    /// It has computed for as long as a case may take.
     #[error("no answer to frame {frame} within {seconds:.1} s")]
     Timeout {
         /// The first frame without an answer.
         frame: usize,
         /// The time that the case had.
+        seconds: Seconds,
+    },
+    /// It has neither answered nor computed for as long as a case may take.
+    #[error("hangs: no answer to frame {frame} in {seconds:.1} s, most of them without computing")]
+    Idle {
+        /// The first frame without an answer.
+        frame: usize,
+        /// How long the judge has waited.
         seconds: Seconds,
     },
     /// All frames were answered, but the process continues after the end of its input.

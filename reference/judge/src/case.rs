@@ -298,6 +298,22 @@ impl Case {
         self.frames.iter().any(goes_on)
     }
 
+    /// Binary digits of all ends of boxes, or of all poses, for claims about these.
+    pub(crate) fn digits(&self) -> u32 {
+        let digits = |x: &f32| match x.to_bits() << 9 {
+            _ if *x == 0.0 => 0,
+            fraction => 24 - fraction.trailing_zeros().min(23),
+        };
+        let of_frame = |frame: &Frame| -> u32 {
+            let (turns, places) = (&frame.bodies.rotation, &frame.bodies.translation);
+            match self.claim.is_of_boxes() {
+                true => frame.boxes.iter().flatten().map(digits).sum(),
+                false => turns.iter().flatten().chain(places.iter().flatten()).map(digits).sum(),
+            }
+        };
+        self.frames.iter().map(of_frame).sum()
+    }
+
     /// Pairs of bodies over all frames, not both static.
     #[must_use]
     pub fn pairs(&self) -> u64 {

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::case::Frame;
 use super::score::Miss;
 use super::shrink::SmallestCase;
 use super::truth::images;
@@ -67,8 +68,54 @@ impl fmt::Display for SmallestCase {
             counted(self.case.frames.len(), "frame", "frames"),
             self.from
         )?;
-        self.reasons().iter().try_for_each(|line| writeln!(f, "  {line}"))
+        let lines = self.reasons().into_iter().chain(self.former_frames());
+        lines.into_iter().try_for_each(|line| writeln!(f, "  {line}"))
     }
+}
+
+/// Frames of more bodies are told by the picture.
+const MOST_BODIES_TOLD: usize = 4;
+
+impl SmallestCase {
+    /// Where the bodies were in the frames before, if they are few, and how the missed pair has
+    /// come together.
+    fn former_frames(&self) -> Vec<String> {
+        let Miss { frame: last, pair } = self.miss;
+        let frames = &self.case.frames[..=last];
+        if last == 0 || frames.iter().any(|frame| frame.bodies.len() > MOST_BODIES_TOLD) {
+            return Vec::new();
+        }
+        let place = |frame: &Frame, body: usize| match self.case.claim.is_of_boxes() {
+            true => format!("box {body}: {}", corners(&frame.boxes[body])),
+            false => {
+                let numbers =
+                    |all: &[f32]| all.iter().map(|&x| coordinate(x)).collect::<Vec<_>>().join(", ");
+                let (turn, at) = (frame.bodies.rotation[body], frame.bodies.translation[body]);
+                format!("body {body} at ({}), turned by ({})", numbers(&at), numbers(&turn))
+            }
+        };
+        let told = frames[..last].iter().enumerate().flat_map(|(number, frame)| {
+            let bodies = 0..frame.bodies.len();
+            bodies.map(move |body| format!("frame {number}, {}", place(frame, body)))
+        });
+        let mut lines: Vec<String> = told.collect();
+        if frames.iter().all(Frame::keeps_numbers) {
+            let moves = pair.iter().flat_map(|&body| moves([&frames[0], &frames[last]], body));
+            lines.extend(moves);
+        }
+        lines
+    }
+}
+
+/// Along which axes a body has moved since the first frame.
+fn moves([first, last]: [&Frame; 2], body: u32) -> impl Iterator<Item = String> {
+    let [before, now] = [first, last].map(|frame| frame.boxes[body as usize]);
+    let moved = (0..3).filter(move |&axis| before[axis] != now[axis]);
+    moved.map(move |axis| {
+        let (from, to) = (coordinate(before[axis]), coordinate(now[axis]));
+        let along = ["x", "y", "z"][axis];
+        format!("body {body} moved along {along}, {from} → {to}, since frame 0")
+    })
 }
 
 fn counted(count: usize, one: &str, many: &str) -> String {

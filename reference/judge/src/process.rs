@@ -1,6 +1,6 @@
-//! A judged program: it reads standard input and writes standard output. The judge waits no longer
-//! than the time limit, and reads no more than the longest correct answer. It has one process per
-//! case, or, as a [`Service`], processes that answer one case after the other.
+//! A judged program: it reads standard input and writes standard output. The judge lets it compute
+//! no longer than the time limit, and reads no more than the longest correct answer. It has one
+//! process per case, or, as a [`Service`], processes that answer one case after the other.
 
 use std::io::{Read, Write};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -21,10 +21,13 @@ pub struct Program {
     pub command: String,
     /// How cases are written for it.
     pub wire: Wire,
-    /// The time for a case, in addition to a second per megabyte of it.
+    /// How long a program may compute for a case, in addition to a second per megabyte of it. On
+    /// Linux its processor time counts, so that other work on the machine is not held against it.
     pub timeout: Duration,
 }
 
+/// How many time limits a program may take that has not computed for one.
+const PATIENCE: u32 = 10;
 /// How much is read at a time.
 const CHUNK: usize = 1 << 16;
 /// Bytes of standard error that are kept.
@@ -157,24 +160,28 @@ impl RunningProgram {
     ) -> Result<Vec<Answer>, StopReason> {
         let goes_on = self.input.is_some();
         self.bytes = 0;
-        let deadline = Instant::now() + time;
-        let seconds = Seconds(time.as_secs_f64());
+        let mut clock = CaseClock::new(self.child.id(), time);
+        let limit = Seconds(time.as_secs_f64());
         let (frames, most) = (case.frames.len(), most_bytes(case));
         let mut answers = Vec::new();
         loop {
             if goes_on && answers.len() == frames && self.buffer.is_empty() {
                 return Ok(answers);
             }
-            let line = match self.line(deadline, most) {
+            let line = match self.line(&mut clock, most) {
                 Ok(Some(line)) => line,
                 Ok(None) => break,
                 Err(LineError::Flood) => return Err(AnswerError::Flood { bytes: most }.into()),
                 Err(LineError::Late) if answers.len() == frames => {
-                    return Err(AnswerError::Hanging { seconds }.into());
+                    return Err(AnswerError::Hanging { seconds: clock.waited() }.into());
                 }
                 Err(LineError::Late) => {
-                    let frame = answers.len();
-                    return Err(AnswerError::Timeout { frame, seconds }.into());
+                    let (frame, seconds) = (answers.len(), clock.waited());
+                    return Err(match seconds.0 < (PATIENCE * time).as_secs_f64() {
+                        true => AnswerError::Timeout { frame, seconds: limit },
+                        false => AnswerError::Idle { frame, seconds },
+                    }
+                    .into());
                 }
             };
             if line.trim_ascii().is_empty() {
@@ -188,8 +195,8 @@ impl RunningProgram {
             book(&mut answers, said, &line)?;
         }
         let answered = answers.len();
-        let Some(status) = self.status(deadline) else {
-            return Err(AnswerError::Hanging { seconds }.into());
+        let Some(status) = self.status(&mut clock) else {
+            return Err(AnswerError::Hanging { seconds: clock.waited() }.into());
         };
         if !status.success() {
             let (how, said) = (ending(status), self.said());
@@ -208,7 +215,7 @@ impl RunningProgram {
     }
 
     /// The next line; `None` at the end of the output.
-    fn line(&mut self, deadline: Instant, most: usize) -> Result<Option<Vec<u8>>, LineError> {
+    fn line(&mut self, clock: &mut CaseClock, most: usize) -> Result<Option<Vec<u8>>, LineError> {
         let mut searched = 0;
         loop {
             if let Some(end) = self.buffer[searched..].iter().position(|byte| *byte == b'\n') {
@@ -216,9 +223,10 @@ impl RunningProgram {
                 return Ok(Some(std::mem::replace(&mut self.buffer, rest)));
             }
             searched = self.buffer.len();
-            let left = deadline.saturating_duration_since(Instant::now());
+            let left = clock.deadline.saturating_duration_since(Instant::now());
             match self.output.recv_timeout(left) {
                 Ok(chunk) => self.buffer.extend(chunk),
+                Err(RecvTimeoutError::Timeout) if clock.goes_on() => {}
                 Err(RecvTimeoutError::Timeout) => return Err(LineError::Late),
                 Err(RecvTimeoutError::Disconnected) if self.buffer.is_empty() => return Ok(None),
                 Err(RecvTimeoutError::Disconnected) => {
@@ -232,11 +240,13 @@ impl RunningProgram {
         }
     }
 
-    fn status(&mut self, deadline: Instant) -> Option<ExitStatus> {
+    fn status(&mut self, clock: &mut CaseClock) -> Option<ExitStatus> {
         loop {
             match self.child.try_wait() {
                 Ok(Some(status)) => return Some(status),
-                Ok(None) if Instant::now() < deadline => thread::sleep(Duration::from_millis(1)),
+                Ok(None) if Instant::now() < clock.deadline || clock.goes_on() => {
+                    thread::sleep(Duration::from_millis(1));
+                }
                 _ => return None,
             }
         }
@@ -262,6 +272,66 @@ impl Drop for RunningProgram {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// When a process has had its time for a case.
+struct CaseClock {
+    group: u32,
+    limit: Duration,
+    start: Instant,
+    /// What the process had computed before.
+    computed: Option<Duration>,
+    deadline: Instant,
+}
+
+impl CaseClock {
+    fn new(group: u32, limit: Duration) -> Self {
+        let (start, computed) = (Instant::now(), processor_time(group));
+        Self { group, limit, start, computed, deadline: start + limit }
+    }
+
+    fn waited(&self) -> Seconds {
+        Seconds(self.start.elapsed().as_secs_f64())
+    }
+
+    /// At the deadline, whether there is a later one: the process has not computed for as long as
+    /// it may.
+    fn goes_on(&mut self) -> bool {
+        let computed = processor_time(self.group).zip(self.computed);
+        let Some(computed) = computed.map(|(now, before)| now.saturating_sub(before)) else {
+            return false;
+        };
+        let waited = self.start.elapsed();
+        let left = self.limit.saturating_sub(computed);
+        let left = left.min((PATIENCE * self.limit).saturating_sub(waited));
+        self.deadline = Instant::now() + left;
+        !left.is_zero()
+    }
+}
+
+/// The processor time that a group of processes has used, of which those that have ended count if
+/// another of the group has waited for them. `None` where the system doesn't say it.
+#[cfg(target_os = "linux")]
+fn processor_time(group: u32) -> Option<Duration> {
+    const TICKS_PER_SECOND: u64 = 100; // of Linux, on all processors
+    let group = group.to_string();
+    let mut ticks = None;
+    for entry in std::fs::read_dir("/proc").ok()?.flatten() {
+        // Its name, in brackets, may hold anything; numbers follow.
+        let stat = std::fs::read_to_string(entry.path().join("stat")).unwrap_or_default();
+        let fields: Vec<&str> =
+            stat.rsplit_once(')').map_or("", |(_, rest)| rest).split_whitespace().collect();
+        if fields.get(2) == Some(&group.as_str()) {
+            let used = fields[11..15].iter().filter_map(|field| field.parse::<u64>().ok());
+            ticks = Some(ticks.unwrap_or(0) + used.sum::<u64>());
+        }
+    }
+    Some(Duration::from_millis(ticks? * 1000 / TICKS_PER_SECOND))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn processor_time(_: u32) -> Option<Duration> {
+    None
 }
 
 /// Why no line was read.

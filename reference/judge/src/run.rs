@@ -14,7 +14,7 @@ use super::case::{Case, Frame};
 use super::catalogue::{CaseId, CatalogueError, select};
 use super::claim::Claim;
 use super::score::{CaseScore, Outcome, judge_case};
-use super::shrink::shrink;
+use super::shrink::{SmallestCase, shrink};
 use super::subject::{ContestantFactory, CullFunction, PairwiseTest, Scene, Subject};
 use super::verdict::{CaseVerdict, Verdict};
 use crate::contestant::Contestant;
@@ -67,7 +67,10 @@ pub enum JudgeError {
     },
 }
 
-/// A program that could not be started for this number of cases is given up.
+/// Groups of which a case is reduced.
+const GROUPS_REDUCED: usize = 3;
+
+/// A program that answers none of this number of cases is given up.
 const STARTS: usize = 3;
 
 /// What is run.
@@ -241,19 +244,23 @@ pub fn examine(
         let verdict = line(&case, &judged, &options.known);
         let failed = matches!(verdict.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
         stop.fetch_or(options.fail_fast && failed && !verdict.known, Ordering::Relaxed);
-        progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
+        progress(jobs.len().min(done.fetch_add(1, Ordering::Relaxed) + 1), jobs.len());
         Ok(Some((case, verdict)))
     };
     let (usual, large) = jobs.split_at(jobs.partition_point(|id| !id.is_large()));
     let (first, rest) = usual.split_at(usual.len().min(STARTS));
     let mut ran: Vec<Option<(Case, CaseVerdict)>> =
         first.par_iter().map(run).collect::<Result<_, _>>()?;
-    // A program that can't start for these cases can't start for others.
-    let starts = |one: &Option<(Case, CaseVerdict)>| {
-        one.as_ref().is_none_or(|(_, verdict)| !verdict.is_without_start())
+    // A program that says nothing about these cases says nothing about others.
+    let answers = |one: &Option<(Case, CaseVerdict)>| {
+        let is_error = |verdict: &CaseVerdict| matches!(verdict.outcome, Outcome::Error { .. });
+        one.as_ref().is_none_or(|(_, verdict)| !is_error(verdict) || verdict.known)
     };
-    stop.fetch_or(!first.is_empty() && !ran.iter().any(starts), Ordering::Relaxed);
-    ran.extend(rest.par_iter().map(run).collect::<Result<Vec<_>, _>>()?);
+    again_alone(first, &mut ran, run)?;
+    stop.fetch_or(!first.is_empty() && !ran.iter().any(answers), Ordering::Relaxed);
+    let mut others = rest.par_iter().map(run).collect::<Result<Vec<_>, _>>()?;
+    again_alone(rest, &mut others, run)?;
+    ran.extend(others);
     let mut pace = BTreeMap::new();
     let mut large_not_judged = 0;
     for id in large {
@@ -271,6 +278,26 @@ pub fn examine(
         }
     }
     Ok(Verdict { large_not_judged, ..conclude(&subject, options, ran) })
+}
+
+/// Runs those cases again for which time was over, one by one: others have run beside them. It ends
+/// with the first for which the time is over again.
+fn again_alone(
+    jobs: &[CaseId],
+    ran: &mut [Option<(Case, CaseVerdict)>],
+    run: impl Fn(&CaseId) -> Result<Option<(Case, CaseVerdict)>, JudgeError>,
+) -> Result<(), JudgeError> {
+    for (id, ran) in jobs.iter().zip(ran) {
+        if ran.as_ref().is_none_or(|(_, verdict)| !verdict.is_late()) {
+            continue;
+        }
+        match run(id)? {
+            Some((_, verdict)) if verdict.is_late() => break,
+            Some(again) => *ran = Some(again),
+            None => break,
+        }
+    }
+    Ok(())
 }
 
 /// Whether a culler that takes time for each pair, as it did in a smaller set of the same group,
@@ -338,10 +365,7 @@ fn conclude(
 ) -> Verdict {
     let not_run = ran.iter().filter(|one| one.is_none()).count();
     let ran: Vec<(Case, CaseVerdict)> = ran.into_iter().flatten().collect();
-    // The case with the fewest pairs is the fastest to reduce.
-    let missed = ran.iter().filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
-    let first = missed.min_by_key(|(case, _)| case.pairs());
-    let smallest = first.and_then(|(case, _)| shrink(subject, case, options.shrink_time));
+    let smallest = smallest(subject, options, &ran);
     let cases: Vec<CaseVerdict> = ran.into_iter().map(|(_, verdict)| verdict).collect();
     Verdict {
         claim: options.claim,
@@ -353,6 +377,41 @@ fn conclude(
         extra_limit: options.extra_limit,
         smallest,
     }
+}
+
+/// The smallest scene of a miss, from the groups whose cases are reduced fastest, those with the
+/// fewest pairs: the one with the shortest numbers.
+fn smallest(
+    subject: &dyn Subject,
+    options: &Options,
+    ran: &[(Case, CaseVerdict)],
+) -> Option<SmallestCase> {
+    let missed = ran.iter().filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
+    let mut groups: BTreeMap<&str, &Case> = BTreeMap::new();
+    for (case, _) in missed {
+        let known = groups.entry(case.group()).or_insert(case);
+        if case.pairs() < known.pairs() {
+            *known = case;
+        }
+    }
+    let mut cases: Vec<&Case> = groups.into_values().collect();
+    cases.sort_by_key(|case| case.pairs());
+    let until = Instant::now() + options.shrink_time;
+    let mut found: Option<SmallestCase> = None;
+    for case in cases.into_iter().take(GROUPS_REDUCED) {
+        let left = until.saturating_duration_since(Instant::now());
+        if found.is_some() && left < options.shrink_time / 2 {
+            break;
+        }
+        let smaller = shrink(subject, case, left);
+        let is_better = |other: &SmallestCase| {
+            found.as_ref().is_none_or(|known| other.case.digits() < known.case.digits())
+        };
+        if smaller.as_ref().is_some_and(is_better) {
+            found = smaller;
+        }
+    }
+    found
 }
 
 fn line(case: &Case, judged: &CaseScore, known: &BTreeSet<String>) -> CaseVerdict {

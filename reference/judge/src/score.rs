@@ -1,5 +1,7 @@
 //! Judges one case: missed pairs, additional pairs, and their causes.
 
+use std::sync::OnceLock;
+
 use serde::Serialize;
 
 use super::answer::{Answer, AnswerError, StopReason, sorted};
@@ -112,28 +114,142 @@ pub fn judge_case(
     case: &Case,
     twice: bool,
 ) -> Result<CaseScore, InvalidInput> {
-    let judge = || match subject.answer(case) {
-        Ok(answers) => judge_answers(case, &answers),
-        Err(stop) => stopped(case, stop),
-    };
-    let mut judged = judge()?;
-    if case.claim == Claim::Order
-        && judged.outcome == Outcome::Pass
-        && let Some(other) = in_other_orders(subject, case, &judged)?
-    {
-        return Ok(other);
+    KnownCase::new(case).judge(subject, twice)
+}
+
+/// Judges given answers.
+///
+/// # Errors
+/// A case that the reference refuses.
+pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, InvalidInput> {
+    KnownCase::new(case).judge_answers(answers)
+}
+
+/// A case whose truth is found once, when it is first needed.
+pub struct KnownCase<'a> {
+    case: &'a Case,
+    /// By the claim, by balls, and the pairs that are required in each frame.
+    known: OnceLock<(Truth, Truth, Vec<Vec<[u32; 2]>>)>,
+}
+
+impl<'a> KnownCase<'a> {
+    /// A case of which nothing is known yet.
+    #[must_use]
+    pub fn new(case: &'a Case) -> Self {
+        Self { case, known: OnceLock::new() }
     }
-    if twice && judged.outcome == Outcome::Pass {
-        let again = judge()?;
-        if again.outcome != Outcome::Pass {
-            return Ok(again);
+
+    fn known(&self) -> Result<&(Truth, Truth, Vec<Vec<[u32; 2]>>), InvalidInput> {
+        if let Some(known) = self.known.get() {
+            return Ok(known);
         }
-        if again.lists != judged.lists {
-            let why = "reports other pairs when it runs again".to_owned();
-            judged.outcome = Outcome::Fail { why };
-        }
+        let case = self.case;
+        let truth = Truth::new(case.claim, &case.shapes)?;
+        let required = case.frames.iter().map(|frame| truth.pairs(frame));
+        let required = required.collect::<Result<_, _>>()?;
+        let balls = Truth::new(Claim::Sphere, &case.shapes)?;
+        Ok(self.known.get_or_init(|| (truth, balls, required)))
     }
-    Ok(judged)
+
+    /// The pairs that the claim requires in each frame, sorted.
+    ///
+    /// # Errors
+    /// A case that the reference refuses.
+    pub fn required(&self) -> Result<&[Vec<[u32; 2]>], InvalidInput> {
+        Ok(&self.known()?.2)
+    }
+
+    /// As [`judge_case`].
+    ///
+    /// # Errors
+    /// A case that the reference refuses.
+    pub fn judge(&self, subject: &dyn Subject, twice: bool) -> Result<CaseScore, InvalidInput> {
+        let judge = || match subject.answer(self.case) {
+            Ok(answers) => self.judge_answers(&answers),
+            Err(stop) => stopped(self.case, stop),
+        };
+        let mut judged = judge()?;
+        if self.case.claim == Claim::Order
+            && judged.outcome == Outcome::Pass
+            && let Some(other) = in_other_orders(subject, self.case, &judged)?
+        {
+            return Ok(other);
+        }
+        if twice && judged.outcome == Outcome::Pass {
+            let again = judge()?;
+            if again.outcome != Outcome::Pass {
+                return Ok(again);
+            }
+            if again.lists != judged.lists {
+                let why = "reports other pairs when it runs again".to_owned();
+                judged.outcome = Outcome::Fail { why };
+            }
+        }
+        Ok(judged)
+    }
+
+    /// Judges given answers.
+    ///
+    /// # Errors
+    /// A case that the reference refuses.
+    pub fn judge_answers(&self, answers: &[Answer]) -> Result<CaseScore, InvalidInput> {
+        let case = self.case;
+        if answers.len() != case.frames.len() {
+            let trouble = AnswerError::Early {
+                answered: answers.len(),
+                frames: case.frames.len(),
+                said: String::new(),
+            };
+            return Ok(CaseScore::without_answers(Outcome::Error { trouble }));
+        }
+        let mut lists = Vec::new();
+        for (number, (frame, answer)) in case.frames.iter().zip(answers).enumerate() {
+            match sorted(number, frame, answer) {
+                Ok(list) => lists.push(list),
+                Err(trouble) => return Ok(CaseScore::without_answers(Outcome::Error { trouble })),
+            }
+        }
+        let (truth, balls, required) = self.known()?;
+        let (mut count, mut miss, mut parted) = (PairCounts::default(), None, Vec::new());
+        count.judged = case.pairs();
+        for (number, (frame, list)) in case.frames.iter().zip(&lists).enumerate() {
+            let required = &required[number];
+            count.required += required.len() as u64;
+            for pair in required.iter().filter(|pair| list.binary_search(pair).is_err()) {
+                count.missed += 1;
+                miss = miss.or(Some(Miss { frame: number, pair: *pair }));
+            }
+            let extra = list.iter().filter(|pair| required.binary_search(pair).is_err());
+            for (n, pair) in extra.enumerate() {
+                if truth.parts(frame, *pair) {
+                    parted.push((number, *pair));
+                }
+                if n >= MOST_EXPLAINED {
+                    count.extra += 1;
+                    continue;
+                }
+                explain([truth, balls], frame, *pair, &mut count)?;
+            }
+        }
+        let wrong = match (miss, parted.first(), not_restored(case, &lists)) {
+            (Some(Miss { frame, pair }), ..) => {
+                let ([i, j], PairCounts { missed, required, .. }) = (pair, count);
+                Some(format!(
+                    "misses {missed} of {required} pairs, first bodies {i} and {j} in frame {frame}"
+                ))
+            }
+            (_, Some((frame, [i, j])), _) => Some(format!(
+                "reports {} pairs that the filter parts, first bodies {i} and {j} in frame {frame}",
+                parted.len()
+            )),
+            (.., Some(frame)) => Some(format!(
+                "reports other pairs in frame {frame} than before its state was restored"
+            )),
+            (None, None, None) => None,
+        };
+        let outcome = wrong.map_or(Outcome::Pass, |why| Outcome::Fail { why });
+        Ok(CaseScore { outcome, count, miss, lists })
+    }
 }
 
 /// The case with its bodies in other orders, backwards and by threes: what is wrong with the first
@@ -213,69 +329,6 @@ fn stopped(case: &Case, stop: StopReason) -> Result<CaseScore, InvalidInput> {
             CaseScore::without_answers(Outcome::Skipped { why })
         }
     })
-}
-
-/// Judges given answers.
-///
-/// # Errors
-/// A case that the reference refuses.
-pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, InvalidInput> {
-    if answers.len() != case.frames.len() {
-        let trouble = AnswerError::Early {
-            answered: answers.len(),
-            frames: case.frames.len(),
-            said: String::new(),
-        };
-        return Ok(CaseScore::without_answers(Outcome::Error { trouble }));
-    }
-    let mut lists = Vec::new();
-    for (number, (frame, answer)) in case.frames.iter().zip(answers).enumerate() {
-        match sorted(number, frame, answer) {
-            Ok(list) => lists.push(list),
-            Err(trouble) => return Ok(CaseScore::without_answers(Outcome::Error { trouble })),
-        }
-    }
-    let (truth, balls) =
-        (Truth::new(case.claim, &case.shapes)?, Truth::new(Claim::Sphere, &case.shapes)?);
-    let (mut count, mut miss, mut parted) = (PairCounts::default(), None, Vec::new());
-    count.judged = case.pairs();
-    for (number, (frame, list)) in case.frames.iter().zip(&lists).enumerate() {
-        let required = truth.pairs(frame)?;
-        count.required += required.len() as u64;
-        for pair in required.iter().filter(|pair| list.binary_search(pair).is_err()) {
-            count.missed += 1;
-            miss = miss.or(Some(Miss { frame: number, pair: *pair }));
-        }
-        let extra = list.iter().filter(|pair| required.binary_search(pair).is_err());
-        for (n, pair) in extra.enumerate() {
-            if truth.parts(frame, *pair) {
-                parted.push((number, *pair));
-            }
-            if n >= MOST_EXPLAINED {
-                count.extra += 1;
-                continue;
-            }
-            explain([&truth, &balls], frame, *pair, &mut count)?;
-        }
-    }
-    let wrong = match (miss, parted.first(), not_restored(case, &lists)) {
-        (Some(Miss { frame, pair }), ..) => {
-            let ([i, j], PairCounts { missed, required, .. }) = (pair, count);
-            Some(format!(
-                "misses {missed} of {required} pairs, first bodies {i} and {j} in frame {frame}"
-            ))
-        }
-        (_, Some((frame, [i, j])), _) => Some(format!(
-            "reports {} pairs that the filter parts, first bodies {i} and {j} in frame {frame}",
-            parted.len()
-        )),
-        (.., Some(frame)) => {
-            Some(format!("reports other pairs in frame {frame} than before its state was restored"))
-        }
-        (None, None, None) => None,
-    };
-    let outcome = wrong.map_or(Outcome::Pass, |why| Outcome::Fail { why });
-    Ok(CaseScore { outcome, count, miss, lists })
 }
 
 /// Extra pairs of a frame whose causes are looked for: a culler that reports all pairs of a large

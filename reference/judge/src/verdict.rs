@@ -36,20 +36,13 @@ impl CaseVerdict {
         group_of(&self.name)
     }
 
-    /// Whether the program could not even be started.
-    #[must_use]
-    pub fn is_without_start(&self) -> bool {
-        let trouble = match &self.outcome {
-            Outcome::Error { trouble } => trouble,
-            _ => return false,
-        };
-        matches!(trouble, AnswerError::Start { .. })
-    }
-
     /// Whether the time was over before an answer.
     #[must_use]
     pub fn is_late(&self) -> bool {
-        matches!(&self.outcome, Outcome::Error { trouble: AnswerError::Timeout { .. } })
+        let Outcome::Error { trouble } = &self.outcome else {
+            return false;
+        };
+        matches!(trouble, AnswerError::Timeout { .. } | AnswerError::Idle { .. })
     }
 }
 
@@ -150,6 +143,16 @@ impl Verdict {
     #[must_use]
     pub fn passed(&self) -> bool {
         self.conclusion() == Conclusion::Pass
+    }
+
+    /// Whether the program could not even be started.
+    #[must_use]
+    pub fn is_without_start(&self) -> bool {
+        let is_start = |case: &CaseVerdict| match &case.outcome {
+            Outcome::Error { trouble } => matches!(trouble, AnswerError::Start { .. }),
+            _ => false,
+        };
+        !self.cases.is_empty() && self.cases.iter().all(is_start)
     }
 
     /// Why the conclusion is not [`Conclusion::Pass`], on one line.
@@ -315,8 +318,8 @@ impl fmt::Display for Verdict {
         }
         for case in self.cases.iter().filter(|case| self.counts_against(case)).take(3) {
             writeln!(f, "{case}")?;
-            if matches!(case.outcome, Outcome::Fail { .. }) {
-                writeln!(f, "  case aims at: {}", case.flag)?;
+            if matches!(case.outcome, Outcome::Fail { .. }) && !case.flag.is_empty() {
+                writeln!(f, "  this case is also meant to catch: {}", case.flag)?;
             }
         }
         let mut skipped =

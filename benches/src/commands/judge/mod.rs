@@ -140,6 +140,9 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         }
     };
     print::emit(args.format, &verdict)?;
+    if let (Some(first), true) = (verdict.cases.first(), verdict.is_without_start()) {
+        return Err(miette!(help = "CMD is a line for the shell", "no case is judged: {first}"));
+    }
     save(args, command, &verdict)?;
     Ok(Outcome::from(&verdict))
 }
@@ -204,8 +207,15 @@ fn save(args: &Args, command: &str, verdict: &Verdict) -> miette::Result<()> {
         if args.keep { " --keep" } else { "" }
     );
     let mut lines = Vec::new();
+    let is_replayed = |path: &Path| {
+        let replayed = args.replay.as_ref().and_then(|replayed| replayed.canonicalize().ok());
+        replayed.is_some_and(|replayed| path.canonicalize().is_ok_and(|path| path == replayed))
+    };
     if let Some(smallest) = &verdict.smallest {
         let written = counter_example(smallest).into_diagnostic()?;
+        if written.iter().any(|(name, _)| is_replayed(&out.join(name))) {
+            return Ok(()); // the case that is replayed shows it
+        }
         for (name, bytes) in &written {
             files::write(&out.join(name), bytes)?;
         }

@@ -70,7 +70,7 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
             };
             output::emit(Format::Json, &whole, |_| String::new())
         }
-        ReportFormat::Table => print(&format!("{}\n{verdict}", table(verdict))),
+        ReportFormat::Table => print(&format!("{}{verdict}", table(verdict))),
     }
 }
 
@@ -93,5 +93,11 @@ fn table(verdict: &Verdict) -> String {
         text = format!("{}\n", rows(&header, &others, row));
     }
     let cases: u32 = passed.iter().map(|group| group.passed).sum();
-    text + &format!("{} groups passed all of their {cases} cases", passed.len())
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    if !passed.is_empty() {
+        let (groups, of_groups, of_cases) =
+            (passed.len(), plural(passed.len()), plural(cases as usize));
+        text += &format!("{groups} group{of_groups} with {cases} case{of_cases} passed\n");
+    }
+    text
 }

@@ -12,13 +12,14 @@ use crate::ours::configurations::Rotation;
 use crate::ours::forms::{self, Form};
 use crate::ours::hard::HardCaseGroup;
 use crate::ours::histories::{
-    Repeated, Robots, draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_compounds,
-    judge_meshes, judge_periodic_boxes, judge_periodic_meshes, judge_queries_of_boxes,
-    judge_queries_of_meshes,
+    HistoryLedger, Repeated, Robots, draw_boxes, draw_meshes, history_shapes, judge_boxes,
+    judge_compounds, judge_meshes, judge_periodic_boxes, judge_periodic_meshes,
+    judge_queries_of_boxes, judge_queries_of_meshes,
 };
 use crate::ours::reference_shapes::Shapes;
 use crate::ours::seeded_draws::{ContactSpec, crowd, probe};
 use sdop::bodies::Bodies;
+use sdop::choice::choices;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet};
 
@@ -72,44 +73,90 @@ pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
     Ok(Ledger { boxes: boxes::judge(&frames, rotation)?, ..Ledger::default() })
 }
 
-/// Long-lived worlds of a seed for one or-DOP, number `number` of all that a seed has: one history
-/// of given boxes and one of meshes, by every strategy and overlap test, both in space that
-/// repeats and both asked, and one of compounds. The modes of eight or-DOPs fill every cell.
+choices! {
+    /// The long-lived worlds that live through histories.
+    HistoryKind, "kind of history", {
+        /// Worlds of given boxes.
+        Boxes = "boxes",
+        /// Worlds of meshes, by every strategy and overlap test.
+        Meshes = "meshes",
+        /// Worlds of compounds.
+        Compounds = "compounds",
+        /// Given boxes, and meshes, in space that repeats.
+        Periodic = "periodic",
+        /// Worlds of boxes, and of meshes, that are asked.
+        Queries = "queries",
+    }
+}
+
+/// Histories of all kinds.
+///
+/// # Errors
+/// As [`history`].
+pub fn histories(
+    seed: u64,
+    number: usize,
+    variant: (DirectionSet, Axes),
+    rotation: &Rotation,
+) -> Result<Ledger, RoundError> {
+    let mut ledger = Ledger::default();
+    for &kind in HistoryKind::ALL {
+        ledger.histories.add(history(kind, seed, number, variant, rotation)?);
+    }
+    Ok(ledger)
+}
+
+/// Long-lived worlds of a kind and of a seed for one or-DOP, number `number` of all that a seed
+/// has. The modes of eight or-DOPs fill every cell.
 ///
 /// # Errors
 /// As [`judge_meshes`], [`judge_periodic_meshes`], [`judge_queries_of_meshes`] and
 /// [`judge_compounds`].
-pub fn histories(
+pub fn history(
+    kind: HistoryKind,
     seed: u64,
     number: usize,
     (k, axes): (DirectionSet, Axes),
     rotation: &Rotation,
-) -> Result<Ledger, RoundError> {
+) -> Result<HistoryLedger, RoundError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(64).wrapping_add(number as u64));
-    rng.set_stream(HISTORIES);
+    rng.set_stream(HISTORIES + kind as u64);
     let all = rotation.modes();
     let modes = |row: usize| {
         let first = row + number * MODES_PER_HISTORY + seed as usize % all.len();
         let modes = (first..).take(MODES_PER_HISTORY);
         modes.map(|turn| all[turn % all.len()]).collect::<Vec<_>>()
     };
-    let shapes = history_shapes((k, axes), seed)?;
+    let shapes = |is_far| history_shapes((k, axes), seed, is_far);
     let mut below = |n| rng.random_range(0..n);
-    let boxes = draw_boxes(&mut below);
-    let meshes = draw_meshes(&shapes, &mut below);
-    let mut judged = judge_boxes(&boxes, &modes(0))?;
-    judged.add(judge_meshes(&shapes, &meshes, (k, axes), modes)?);
-    judged.add(judge_queries_of_boxes(&boxes, &modes(0))?);
-    let queried = judge_queries_of_meshes(&shapes, &meshes, (k, axes), &modes(0));
-    judged.add(queried?);
-    let boxes = Repeated::boxes(&boxes, &mut below);
-    judged.add(judge_periodic_boxes(&boxes, &modes(0))?);
-    let meshes = Repeated::meshes(&meshes, &mut below);
-    judged.add(judge_periodic_meshes(&shapes, &meshes, (k, axes), &modes(0))?);
-    let robots = Robots::draw(shapes, &mut below)?;
-    let history = robots.history(&mut below);
-    judged.add(judge_compounds(&robots, &history, (k, axes), modes)?);
-    Ok(Ledger { histories: judged, ..Ledger::default() })
+    Ok(match kind {
+        HistoryKind::Boxes => judge_boxes(&draw_boxes(true, &mut below), &modes(0))?,
+        HistoryKind::Meshes => {
+            let shapes = shapes(true)?;
+            let meshes = draw_meshes(&shapes, &mut below);
+            judge_meshes(&shapes, &meshes, (k, axes), modes)?
+        }
+        HistoryKind::Compounds => {
+            let robots = Robots::draw(shapes(false)?, &mut below)?;
+            let history = robots.history(&mut below);
+            judge_compounds(&robots, &history, (k, axes), modes)?
+        }
+        HistoryKind::Periodic => {
+            let shapes = shapes(false)?;
+            let boxes = Repeated::boxes(&draw_boxes(false, &mut below), &mut below);
+            let meshes = Repeated::meshes(&draw_meshes(&shapes, &mut below), &mut below);
+            let mut judged = judge_periodic_boxes(&boxes, &modes(0))?;
+            judged.add(judge_periodic_meshes(&shapes, &meshes, (k, axes), &modes(0))?);
+            judged
+        }
+        HistoryKind::Queries => {
+            let shapes = shapes(true)?;
+            let meshes = draw_meshes(&shapes, &mut below);
+            let mut judged = judge_queries_of_boxes(&draw_boxes(true, &mut below), &modes(0))?;
+            judged.add(judge_queries_of_meshes(&shapes, &meshes, (k, axes), &modes(0))?);
+            judged
+        }
+    })
 }
 
 /// Partners of a near round's probe.

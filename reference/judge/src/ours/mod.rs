@@ -19,6 +19,7 @@ pub mod hard;
 pub mod histories;
 pub mod matrix;
 pub mod naive;
+pub mod random;
 pub mod reference_shapes;
 pub mod seeded_draws;
 

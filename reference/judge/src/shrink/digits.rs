@@ -3,6 +3,9 @@
 use super::{Search, refit};
 use crate::case::Frame;
 
+/// Below it, f32 holds the halves of numbers.
+const WHOLE: f32 = 4_194_304.0;
+
 impl Search<'_> {
     /// No period along an axis, or one of fewer binary digits.
     pub(super) fn fewer_periods(&mut self) {
@@ -35,6 +38,7 @@ impl Search<'_> {
                     return;
                 }
                 if self.case.claim.is_of_boxes() {
+                    (0..3).for_each(|axis| self.widen(frame, body, axis));
                     for n in 0..6 {
                         let end = self.case.frames[frame].boxes[body][n];
                         self.shorten(frame, end, &|frame, x| frame.boxes[body][n] = x);
@@ -43,6 +47,21 @@ impl Search<'_> {
                     self.shorten_pose(frame, body);
                     self.shorten_parts(frame, body);
                 }
+            }
+        }
+    }
+
+    /// Whole ends of a box along an axis, at least 1 apart.
+    fn widen(&mut self, frame: usize, body: usize, axis: usize) {
+        let ends = &self.case.frames[frame].boxes[body];
+        let lo = ends[axis].floor();
+        let hi = ends[axis + 3].ceil().max(lo + 1.0);
+        if [lo, hi] != [ends[axis], ends[axis + 3]] && hi.abs().max(lo.abs()) < WHOLE {
+            let mut case = self.case.clone();
+            let ends = &mut case.frames[frame].boxes[body];
+            (ends[axis], ends[axis + 3]) = (lo, hi);
+            if case.frames[frame].check_periods().is_ok() {
+                self.try_case(case);
             }
         }
     }
@@ -89,10 +108,14 @@ impl Search<'_> {
                 return;
             }
             set(&mut case.frames[frame], short);
-            let ordered = |ends: &[f32; 6]| (0..3).all(|axis| ends[axis] <= ends[axis + 3]);
+            let side = |ends: &[f32; 6], axis: usize| ends[axis + 3] - ends[axis];
+            let is_long = |(ends, former): (&[f32; 6], &[f32; 6])| {
+                (0..3).all(|axis| side(ends, axis) >= side(former, axis).min(1.0))
+            };
             let rotations = &case.frames[frame].bodies.rotation;
+            let mut boxes = case.frames[frame].boxes.iter().zip(&self.case.frames[frame].boxes);
             let mut sound = rotations.iter().all(|q| *q != [0.0; 4])
-                && case.frames[frame].boxes.iter().all(ordered);
+                && (!self.case.claim.is_of_boxes() || boxes.all(is_long));
             sound &= case.frames[frame].check_periods().is_ok();
             if !self.case.claim.is_of_boxes() && sound {
                 sound = refit(&mut case, frame).is_some();

@@ -110,7 +110,8 @@ fn what_fails_is_no_pass() {
     let why = "2 of 5 cases failed, first a/1 misses 3 of 5 pairs";
     assert_concludes(&some, "NOT PASSED", [2, 5], Some(why));
     // What a case looks for is no diagnosis.
-    let line = "\na/1 misses 3 of 5 pairs\n  case aims at: a bug\nb/0 frame 0: ";
+    let line =
+        "\na/1 misses 3 of 5 pairs\n  this case is also meant to catch: a bug\nb/0 frame 0: ";
     assert!(some.to_string().contains(line), "{some}");
     let erring = verdict(vec![passed("a/0"), erred("b/0")]);
     let why = "1 of 2 cases failed, first b/0 frame 0: body 3 is paired with itself";

@@ -17,7 +17,7 @@ use sdop_reference::wide::{balls_overlap, meet, slabs_overlap};
 use sdop_reference::{Shape as JudgedShape, WidePose};
 
 use super::draw::MARGINS;
-use super::judge::{Life, Truth, culler};
+use super::judge::{Life, Truth, culler, finder};
 use super::robots::Robots;
 use super::state::{NumberedPair, Pairs, State, in_order};
 use super::worlds::CompoundWorld;
@@ -25,7 +25,7 @@ use super::{History, HistoryError, HistoryLedger, WorldKind};
 use crate::ours::configurations::{Mode, rows};
 use crate::ours::reference_shapes::{InvalidInput, Shapes, grown};
 use sdop::rounding::down;
-use sdop::settings::{Budget, CullSettings, Finder, Overlap, Strategy};
+use sdop::settings::{Budget, CullSettings, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop::world::{Body, World};
@@ -62,7 +62,7 @@ pub fn judge_compounds(
         }
         let way = CullSettings { budget: Some(Budget::Tests(3)), ..row };
         let mut truths: HashMap<&str, Truth> = HashMap::new();
-        for (mode, &pairs) in modes(number).into_iter().zip(Finder::ALL.iter().cycle()) {
+        for (number, mode) in modes(number).into_iter().enumerate() {
             let plain = match mode.tier {
                 Tier::SCALAR_FLUSH => mode.tier,
                 _ => Tier::SCALAR,
@@ -70,8 +70,11 @@ pub fn judge_compounds(
             if !truths.contains_key(plain.name()) {
                 truths.insert(plain.name(), truth(robots, &states, &near, &way, plain)?);
             }
-            let way = CullSettings { pairs, ..way.clone() };
-            let life = Life::new(world(robots, &way, mode)?, history, &states)?;
+            let make = |turn| {
+                let way = CullSettings { pairs: finder(number + turn), ..way.clone() };
+                world(robots, &way, mode)
+            };
+            let life = Life::new(make, history, &states)?;
             let kind = WorldKind::Compounds(way.strategy);
             life.live(kind, mode, &truths[plain.name()], &mut ledger)?;
         }

@@ -5,16 +5,19 @@
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
+use super::robots::{QUARTER_TURNS, draw_rotation};
 use super::worlds::Properties;
-use super::{Change, ChangeKind, History, WorldKind};
+use super::{Change, ChangeKind, History, HistoryError, WorldKind};
 use crate::ours::boxes::beside;
 use crate::ours::contact::PlacedShape;
-use crate::ours::forms::{Form, FormError, build};
+use crate::ours::forms::{Form, build};
 use crate::ours::reference_shapes::Shapes;
 use crate::ours::seeded_draws::{ContactSpec, TurnKind};
 use sdop::bodies::Aabb;
 use sdop::boxes::BoxBody;
-use sdop::volume::{Axes, DirectionSet};
+use sdop::mesh::TriangleMesh;
+use sdop::rounding::pose::rotation;
+use sdop::volume::{Axes, DirectionSet, Shape, ShapeSpec};
 use sdop::world::Body;
 use sdop::{Groups, Motion};
 
@@ -22,28 +25,118 @@ use sdop::{Groups, Motion};
 const FIRST: [usize; 2] = [32, 48];
 /// Frames: each kind of change comes twice.
 const FRAMES: usize = 2 * ChangeKind::ALL.len();
-/// Contact margins that are drawn.
-pub(super) const MARGINS: [f32; 3] = [0.0, 0.1, 0.25];
+/// Contact margins that are drawn, the last one larger than bodies.
+pub(super) const MARGINS: [f32; 4] = [0.0, 0.1, 0.25, 3.0];
+/// The number of those that are smaller than bodies.
+pub(super) const SMALL_MARGINS: usize = 3;
 /// Sides of drawn boxes.
-const SIDES: [[f32; 3]; 4] = [[1.0, 1.0, 1.0], [0.25, 2.0, 8.0], [0.0, 1.0, 1.0], [6.0, 6.0, 0.5]];
+const SIDES: [[f32; 3]; 7] = [
+    [1.0, 1.0, 1.0],
+    [0.25, 2.0, 8.0],
+    [0.0, 1.0, 1.0],
+    [6.0, 6.0, 0.5],
+    [0.0; 3],
+    [64.0; 3],
+    [0.125, 32.0, 32.0],
+];
+/// The number of those that are at most 8 long.
+const SHORT_SIDES: usize = 4;
+/// Where a mesh is about its own origin that is far from it.
+const FAR: [f64; 3] = [16_777_216.0, -8_388_608.0, 4_194_304.25];
 
-/// The shapes of histories of meshes, of sizes that a seed draws.
+/// Units of boxes, and where they are.
+const UNITS: [(i32, [f32; 3]); 5] =
+    [(0, [0.0; 3]), (0, [0.0; 3]), (0, [1.0e6, -3.0e5, 7.0]), (-70, [0.0; 3]), (50, [0.0; 3])];
+
+/// Regions of meshes: those in different ones never meet.
+const REGIONS: [[f64; 3]; 3] =
+    [[0.0; 3], [1_073_741_824.0, -536_870_912.0, 0.0], [-1_073_741_824.0, 0.0, 268_435_456.0]];
+/// Translations within a region other than the first are multiples of this, so that f64 holds the
+/// sums.
+const REGION_STEP: f32 = 1.0 / (1 << 22) as f32;
+
+/// The number of a body's region, and where in it the point is that the vertices of the body's
+/// shape are about, exactly: a body whose shape is far from its own origin has a quarter turn.
+pub(super) fn place(shapes: &[Shape], body: &Body) -> (usize, [f32; 3]) {
+    let offset = turned_offset(shapes, body);
+    region([0, 1, 2].map(|axis| body.translation[axis] + offset[axis]))
+}
+
+/// The body where that point is in a place.
+fn placed(shapes: &[Shape], body: Body, (number, within): (usize, [f32; 3])) -> Body {
+    let (offset, at) = (turned_offset(shapes, &body), in_region(number, within));
+    Body { translation: [0, 1, 2].map(|axis| at[axis] - offset[axis]), ..body }
+}
+
+fn turned_offset(shapes: &[Shape], body: &Body) -> [f64; 3] {
+    match shapes.get(body.shape as usize).map_or([0.0; 3], |shape| shape.pose_offset) {
+        [0.0, 0.0, 0.0] => [0.0; 3],
+        offset => {
+            let turn = rotation(body.rotation);
+            turn.map(|row| (0..3).map(|axis| row[axis] * offset[axis]).sum())
+        }
+    }
+}
+
+/// The number of a region, and where in it a point is.
+pub(super) fn region(translation: [f64; 3]) -> (usize, [f32; 3]) {
+    let within = |base: [f64; 3]| [0, 1, 2].map(|axis| translation[axis] - base[axis]);
+    let size = |at: [f64; 3]| at.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let near = REGIONS.iter().position(|base| size(within(*base)) < 1.0e8).unwrap_or(0);
+    (near, within(REGIONS[near]).map(|x| x as f32))
+}
+
+/// The translation of a body in a region.
+fn in_region(number: usize, within: [f32; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| match number {
+        0 => f64::from(within[axis]),
+        _ => {
+            let steps = (within[axis] / REGION_STEP).round();
+            REGIONS[number][axis] + f64::from(steps * REGION_STEP)
+        }
+    })
+}
+
+/// A step to either side or none, from a whole unit to an eighth of a thousandth of it.
+fn drift(below: &mut dyn FnMut(u32) -> u32) -> f32 {
+    (below(3) as f32 - 1.0) * 2.0_f32.powi(-(below(14) as i32))
+}
+
+/// The shapes of histories of meshes, of sizes that a seed draws; the last one may be far from its
+/// own origin.
 ///
 /// # Errors
 /// As [`build`].
-pub fn history_shapes((k, axes): (DirectionSet, Axes), seed: u64) -> Result<Shapes, FormError> {
+pub fn history_shapes(
+    (k, axes): (DirectionSet, Axes),
+    seed: u64,
+    is_far: bool,
+) -> Result<Shapes, HistoryError> {
     let offset =
         Form { radius: None, offset: Some([0.7, -0.3, 0.4]), ..Form::of("l-shape", [0.0; 2]) };
     let plain = ["box", "icosphere", "tetrahedron"].map(|name| Form::of(name, [-0.5, 0.5]));
     let forms: Vec<Form> = plain.into_iter().chain([offset]).collect();
-    build(&forms, 1, k, axes, &mut ChaCha8Rng::seed_from_u64(seed))
+    let mut shapes = build(&forms, 1, k, axes, &mut ChaCha8Rng::seed_from_u64(seed))?;
+    if is_far {
+        let near = &shapes.built[2];
+        let far = |vertex: &[f32; 3]| [0, 1, 2].map(|axis| f64::from(vertex[axis]) + FAR[axis]);
+        let points: Vec<[f64; 3]> = near.vertices.iter().map(far).collect();
+        let mesh = TriangleMesh::from_f64(&points, &near.triangles)?;
+        let spec = ShapeSpec { directions: k, axes, ..ShapeSpec::default() };
+        shapes.built.push(Shape::build(&mesh, &spec)?);
+        shapes = Shapes::new(shapes.built)?;
+    }
+    Ok(shapes)
 }
 
-/// A history of given boxes. `below(n)` draws a number below n.
-pub fn draw_boxes(below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
+/// A history of given boxes, of any length and anywhere, or at most 8 long and near the origin.
+/// `below(n)` draws a number below n.
+pub fn draw_boxes(is_wide: bool, below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
+    let (unit, at) = UNITS[if is_wide { below(UNITS.len() as u32) as usize } else { 0 }];
+    let (unit, lengths) = (2.0_f32.powi(unit), if is_wide { SIDES.len() } else { SHORT_SIDES });
     let new = |others: &[BoxBody], below: &mut dyn FnMut(u32) -> u32| {
-        let sides = SIDES[below(SIDES.len() as u32) as usize];
-        let free = [(); 3].map(|()| below(1 << 16) as f32 / (1 << 13) as f32);
+        let sides = SIDES[below(lengths as u32) as usize].map(|side| side * unit);
+        let free = at.map(|at| at + unit * (below(1 << 16) as f32 / (1 << 13) as f32));
         let placed = Aabb::new(free, [0, 1, 2].map(|axis| free[axis] + sides[axis]));
         let bounds = match other(others, below) {
             Some(other) if below(4) > 0 => beside(&other.bounds, sides, &mut |n| below(n)),
@@ -51,8 +144,16 @@ pub fn draw_boxes(below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
         };
         BoxBody { bounds, motion: motion(below), groups: groups(below) }
     };
-    let moved = |from: &BoxBody, to: &BoxBody, part: u32| {
+    let moved = |from: &BoxBody, to: &BoxBody, part: u32, below: &mut dyn FnMut(u32) -> u32| {
         let mut bounds = from.bounds;
+        if part == DRIFT {
+            for axis in 0..3 {
+                let by = drift(below) * unit;
+                (bounds.min[axis], bounds.max[axis]) =
+                    (bounds.min[axis] + by, bounds.max[axis] + by);
+            }
+            return BoxBody { bounds, ..*from };
+        }
         for axis in (0..3).filter(|axis| part == 0 || part == 1 + axis % 2) {
             let axis = axis as usize;
             (bounds.min[axis], bounds.max[axis]) = (to.bounds.min[axis], to.bounds.max[axis]);
@@ -63,70 +164,98 @@ pub fn draw_boxes(below: &mut impl FnMut(u32) -> u32) -> History<BoxBody> {
     draw(&kinds.collect::<Vec<_>>(), new, moved, |body, _, _| body, below)
 }
 
-/// A history of meshes in these shapes.
+/// A history of meshes in these shapes. With those that are far from their own origins, all turns
+/// are by quarters, so that exact places can be told.
 pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> History<Body> {
     let spec = ContactSpec {
         turn: [TurnKind::Any, TurnKind::Quarter, TurnKind::Identity][below(3) as usize],
         ..ContactSpec::default()
     };
-    let count = shapes.built.len() as u32;
+    let near = shapes.built.iter().take_while(|shape| shape.pose_offset == [0.0; 3]).count();
+    let count = if below(2) == 0 { near } else { shapes.built.len() } as u32;
+    // In most histories all bodies are in one region.
+    let regions = [(0, 1), (0, 1), (1, 1), (0, REGIONS.len())][below(4) as usize];
     let new = |others: &[Body], below: &mut dyn FnMut(u32) -> u32| {
         let mut rng = ChaCha8Rng::seed_from_u64(u64::from(below(u32::MAX)));
         let shape = below(count) as usize;
-        let placed = match other(others, below) {
-            Some(other) if below(8) > 0 => {
-                let first = PlacedShape {
-                    shape: other.shape as usize,
-                    rotation: other.rotation,
-                    translation: other.translation.map(|x| x as f32),
-                };
-                spec.partner(shapes, &first, shape, &mut rng)
+        let partner = other(others, below).filter(|_| below(8) > 0);
+        let (number, first) = match &partner {
+            Some(body) => {
+                let (number, translation) = place(&shapes.built, body);
+                let (shape, rotation) = (body.shape as usize, body.rotation);
+                (number, PlacedShape { shape, rotation, translation })
             }
-            _ => PlacedShape {
-                translation: [(); 3].map(|()| below(64) as f32 / 8.0),
-                ..spec.start(shape, &mut rng)
-            },
+            None => {
+                let translation = [(); 3].map(|()| below(64) as f32 / 8.0);
+                let number = regions.0 + below(regions.1 as u32) as usize;
+                (number, PlacedShape { translation, ..spec.start(shape, &mut rng) })
+            }
         };
-        let translation = placed.translation.map(f64::from);
-        let body = Body::at(shape as u32, placed.rotation, translation);
-        with_properties(body, below)
+        let rotation = match (count as usize > near, &partner) {
+            (true, _) => draw_rotation(QUARTER_TURNS, below),
+            (false, Some(_)) => spec.turn.second(first.rotation, &mut rng),
+            (false, None) => first.rotation,
+        };
+        let contact = partner.map(|_| spec.contact(&mut rng));
+        let within = contact.and_then(|contact| contact.place(shapes, &first, shape, rotation));
+        let body = Body::at(shape as u32, rotation, [0.0; 3]);
+        let within = within.unwrap_or(first.translation);
+        with_properties(placed(&shapes.built, body, (number, within)), &MARGINS, below)
     };
-    draw_bodies(count, new, below)
+    draw_bodies(&shapes.built[..count as usize], count, &MARGINS, new, below)
 }
 
-/// A history of bodies in as many shapes as are counted, each body drawn by `new` next to others.
+/// The part of a pose, or of ends, that a drifting body has of another: none.
+const DRIFT: u32 = 3;
+
+/// A history of bodies in these shapes, of which there are so many, with these margins, each body
+/// drawn by `new` next to others.
 pub(super) fn draw_bodies(
-    shapes: u32,
+    shapes: &[Shape],
+    count: u32,
+    margins: &[f32],
     new: impl Fn(&[Body], &mut dyn FnMut(u32) -> u32) -> Body,
     below: &mut dyn FnMut(u32) -> u32,
 ) -> History<Body> {
-    let moved = |from: &Body, to: &Body, part: u32| Body {
-        rotation: [to, to, from][part as usize].rotation,
-        translation: [to, from, to][part as usize].translation,
-        ..*from
+    let moved = |from: &Body, to: &Body, part: u32, below: &mut dyn FnMut(u32) -> u32| {
+        let (number, within) = place(shapes, from);
+        let rotation = if part < 2 { to.rotation } else { from.rotation };
+        let at = match part {
+            DRIFT => (number, within.map(|x| x + drift(below))),
+            1 => (number, within),
+            _ => place(shapes, to),
+        };
+        placed(shapes, Body { rotation, ..*from }, at)
     };
     let own = |body: Body, kind, below: &mut dyn FnMut(u32) -> u32| match kind {
-        ChangeKind::Margin => Body { margin: next_margin(body.margin, below), ..body },
-        _ => Body { shape: (body.shape + 1 + below(shapes - 1)) % shapes, ..body },
+        ChangeKind::Margin => Body { margin: next_margin(body.margin, margins, below), ..body },
+        _ => {
+            let shape = (body.shape + 1 + below(count - 1)) % count;
+            placed(shapes, Body { shape, ..body }, place(shapes, &body))
+        }
     };
     draw(ChangeKind::ALL, new, moved, own, below)
 }
 
-/// A body at a pose, with properties that are drawn.
-pub(super) fn with_properties(body: Body, below: &mut dyn FnMut(u32) -> u32) -> Body {
+/// A body at a pose, with properties that are drawn, its margin from these.
+pub(super) fn with_properties(
+    body: Body,
+    margins: &[f32],
+    below: &mut dyn FnMut(u32) -> u32,
+) -> Body {
     Body {
         motion: motion(below),
         groups: groups(below),
-        margin: MARGINS[below(2) as usize * below(MARGINS.len() as u32) as usize],
+        margin: margins[below(2) as usize * below(margins.len() as u32) as usize],
         ..body
     }
 }
 
 /// A margin other than this one.
-fn next_margin(margin: f32, below: &mut dyn FnMut(u32) -> u32) -> f32 {
-    let at = MARGINS.iter().position(|&known| known == margin);
-    let step = 1 + below(MARGINS.len() as u32 - 1) as usize;
-    MARGINS[(at.unwrap_or(0) + step) % MARGINS.len()]
+fn next_margin(margin: f32, margins: &[f32], below: &mut dyn FnMut(u32) -> u32) -> f32 {
+    let at = margins.iter().position(|&known| known == margin);
+    let step = 1 + below(margins.len() as u32 - 1) as usize;
+    margins[(at.unwrap_or(0) + step) % margins.len()]
 }
 
 /// One of the bodies, if there are some.
@@ -147,16 +276,17 @@ fn groups(below: &mut dyn FnMut(u32) -> u32) -> Groups {
 }
 
 /// Draws a history with a change per frame, of these kinds in turn, and often a second one: so few
-/// that a world searches for each changed body. `new` draws a body next to others, `moved` copies a
-/// pose or a part of it (1, 2), and `own` makes a change that only bodies of this kind have.
+/// that a world searches for each changed body. Now and then there are many. `new` draws a body
+/// next to others, `moved` copies a pose or a part of it (1, 2) or lets it drift, and `own` makes a
+/// change that only bodies of this kind have.
 fn draw<B: Properties>(
     kinds: &[ChangeKind],
     new: impl Fn(&[B], &mut dyn FnMut(u32) -> u32) -> B,
-    moved: impl Fn(&B, &B, u32) -> B,
+    moved: impl Fn(&B, &B, u32, &mut dyn FnMut(u32) -> u32) -> B,
     own: impl Fn(B, ChangeKind, &mut dyn FnMut(u32) -> u32) -> B,
     below: &mut dyn FnMut(u32) -> u32,
 ) -> History<B> {
-    let mut drawn = Drawn { bodies: Vec::new(), excluded: Vec::new() };
+    let mut drawn = Drawn { bodies: Vec::new(), excluded: Vec::new(), saved: None };
     for _ in 0..FIRST[below(2) as usize] {
         let body = new(&drawn.present(), below);
         drawn.bodies.push(Some(body));
@@ -166,7 +296,8 @@ fn draw<B: Properties>(
     let mut frames = Vec::with_capacity(FRAMES);
     for frame in 0..FRAMES {
         let mut changes = Vec::new();
-        for extra in 0..=below(2) {
+        let extras = if below(16) == 0 { 24 } else { below(2) };
+        for extra in 0..=extras {
             let kind = match extra {
                 0 => kinds[(frame + offset) % kinds.len()],
                 _ => kinds[below(kinds.len() as u32) as usize],
@@ -183,6 +314,8 @@ struct Drawn<B> {
     /// By number; those that have left are `None`.
     bodies: Vec<Option<B>>,
     excluded: Vec<[usize; 2]>,
+    /// Both, as they were saved.
+    saved: Option<(Vec<Option<B>>, Vec<[usize; 2]>)>,
 }
 
 impl<B: Properties> Drawn<B> {
@@ -207,7 +340,7 @@ impl<B: Properties> Drawn<B> {
         &mut self,
         kind: ChangeKind,
         new: &impl Fn(&[B], &mut dyn FnMut(u32) -> u32) -> B,
-        moved: &impl Fn(&B, &B, u32) -> B,
+        moved: &impl Fn(&B, &B, u32, &mut dyn FnMut(u32) -> u32) -> B,
         own: &impl Fn(B, ChangeKind, &mut dyn FnMut(u32) -> u32) -> B,
         below: &mut dyn FnMut(u32) -> u32,
     ) -> Option<Change<B>> {
@@ -225,6 +358,20 @@ impl<B: Properties> Drawn<B> {
                 return Some(Change::Remove(number));
             }
             ChangeKind::Excluded => return self.exclude(below),
+            ChangeKind::Saved => {
+                self.saved = Some((self.bodies.clone(), self.excluded.clone()));
+                return Some(Change::Save);
+            }
+            ChangeKind::Restored => {
+                let (bodies, excluded) = self.saved.clone()?;
+                self.bodies[..bodies.len()].copy_from_slice(&bodies);
+                self.bodies[bodies.len()..].fill(None);
+                self.excluded = excluded;
+                return Some(Change::Restore);
+            }
+            ChangeKind::Cloned | ChangeKind::Shrunk | ChangeKind::Limited => {
+                return Some(Change::Detour(kind));
+            }
             ChangeKind::Interest => {
                 let two = [(); 2].map(|()| self.one(below, any));
                 let numbers = two.into_iter().flatten().map(|(number, _)| number);
@@ -241,8 +388,14 @@ impl<B: Properties> Drawn<B> {
             ChangeKind::Fixed => *body.motion() = Motion::Fixed,
             ChangeKind::Regrouped => *body.groups() = groups(below),
             ChangeKind::Moved => {
+                let (_, other) = self.one(below, any)?;
                 let to = new(&self.present(), below);
-                body = moved(&body, &to, below(3));
+                body = match below(8) {
+                    0 => body, // the same again
+                    1 => moved(&body, &other, 0, below),
+                    2 | 3 => moved(&body, &to, DRIFT, below),
+                    part => moved(&body, &to, part % 3, below),
+                };
             }
             _ => body = own(body, kind, below),
         }

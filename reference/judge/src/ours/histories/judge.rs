@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::draw::MARGINS;
+use super::draw::{MARGINS, place};
 use super::state::{NumberedPair, Pairs, State, by_number, in_order};
-use super::worlds::{JudgedWorld, ReportedPair};
+use super::worlds::JudgedWorld;
 use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, WorldKind};
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::meeting;
@@ -13,7 +13,7 @@ use crate::ours::configurations::{Mode, rows};
 use crate::ours::reference_shapes::{Shapes, grown};
 use sdop::Motion;
 use sdop::bodies::{Aabb, Bodies};
-use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};
+use sdop::boxes::{BoxBody, BoxCuller, BoxCullerBuilder, BoxWorld};
 use sdop::culler::{Culler, CullerBuilder};
 use sdop::settings::{Budget, CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
@@ -45,30 +45,42 @@ fn outside(these: &Pairs, those: &Pairs) -> Pairs {
     these.iter().filter(is_outside).copied().collect()
 }
 
+/// Makes an empty world. All of them report the same; the number may choose how they find it.
+type MakeWorld<'a, W> = dyn Fn(usize) -> Result<W, HistoryError> + 'a;
+
 /// A world that lives through a history.
 pub(super) struct Life<'a, W: JudgedWorld> {
     pub world: W,
+    make: Box<MakeWorld<'a, W>>,
     history: &'a History<W::Body>,
     states: &'a [State<W::Body>],
     ids: Vec<BodyId>,
     numbers: HashMap<BodyId, u32>,
+    /// The bodies of the pairs when events were last read.
     before: Pairs,
+    /// Whether a world says that nothing changes when two bodies are excluded, or included again.
+    is_told_wrong: bool,
+    /// With the numbers of bodies and the pairs of that time.
+    saved: Option<(W::Saved, HashMap<BodyId, u32>, Pairs)>,
 }
 
 impl<'a, W: JudgedWorld> Life<'a, W> {
     /// A world that gets the first bodies.
     pub fn new(
-        world: W,
+        make: impl Fn(usize) -> Result<W, HistoryError> + 'a,
         history: &'a History<W::Body>,
         states: &'a [State<W::Body>],
     ) -> Result<Self, HistoryError> {
         let mut life = Self {
-            world,
+            world: make(0)?,
+            make: Box::new(make),
             history,
             states,
             ids: Vec::new(),
             numbers: HashMap::new(),
             before: Vec::new(),
+            is_told_wrong: false,
+            saved: None,
         };
         for &body in &history.first {
             life.insert(body)?;
@@ -99,21 +111,40 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
                 }
                 Change::Exclude(pair, excluded) => {
                     let pair = pair.map(|number| self.ids[number]);
-                    self.world.exclude(pair, *excluded)?;
+                    self.is_told_wrong |= !self.world.exclude(pair, *excluded)?;
                 }
                 Change::Interest(numbers) => {
                     let of_interest = numbers.iter().filter(|n| state.bodies[**n].is_some());
                     let ids: Vec<_> = of_interest.map(|&number| self.ids[number]).collect();
                     self.world.interest(&ids)?;
                 }
+                Change::Save => {
+                    let (state, before) = (self.world.save(), self.before.clone());
+                    self.saved = Some((state, self.numbers.clone(), before));
+                }
+                Change::Restore => self.restore(frame)?,
+                Change::Detour(kind) => self.world.detour(*kind)?,
             }
             state.take(change);
         }
         Ok(())
     }
 
-    /// Culls, and returns the pairs that are missed, and those on which the list or the events are
-    /// not what they must be.
+    /// Goes back to the saved state, in every other frame in another world.
+    fn restore(&mut self, frame: usize) -> Result<(), HistoryError> {
+        let Some((saved, numbers, before)) = &self.saved else {
+            return Ok(());
+        };
+        if frame % 2 == 1 {
+            self.world = (self.make)(frame)?;
+        }
+        self.numbers.clone_from(numbers);
+        self.before.clone_from(before);
+        self.world.restore(saved)
+    }
+
+    /// Culls, and returns the pairs that are missed, and those on which the list, the events or the
+    /// bodies are not what they must be. Events are not read in each frame.
     fn compare(&mut self, frame: usize, truth: &Truth) -> Result<[Pairs; 2], HistoryError> {
         let listed = self.world.cull()?;
         let is_sorted = listed.is_sorted_by(|one, next| one < next);
@@ -129,16 +160,26 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
         if !is_sorted {
             differ.extend(list.first());
         }
-        if let Some(events) = self.world.events() {
-            let (begun, ended) = (outside(&list, &self.before), outside(&self.before, &list));
-            let numbered = |ids: &mut dyn Iterator<Item = [BodyId; 2]>| {
-                let pairs = ids.map(|bodies| ReportedPair::of(bodies, None));
-                by_number(pairs, &self.numbers)
-            };
-            differ.extend(difference(&numbered(&mut events.begun()), &begun));
-            differ.extend(difference(&numbered(&mut events.ended()), &ended));
+        let present = self.states[frame].present();
+        let mut wanted: Vec<_> = present.map(|(number, body)| (self.ids[number], body)).collect();
+        wanted.sort_by_key(|(id, _)| *id); // images have slots of their own
+        if wanted != self.world.all() || self.is_told_wrong {
+            differ.push(NumberedPair::of([u32::MAX; 2]));
         }
-        self.before = list;
+        let is_read = frame % 3 != 2;
+        if let Some(events) = is_read.then(|| self.world.events()).flatten() {
+            // A pair that goes on in another image is the same.
+            let bodies = |pairs: Pairs| {
+                in_order(pairs.into_iter().map(|pair| NumberedPair { image: [0; 3], ..pair }))
+            };
+            let list = bodies(list);
+            let (begun, ended) = (outside(&list, &self.before), outside(&self.before, &list));
+            let lasting = outside(&list, &begun);
+            for (told, wanted) in events.into_iter().zip([begun, lasting, ended]) {
+                differ.extend(difference(&bodies(by_number(told, &self.numbers)), &wanted));
+            }
+            self.before = list;
+        }
         Ok([missed, differ])
     }
 
@@ -190,6 +231,17 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
     }
 }
 
+/// A finder in its turn.
+pub(super) fn finder(turn: usize) -> Finder {
+    Finder::ALL[turn % Finder::ALL.len()]
+}
+
+/// Culls boxes in this mode, by a finder in its turn.
+pub(super) fn box_culler(turn: usize, mode: Mode) -> BoxCullerBuilder {
+    let culler = BoxCuller::builder().finder(finder(turn)).tier(mode.tier);
+    culler.threads(mode.threads).worth_waking(0)
+}
+
 /// A history of given boxes in these modes.
 ///
 /// # Errors
@@ -201,10 +253,9 @@ pub fn judge_boxes(
     let states = State::all(history)?;
     let truth = Truth::exact(required_boxes(&states)); // boxes are compared as they are
     let mut ledger = HistoryLedger::default();
-    for (&mode, &finder) in modes.iter().zip(Finder::ALL.iter().cycle()) {
-        let culler = BoxCuller::builder().finder(finder).tier(mode.tier);
-        let culler = culler.threads(mode.threads).worth_waking(0);
-        let life = Life::new(BoxWorld::with(&culler)?, history, &states)?;
+    for (number, &mode) in modes.iter().enumerate() {
+        let make = |turn| Ok(BoxWorld::with(&box_culler(number + turn, mode))?);
+        let life = Life::new(make, history, &states)?;
         life.live(WorldKind::Boxes, mode, &truth, &mut ledger)?;
     }
     Ok(ledger)
@@ -243,17 +294,16 @@ pub fn judge_meshes(
     let is_asked = |predicate: &Predicate| rows.iter().any(|(row, _)| needs(row, *predicate));
     let predicates: Vec<Predicate> = Predicate::ALL.into_iter().filter(is_asked).collect();
     let with_margins = with_margins(shapes)?;
-    let answers = |state| answers(&with_margins, state, variant.0, &predicates);
+    let answers = |state| answers(shapes, &with_margins, state, variant.0, &predicates);
     let answers = states.iter().map(answers).collect::<Result<Vec<_>, _>>()?;
     let mut ledger = HistoryLedger::default();
     for (row, modes) in rows {
         let way = CullSettings { budget: Some(Budget::Tests(3)), ..row };
         let required = states.iter().zip(&answers);
         let required: Vec<Pairs> =
-            required.map(|(state, answers)| required_of(state, answers, &way)).collect();
+            required.map(|(state, answers)| required_of(shapes, state, answers, &way)).collect();
         let mut truths: BTreeMap<&str, Truth> = BTreeMap::new();
-        for (mode, &pairs) in modes.into_iter().zip(Finder::ALL.iter().cycle()) {
-            let way = CullSettings { pairs, ..way.clone() };
+        for (number, mode) in modes.into_iter().enumerate() {
             let plain = match mode.tier {
                 Tier::SCALAR_FLUSH => mode.tier,
                 _ => Tier::SCALAR,
@@ -267,7 +317,11 @@ pub fn judge_meshes(
                 };
                 truths.insert(plain.name(), truth);
             }
-            let life = Life::new(world(shapes, &way, mode)?, history, &states)?;
+            let make = |turn| {
+                let way = CullSettings { pairs: finder(number + turn), ..way.clone() };
+                world(shapes, &way, mode)
+            };
+            let life = Life::new(make, history, &states)?;
             life.live(WorldKind::of(&way), mode, &truths[plain.name()], &mut ledger)?;
         }
     }
@@ -325,25 +379,30 @@ pub(super) fn grown_shape(body: &Body) -> u32 {
     body.shape * MARGINS.len() as u32 + margin.unwrap_or(0) as u32
 }
 
-/// The exact answers about the present bodies, grown by their margins.
+/// The exact answers about the present bodies, grown by their margins, each within its region.
 pub(super) fn answers(
     shapes: &Shapes,
+    grown: &Shapes,
     state: &State<Body>,
     k: DirectionSet,
     predicates: &[Predicate],
 ) -> Result<Answers, HistoryError> {
     let mut bodies = Bodies::default();
     for (_, body) in state.present() {
-        // Drawn translations are f32.
-        let translation = body.translation.map(|x| x as f32);
+        let (_, translation) = place(&shapes.built, &body);
         let is_dynamic = body.motion.is_dynamic();
         bodies.push(grown_shape(&body), is_dynamic, body.rotation, translation);
     }
-    Ok(Answers::judge(shapes, &bodies, k, predicates)?)
+    Ok(Answers::judge(grown, &bodies, k, predicates)?)
 }
 
 /// The pairs that a way must report.
-pub(super) fn required_of(state: &State<Body>, answers: &Answers, way: &CullSettings) -> Pairs {
+pub(super) fn required_of(
+    shapes: &Shapes,
+    state: &State<Body>,
+    answers: &Answers,
+    way: &CullSettings,
+) -> Pairs {
     let (numbers, parts) = state.parts(|body| body.groups);
     let interest: Vec<u32> = (0..)
         .zip(&numbers)
@@ -351,10 +410,13 @@ pub(super) fn required_of(state: &State<Body>, answers: &Answers, way: &CullSett
         .map(|(at, _)| at)
         .collect();
     let (strategy, overlap) = (way.strategy, way.overlap);
-    let counted =
-        answers.pairs.iter().enumerate().filter(|(n, pair)| {
-            !parts(**pair) && answers.required(strategy, overlap, &interest, *n)
-        });
+    let regions: Vec<usize> =
+        state.present().map(|(_, body)| place(&shapes.built, &body).0).collect();
+    let is_near = |[i, j]: [u32; 2]| regions[i as usize] == regions[j as usize];
+    let counted = answers.pairs.iter().enumerate().filter(|(n, pair)| {
+        let is_required = || answers.required(strategy, overlap, &interest, *n);
+        is_near(**pair) && !parts(**pair) && is_required()
+    });
     let number = |at: u32| numbers[at as usize] as u32;
     in_order(counted.map(|(_, pair)| NumberedPair::of(pair.map(number))))
 }

@@ -28,14 +28,17 @@ pub use robots::Robots;
 pub(crate) use worlds::{CompoundWorld, JudgedWorld};
 
 use super::configurations::{Rotation, rows, variants};
+use super::forms::FormError;
 use super::reference_shapes::InvalidInput;
 use sdop::ThreadsError;
 use sdop::choice::choices;
 use sdop::compound::CompoundError;
+use sdop::mesh::MeshError;
 use sdop::periodic::PeriodicError;
 use sdop::query::QueryError;
 use sdop::settings::{CullSettings, Overlap, Strategy};
-use sdop::world::WorldError;
+use sdop::volume::VolumeError;
+use sdop::world::{SnapshotError, WorldError};
 
 /// The error of a history that can't be judged.
 #[derive(Debug, thiserror::Error)]
@@ -43,6 +46,9 @@ pub enum HistoryError {
     /// What a world refuses.
     #[error(transparent)]
     World(#[from] WorldError),
+    /// A state that a world refuses.
+    #[error(transparent)]
+    Snapshot(#[from] SnapshotError),
     /// What a periodic world refuses.
     #[error(transparent)]
     Periodic(#[from] PeriodicError),
@@ -55,6 +61,15 @@ pub enum HistoryError {
     /// Volumes that no query can have.
     #[error(transparent)]
     Query(#[from] QueryError),
+    /// A form that can't be built.
+    #[error(transparent)]
+    Form(#[from] FormError),
+    /// A mesh that can't be built.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A mesh that has no volumes.
+    #[error(transparent)]
+    Volume(#[from] VolumeError),
     /// Numbers that the reference refuses.
     #[error(transparent)]
     Input(#[from] InvalidInput),
@@ -63,6 +78,8 @@ pub enum HistoryError {
 choices! {
     /// What happens to a body, or to two.
     ChangeKind, "kind of change", {
+        /// The world saves its state.
+        Saved = "saved",
         /// A new body.
         Inserted = "inserted",
         /// A body leaves.
@@ -85,6 +102,14 @@ choices! {
         Excluded = "excluded",
         /// Other bodies are of interest.
         Interest = "interest",
+        /// The world goes on as its clone.
+        Cloned = "cloned",
+        /// It gives back the memory that it doesn't need.
+        Shrunk = "shrunk",
+        /// It is culled in portions and up to a limit.
+        Limited = "limited",
+        /// It goes back to the state that it has saved, or another world does in its place.
+        Restored = "restored",
     }
 }
 
@@ -101,6 +126,12 @@ pub enum Change<B> {
     Exclude([usize; 2], bool),
     /// These are of interest.
     Interest(Vec<usize>),
+    /// The state is saved.
+    Save,
+    /// The bodies are those of the saved state, with their numbers.
+    Restore,
+    /// Something that changes no pair.
+    Detour(ChangeKind),
 }
 
 /// What happens to the bodies of a world.
@@ -145,10 +176,13 @@ impl WorldKind {
     pub fn has(self, change: ChangeKind) -> bool {
         let is_of_meshes =
             matches!(change, ChangeKind::Margin | ChangeKind::Reshaped | ChangeKind::Interest);
+        let is_of_worlds = matches!(change, ChangeKind::Shrunk | ChangeKind::Limited);
         match self {
-            Self::Boxes | Self::PeriodicBoxes | Self::AskedBoxes => !is_of_meshes,
+            Self::Boxes | Self::AskedBoxes => !is_of_meshes,
+            Self::PeriodicBoxes => !is_of_meshes && !is_of_worlds,
             Self::Meshes(..) | Self::Compounds(_) => true,
-            Self::PeriodicMeshes(_) | Self::AskedMeshes => change != ChangeKind::Interest,
+            Self::AskedMeshes => change != ChangeKind::Interest,
+            Self::PeriodicMeshes(_) => change != ChangeKind::Interest && !is_of_worlds,
         }
     }
 

@@ -9,13 +9,14 @@ use sdop_reference::exact::period::{meeting_images, separation};
 use sdop_reference::exact::{ordop, sphere};
 use sdop_reference::{Body as JudgedBody, Overlap, Pose};
 
-use super::judge::{Life, Truth, culler, grown_shape, with_margins};
+use super::draw::{MARGINS, SMALL_MARGINS, region};
+use super::judge::{Life, Truth, box_culler, culler, finder, grown_shape, with_margins};
 use super::state::{NumberedPair, Pairs, State, in_order};
 use super::worlds::Properties;
 use super::{Change, ChangeKind, History, HistoryError, HistoryLedger, WorldKind};
 use crate::ours::configurations::Mode;
 use crate::ours::reference_shapes::{InvalidInput, Shapes};
-use sdop::boxes::{BoxBody, BoxCuller};
+use sdop::boxes::BoxBody;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicWorld};
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
@@ -56,11 +57,16 @@ impl Repeated<PeriodicBox> {
 }
 
 impl Repeated<Body> {
-    /// A history of meshes, each of them moved by periods that `below` draws.
+    /// A history of meshes in one region and with small margins, each of them moved by periods that
+    /// `below` draws.
     pub fn meshes(history: &History<Body>, below: &mut impl FnMut(u32) -> u32) -> Self {
-        Self::of(history, LEAST_OF_MESHES, below, |body, moved| Body {
-            translation: moved(body.translation.map(|x| (x / STEP).round() * STEP)),
-            ..*body
+        Self::of(history, LEAST_OF_MESHES, below, |body, moved| {
+            let within = region(body.translation).1.map(f64::from);
+            Body {
+                translation: moved(within.map(|x| (x / STEP).round() * STEP)),
+                margin: body.margin.min(MARGINS[SMALL_MARGINS - 1]),
+                ..*body
+            }
         })
     }
 }
@@ -85,7 +91,7 @@ impl<B> Repeated<B> {
             };
             place(body, &moved)
         };
-        let mut ways: Vec<[i32; 3]> = Vec::new();
+        let (mut ways, mut saved): (Vec<[i32; 3]>, _) = (Vec::new(), Vec::new());
         let mut first = Vec::new();
         for body in &history.first {
             ways.push(draw_way(below));
@@ -106,6 +112,15 @@ impl<B> Repeated<B> {
                 Change::Remove(number) => Change::Remove(*number),
                 Change::Exclude(pair, is_excluded) => Change::Exclude(*pair, *is_excluded),
                 Change::Interest(numbers) => Change::Interest(numbers.clone()),
+                Change::Save => {
+                    saved.clone_from(&ways);
+                    Change::Save
+                }
+                Change::Restore => {
+                    ways[..saved.len()].copy_from_slice(&saved);
+                    Change::Restore
+                }
+                Change::Detour(kind) => Change::Detour(*kind),
             };
             (*kind, change)
         };
@@ -147,11 +162,9 @@ pub fn judge_periodic_boxes(
     };
     let truth = Truth::exact(required(&states, meeting)?);
     let mut ledger = HistoryLedger::default();
-    for (&mode, &finder) in modes.iter().zip(Finder::ALL.iter().cycle()) {
-        let culler = BoxCuller::builder().finder(finder).tier(mode.tier);
-        let culler = culler.threads(mode.threads).worth_waking(0);
-        let world = PeriodicBoxes::with(&culler, *periods)?;
-        let life = Life::new(world, history, &states)?;
+    for (number, &mode) in modes.iter().enumerate() {
+        let make = |turn| Ok(PeriodicBoxes::with(&box_culler(number + turn, mode), *periods)?);
+        let life = Life::new(make, history, &states)?;
         life.live(WorldKind::PeriodicBoxes, mode, &truth, &mut ledger)?;
     }
     Ok(ledger)
@@ -188,8 +201,9 @@ pub fn judge_periodic_meshes(
             may_lack: strategy != Strategy::Sphere,
             allowed: None,
         };
-        for (&mode, &finder) in modes.iter().zip(Finder::ALL.iter().cycle()) {
-            let life = Life::new(world(strategy, finder, mode)?, history, &states)?;
+        for (number, &mode) in modes.iter().enumerate() {
+            let make = |turn| Ok(world(strategy, finder(number + turn), mode)?);
+            let life = Life::new(make, history, &states)?;
             life.live(WorldKind::PeriodicMeshes(strategy), mode, &truth, &mut ledger)?;
         }
     }

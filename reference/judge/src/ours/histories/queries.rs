@@ -1,39 +1,55 @@
 //! Histories in which worlds are asked: after each frame an index of the world is brought up to
-//! date, and each body's volume is a query. The pairs that a cull would report are compared, since
-//! queries ignore groups, exclusion and motion.
+//! date, each body's volume is a query, and so is the set beside a copy of it with another origin.
+//! The pairs that a cull would report are compared, since queries ignore groups, exclusion and
+//! motion.
+
+use std::collections::HashSet;
 
 use sdop::Motion;
-use sdop::boxes::{BoxBody, BoxCuller, BoxWorld};
-use sdop::query::{QueryIndex, QueryShape, QuerySource, QueryVolume};
+use sdop::bodies::Aabb;
+use sdop::boxes::{BoxBody, BoxWorld};
+use sdop::query::{Line, QueryIndex, QueryShape, QuerySource, QueryVolume};
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
-use sdop::world::{Body, BodyId, Events, World};
+use sdop::world::{Body, BodyId, World};
 
-use super::judge::{Life, Truth, answers, culler, required_boxes, required_of, with_margins};
+use super::judge::{
+    Life, Truth, answers, box_culler, culler, required_boxes, required_of, with_margins,
+};
 use super::state::State;
 use super::worlds::{JudgedWorld, Properties, ReportedPair};
-use super::{History, HistoryError, HistoryLedger, WorldKind};
+use super::{ChangeKind, History, HistoryError, HistoryLedger, WorldKind};
 use crate::ours::answers::Predicate;
 use crate::ours::configurations::Mode;
 use crate::ours::reference_shapes::Shapes;
 
 /// A world that can be asked about the volumes of its own bodies.
 pub trait AskedWorld: JudgedWorld + QuerySource {
-    /// All bodies, sorted by slot.
-    fn all(&self) -> Vec<(BodyId, Self::Body)>;
     fn excludes(&self, pair: [BodyId; 2]) -> bool;
+    /// The same world with a body far away, which is of any kind.
+    fn with_far_body(&self) -> Result<Self, HistoryError>
+    where
+        Self: Sized;
+    /// A point of a body, or near it.
+    fn point(body: &Self::Body) -> [f64; 3];
     /// A body as a query. Meshes have these shapes.
     fn volume<'a>(body: &Self::Body, shapes: &'a [QueryShape]) -> QueryVolume<'a>;
 }
 
 impl AskedWorld for BoxWorld {
-    fn all(&self) -> Vec<(BodyId, BoxBody)> {
-        self.bodies().collect()
-    }
-
     fn excludes(&self, [a, b]: [BodyId; 2]) -> bool {
         self.is_excluded(a, b)
+    }
+
+    fn with_far_body(&self) -> Result<Self, HistoryError> {
+        let mut world = self.clone();
+        world.insert(Aabb::new([0.0, FAR_AWAY, 0.0], [1.0, FAR_AWAY, 1.0]))?;
+        Ok(world)
+    }
+
+    fn point(body: &BoxBody) -> [f64; 3] {
+        body.bounds.min.map(f64::from)
     }
 
     fn volume<'a>(body: &BoxBody, _: &'a [QueryShape]) -> QueryVolume<'a> {
@@ -42,12 +58,18 @@ impl AskedWorld for BoxWorld {
 }
 
 impl AskedWorld for World {
-    fn all(&self) -> Vec<(BodyId, Body)> {
-        self.bodies().collect()
-    }
-
     fn excludes(&self, [a, b]: [BodyId; 2]) -> bool {
         self.is_excluded(a, b)
+    }
+
+    fn with_far_body(&self) -> Result<Self, HistoryError> {
+        let mut world = self.clone();
+        world.insert(Body::at(0, [0.0, 0.0, 0.0, 1.0], [0.0, f64::from(FAR_AWAY), 0.0]))?;
+        Ok(world)
+    }
+
+    fn point(body: &Body) -> [f64; 3] {
+        body.translation
     }
 
     fn volume<'a>(body: &Body, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
@@ -59,6 +81,9 @@ impl AskedWorld for World {
         }
     }
 }
+
+/// A place that moves the origin of a set of bodies.
+const FAR_AWAY: f32 = 3.0e9;
 
 /// A world and its index.
 pub struct Asked<W> {
@@ -78,8 +103,28 @@ impl<W: AskedWorld> Asked<W> {
     }
 }
 
+impl<W: AskedWorld> Asked<W> {
+    /// Whether an index that has followed the world answers about lines from body to body like a
+    /// new one.
+    fn is_as_new(&self, bodies: &[(BodyId, W::Body)]) -> Result<bool, HistoryError> {
+        let mut new = QueryIndex::new();
+        new.update(&self.world);
+        let mut is_same = new.len() == self.index.len();
+        for two in bodies.windows(2).step_by(bodies.len().div_ceil(4)) {
+            let [from, to] = [0, 1].map(|n: usize| W::point(&two[n].1));
+            let direction = [0, 1, 2].map(|axis| 1.0 + axis as f64 - from[axis] + to[axis]);
+            for line in [Line::Segment { from, to }, Line::Ray { origin: from, direction }] {
+                is_same &= new.along(&line)? == self.index.along(&line)?;
+                is_same &= new.first(&line)? == self.index.first(&line)?;
+            }
+        }
+        Ok(is_same)
+    }
+}
+
 impl<W: AskedWorld> JudgedWorld for Asked<W> {
     type Body = W::Body;
+    type Saved = W::Saved;
 
     fn insert(&mut self, body: W::Body) -> Result<BodyId, HistoryError> {
         self.world.insert(body)
@@ -93,7 +138,7 @@ impl<W: AskedWorld> JudgedWorld for Asked<W> {
         self.world.change(id, from, to)
     }
 
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), HistoryError> {
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError> {
         self.world.exclude(pair, excluded)
     }
 
@@ -106,6 +151,9 @@ impl<W: AskedWorld> JudgedWorld for Asked<W> {
         let bodies = self.world.all();
         let volumes = bodies.iter().map(|(_, body)| W::volume(body, &self.shapes));
         let found = self.index.touching_all(&volumes.collect::<Vec<_>>())?;
+        let mut other = self.index.clone();
+        other.update(&self.world.with_far_body()?);
+        let both: HashSet<[BodyId; 2]> = self.index.pairs_with(&other)?.into_iter().collect();
         let mut pairs = Vec::new();
         for (&(id, mut body), found) in bodies.iter().zip(found.iter()) {
             for &other in found.iter().filter(|&&other| id < other) {
@@ -117,15 +165,35 @@ impl<W: AskedWorld> JudgedWorld for Asked<W> {
                         && body.groups().collide(*partner.groups())
                         && !self.world.excludes([id, other])
                 });
+                let counts = counts && both.contains(&[id, other]);
                 pairs.extend(counts.then(|| ReportedPair::of([id, other], None)));
             }
+        }
+        if let (Some((id, _)), false) = (bodies.first(), self.is_as_new(&bodies)?) {
+            pairs.insert(0, ReportedPair::of([*id; 2], None)); // no pair that there can be
         }
         self.world.cull()?; // from then on, slots of removed bodies are given again
         Ok(pairs)
     }
 
-    fn events(&mut self) -> Option<Events> {
+    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
         None
+    }
+
+    fn all(&self) -> Vec<(BodyId, W::Body)> {
+        self.world.all()
+    }
+
+    fn save(&self) -> W::Saved {
+        self.world.save()
+    }
+
+    fn restore(&mut self, saved: &W::Saved) -> Result<(), HistoryError> {
+        self.world.restore(saved)
+    }
+
+    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
+        self.world.detour(kind)
     }
 }
 
@@ -141,8 +209,9 @@ pub fn judge_queries_of_boxes(
     let truth = Truth::exact(required_boxes(&states)); // boxes are compared as they are
     let mut ledger = HistoryLedger::default();
     for &mode in modes {
-        let world = BoxWorld::with(&BoxCuller::builder().finder(Finder::AllPairs))?;
-        let life = Life::new(Asked::new(world, &Shapes::default(), mode)?, history, &states)?;
+        let make =
+            |turn| Asked::new(BoxWorld::with(&box_culler(turn, mode))?, &Shapes::default(), mode);
+        let life = Life::new(make, history, &states)?;
         life.live(WorldKind::AskedBoxes, mode, &truth, &mut ledger)?;
     }
     Ok(ledger)
@@ -181,8 +250,9 @@ pub fn judge_queries_of_meshes(
         let mut state = state.clone();
         let bodies = state.bodies.iter_mut().flatten();
         bodies.for_each(|body| body.margin = 0.0);
-        let answers = answers(&grown, &state, k, &predicates)?;
-        let [mut required, by_boxes] = [&way, &boxes].map(|way| required_of(&state, &answers, way));
+        let answers = answers(shapes, &grown, &state, k, &predicates)?;
+        let [mut required, by_boxes] =
+            [&way, &boxes].map(|way| required_of(shapes, &state, &answers, way));
         required.retain(|pair| by_boxes.binary_search(pair).is_ok());
         Ok(required)
     });
@@ -192,7 +262,7 @@ pub fn judge_queries_of_meshes(
         Truth { required, fresh: fresh.collect::<Result<_, _>>()?, may_lack: false, allowed: None };
     let mut ledger = HistoryLedger::default();
     for &mode in modes {
-        let life = Life::new(asked(mode)?, history, &states)?;
+        let life = Life::new(|_| asked(mode), history, &states)?;
         life.live(WorldKind::AskedMeshes, mode, &truth, &mut ledger)?;
     }
     Ok(ledger)

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 use sdop_reference::WidePose;
 
-use super::draw::{draw_bodies, other, with_properties};
+use super::draw::{MARGINS, SMALL_MARGINS, draw_bodies, other, with_properties};
 use super::{History, HistoryError};
 use crate::ours::contact::{Contact, PlacedShape};
 use crate::ours::reference_shapes::Shapes;
@@ -39,6 +39,9 @@ const ROTATIONS: [[f32; 4]; 10] = [
     [2.0, 4.0, 6.0, 7.0],
 ];
 
+/// Those whose matrices are of zeros and ones.
+pub(super) const QUARTER_TURNS: &[[f32; 4]] = ROTATIONS.split_at(3).0;
+
 /// Where the bodies of a history are, and a step of their translations: f64 holds sums of such
 /// steps and of those of parts.
 const PLACES: [([f64; 3], f64); 3] = [
@@ -63,7 +66,7 @@ impl Robots {
     /// # Errors
     /// As [`Compound::build`].
     pub fn draw(shapes: Shapes, below: &mut impl FnMut(u32) -> u32) -> Result<Self, HistoryError> {
-        let counts = [1, 2 + below(3), 5 + below(4)];
+        let counts = [1, 2 + below(3), 5 + below(4) + 8 * below(4)];
         let mut parts = counts.map(|count| draw_parts(count, shapes.built.len() as u32, below));
         let build = |parts: &Vec<Part>| Compound::build("robot", &shapes.built, parts);
         let compounds = parts.iter().map(build).collect::<Result<_, _>>()?;
@@ -105,12 +108,12 @@ impl Robots {
     pub fn history(&self, below: &mut impl FnMut(u32) -> u32) -> History<Body> {
         let (place, step) = PLACES[below(PLACES.len() as u32) as usize];
         let spec = ContactSpec::default();
-        let count = self.parts.len() as u32;
+        let (count, margins) = (self.parts.len() as u32, &MARGINS[..SMALL_MARGINS]);
         let new = |others: &[Body], below: &mut dyn FnMut(u32) -> u32| {
             let mut rng = ChaCha8Rng::seed_from_u64(u64::from(below(u32::MAX)));
             let shape = below(count);
-            let body = Body::at(shape, draw_rotation(below), [0.0; 3]);
-            let mut body = with_properties(body, below);
+            let body = Body::at(shape, draw_rotation(&ROTATIONS, below), [0.0; 3]);
+            let mut body = with_properties(body, margins, below);
             let part_of = |body: &Body, below: &mut dyn FnMut(u32) -> u32| {
                 below(self.parts[body.shape as usize].len() as u32) as usize
             };
@@ -126,7 +129,7 @@ impl Robots {
             body.translation = at.map(|x| (x / step).round() * step);
             body
         };
-        draw_bodies(count, new, below)
+        draw_bodies(&[], count, margins, new, below)
     }
 
     /// The translation at which a part of the second body, which is at the origin, nearly touches a
@@ -162,7 +165,7 @@ fn draw_parts(count: u32, shapes: u32, below: &mut impl FnMut(u32) -> u32) -> Ve
         let way = [(); 3].map(|()| f64::from(below(1 << 15)) - f64::from(1 << 14));
         let rotation = match below(4) {
             0 => Part::default().rotation,
-            1 => draw_rotation(below),
+            1 => draw_rotation(&ROTATIONS, below),
             // Not zero: an odd number of steps along w.
             _ => [0, 0, 0, 1]
                 .map(|odd| (below(1 << 16) as f32 - 32768.0 + odd as f32 / 2.0) / 32768.0),
@@ -177,9 +180,12 @@ fn draw_parts(count: u32, shapes: u32, below: &mut impl FnMut(u32) -> u32) -> Ve
     parts
 }
 
-/// A quaternion of whole numbers, in any order, with any signs, times a power of two.
-fn draw_rotation(below: &mut (impl FnMut(u32) -> u32 + ?Sized)) -> [f32; 4] {
-    let mut q = ROTATIONS[below(ROTATIONS.len() as u32) as usize];
+/// A quaternion of one of these kinds, in any order, with any signs, times a power of two.
+pub(super) fn draw_rotation(
+    kinds: &[[f32; 4]],
+    below: &mut (impl FnMut(u32) -> u32 + ?Sized),
+) -> [f32; 4] {
+    let mut q = kinds[below(kinds.len() as u32) as usize];
     for last in (1..4).rev() {
         q.swap(last, below(last as u32 + 1) as usize);
     }

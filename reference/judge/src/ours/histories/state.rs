@@ -64,6 +64,8 @@ pub struct State<B> {
     /// The slot of each body, by number: worlds order the two bodies of a pair by their slots, and
     /// one-sided tests use the planes of the first.
     slots: Arc<Vec<usize>>,
+    /// The state that was saved.
+    saved: Option<Box<Self>>,
 }
 
 impl<B: Copy> State<B> {
@@ -74,6 +76,7 @@ impl<B: Copy> State<B> {
             excluded: Vec::new(),
             interest: Vec::new(),
             slots: Arc::new(slots(history)?),
+            saved: None,
         };
         let mut all = vec![state.clone()];
         for frame in &history.frames {
@@ -96,6 +99,14 @@ impl<B: Copy> State<B> {
             Change::Exclude(pair, true) => self.excluded.push(*pair),
             Change::Exclude(pair, false) => self.excluded.retain(|known| known != pair),
             Change::Interest(numbers) => self.interest.clone_from(numbers),
+            Change::Save => self.saved = Some(Box::new(Self { saved: None, ..self.clone() })),
+            Change::Restore => {
+                let saved = self.saved.take().unwrap_or_else(|| unreachable!("drawn after a save"));
+                let count = self.bodies.len();
+                *self = Self { saved: Some(saved.clone()), ..*saved };
+                self.bodies.resize(count, None);
+            }
+            Change::Detour(_) => {}
         }
     }
 
@@ -163,7 +174,7 @@ pub fn in_order(pairs: impl Iterator<Item = NumberedPair>) -> Pairs {
 
 /// The slot that each body gets in a world, by number. Slots are given again after a cull.
 fn slots<B>(history: &History<B>) -> Result<Vec<usize>, HistoryError> {
-    let (mut world, mut ids) = (BoxWorld::new(), Vec::new());
+    let (mut world, mut ids, mut saved) = (BoxWorld::new(), Vec::new(), BoxWorld::new());
     let apart = |number: usize| Aabb::new([number as f32; 3], [number as f32; 3]);
     for number in 0..history.first.len() {
         ids.push(world.insert(apart(number))?);
@@ -174,6 +185,9 @@ fn slots<B>(history: &History<B>) -> Result<Vec<usize>, HistoryError> {
             match change {
                 Change::Insert(_) => ids.push(world.insert(apart(ids.len()))?),
                 Change::Remove(number) => world.remove(ids[*number])?,
+                Change::Save => saved = world.clone(),
+                Change::Restore => world = saved.clone(),
+                Change::Detour(kind) => world.detour(*kind)?,
                 _ => {}
             }
         }

@@ -1,10 +1,10 @@
 //! The common interface of the long-lived worlds: what a history does to them.
 
-use super::HistoryError;
-use sdop::boxes::{BoxBody, BoxWorld};
+use super::{ChangeKind, HistoryError};
+use sdop::boxes::{BoxBody, BoxWorld, BoxWorldSnapshot};
 use sdop::compound::PartCuller;
-use sdop::periodic::{ImageWorld, Periodic, PeriodicBox};
-use sdop::world::{Body, BodyId, Events, World};
+use sdop::periodic::{ImageWorld, Periodic, PeriodicBox, PeriodicPair};
+use sdop::world::{Body, BodyId, World, WorldSnapshot};
 use sdop::{Groups, Motion};
 
 /// A body's properties that all worlds have.
@@ -49,10 +49,18 @@ impl ReportedPair {
     }
 }
 
+impl From<&PeriodicPair> for ReportedPair {
+    fn from(pair: &PeriodicPair) -> Self {
+        Self { bodies: pair.bodies, parts: None, image: pair.image }
+    }
+}
+
 /// A world that is judged.
 pub trait JudgedWorld {
     /// What it holds.
     type Body: Properties;
+    /// A state of it.
+    type Saved;
 
     /// Adds a body.
     fn insert(&mut self, body: Self::Body) -> Result<BodyId, HistoryError>;
@@ -60,14 +68,22 @@ pub trait JudgedWorld {
     fn remove(&mut self, id: BodyId) -> Result<(), HistoryError>;
     /// Changes a body by the narrowest call that does it.
     fn change(&mut self, id: BodyId, from: Self::Body, to: Self::Body) -> Result<(), HistoryError>;
-    /// Excludes two bodies, or includes them again.
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), HistoryError>;
+    /// Excludes two bodies, or includes them again. Whether that changes anything.
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError>;
     /// Sets the bodies of interest, where it has some.
     fn interest(&mut self, ids: &[BodyId]) -> Result<(), HistoryError>;
     /// Finds the pairs. No body is moved where space does not repeat.
     fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError>;
-    /// What has begun and ended, where the world has events.
-    fn events(&mut self) -> Option<Events>;
+    /// What has begun, lasts and has ended since the last call, if the world says it.
+    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]>;
+    /// All bodies, sorted by slot.
+    fn all(&self) -> Vec<(BodyId, Self::Body)>;
+    /// Its state.
+    fn save(&self) -> Self::Saved;
+    /// Goes back to a state, of this world or of another.
+    fn restore(&mut self, saved: &Self::Saved) -> Result<(), HistoryError>;
+    /// Does what changes no pair, if it can.
+    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError>;
 }
 
 /// The calls that all worlds have alike.
@@ -83,34 +99,58 @@ macro_rules! forwarded {
             Ok(self.remove(id)?)
         }
 
-        fn exclude(&mut self, [a, b]: [BodyId; 2], excluded: bool) -> Result<(), HistoryError> {
-            if excluded {
-                self.exclude(a, b)?;
-            } else {
-                self.include(a, b)?;
-            }
-            Ok(())
+        fn exclude(&mut self, [a, b]: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError> {
+            Ok(if excluded { self.exclude(a, b)? } else { self.include(a, b)? })
         }
     };
 }
 
 /// The calls that worlds without periods have alike.
 macro_rules! unrepeated {
-    () => {
+    ($snapshot:ty) => {
+        type Saved = $snapshot;
+
         fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
             let pairs = self.cull()?.iter();
             Ok(pairs.map(|bodies| ReportedPair::of(bodies, None)).collect())
         }
 
-        fn events(&mut self) -> Option<Events> {
-            Some(self.events())
+        fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
+            let events = self.events();
+            let of = |bodies| ReportedPair::of(bodies, None);
+            let (begun, lasting) = (events.begun().map(of), events.persisting().map(of));
+            Some([begun.collect(), lasting.collect(), events.ended().map(of).collect()])
+        }
+
+        fn all(&self) -> Vec<(BodyId, Self::Body)> {
+            self.bodies().collect()
+        }
+
+        fn save(&self) -> $snapshot {
+            self.snapshot()
+        }
+
+        fn restore(&mut self, saved: &$snapshot) -> Result<(), HistoryError> {
+            Ok(self.restore(saved)?)
+        }
+
+        fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
+            match kind {
+                ChangeKind::Cloned => *self = self.clone(),
+                ChangeKind::Shrunk => self.shrink_to_fit(),
+                _ => {
+                    self.cull_in_portions(|_| ())?;
+                    drop(self.cull_up_to(3).map(|pairs| pairs.len())); // the limit may be too low
+                }
+            }
+            Ok(())
         }
     };
 }
 
 impl JudgedWorld for BoxWorld {
     forwarded!(BoxBody);
-    unrepeated!();
+    unrepeated!(BoxWorldSnapshot);
 
     fn change(&mut self, id: BodyId, from: BoxBody, to: BoxBody) -> Result<(), HistoryError> {
         let moved = BoxBody { bounds: to.bounds, ..from };
@@ -130,7 +170,7 @@ impl JudgedWorld for BoxWorld {
 
 impl JudgedWorld for World {
     forwarded!(Body);
-    unrepeated!();
+    unrepeated!(WorldSnapshot);
 
     fn change(&mut self, id: BodyId, from: Body, to: Body) -> Result<(), HistoryError> {
         let moved = Body { rotation: to.rotation, translation: to.translation, ..from };
@@ -148,11 +188,13 @@ impl JudgedWorld for World {
     }
 }
 
-impl<W: ImageWorld> JudgedWorld for Periodic<W>
+impl<W: ImageWorld + Clone> JudgedWorld for Periodic<W>
 where
     W::Body: Properties,
 {
     forwarded!(W::Body);
+
+    type Saved = Self;
 
     fn change(&mut self, id: BodyId, _: W::Body, to: W::Body) -> Result<(), HistoryError> {
         Ok(self.set(id, to)?)
@@ -163,16 +205,31 @@ where
     }
 
     fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
-        let pairs = self.cull()?.iter().map(|pair| ReportedPair {
-            bodies: pair.bodies,
-            parts: None,
-            image: pair.image,
-        });
-        Ok(pairs.collect())
+        Ok(self.cull()?.iter().map(ReportedPair::from).collect())
     }
 
-    fn events(&mut self) -> Option<Events> {
-        None
+    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
+        let events = self.events();
+        let of = |pairs: &[PeriodicPair]| pairs.iter().map(ReportedPair::from).collect();
+        Some([events.begun(), events.persisting(), events.ended()].map(of))
+    }
+
+    fn all(&self) -> Vec<(BodyId, W::Body)> {
+        self.ids().filter_map(|id| Some((id, self.body(id).ok()?))).collect()
+    }
+
+    fn save(&self) -> Self {
+        self.clone()
+    }
+
+    fn restore(&mut self, saved: &Self) -> Result<(), HistoryError> {
+        *self = saved.clone();
+        Ok(())
+    }
+
+    fn detour(&mut self, _: ChangeKind) -> Result<(), HistoryError> {
+        *self = self.clone();
+        Ok(())
     }
 }
 
@@ -184,6 +241,7 @@ pub struct CompoundWorld {
 
 impl JudgedWorld for CompoundWorld {
     type Body = Body;
+    type Saved = WorldSnapshot;
 
     fn insert(&mut self, body: Body) -> Result<BodyId, HistoryError> {
         JudgedWorld::insert(&mut self.world, body)
@@ -197,7 +255,7 @@ impl JudgedWorld for CompoundWorld {
         self.world.change(id, from, to)
     }
 
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), HistoryError> {
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError> {
         JudgedWorld::exclude(&mut self.world, pair, excluded)
     }
 
@@ -222,7 +280,23 @@ impl JudgedWorld for CompoundWorld {
     }
 
     /// Events are of the world's pairs, of which some may have no pairs of parts.
-    fn events(&mut self) -> Option<Events> {
+    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
         None
+    }
+
+    fn all(&self) -> Vec<(BodyId, Body)> {
+        self.world.all()
+    }
+
+    fn save(&self) -> WorldSnapshot {
+        self.world.save()
+    }
+
+    fn restore(&mut self, saved: &WorldSnapshot) -> Result<(), HistoryError> {
+        JudgedWorld::restore(&mut self.world, saved)
+    }
+
+    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
+        self.world.detour(kind)
     }
 }

@@ -41,10 +41,20 @@ fn diagnose(
     let value: Value = match serde_json::from_slice(line) {
         Ok(value) => value,
         Err(_) if line.windows(3).any(|word| word.eq_ignore_ascii_case(b"nan")) => {
-            return Err(malformed(expected, line, "NaN is no number of a body"));
+            let why = "JSON has no NaN: `pairs` are numbers of bodies, `ns` is a whole number";
+            return Err(malformed(expected, line, why));
+        }
+        Err(_) if !line.trim_ascii().starts_with(b"{") => {
+            let why = "no answer: standard output is for answers alone, other text goes to \
+                       standard error";
+            return Err(malformed(expected, line, why));
         }
         Err(error) => return Err(malformed(expected, line, format!("no JSON ({error})"))),
     };
+    if let Some(ns) = value.get("ns").filter(|ns| !ns.is_u64() && !ns.is_null()) {
+        let why = format!("`ns` is {ns}: it is a whole number of nanoseconds, 0 or more");
+        return Err(malformed(expected, line, why));
+    }
     if let Ok(SameLine { frame, same: true }) = SameLine::deserialize(&value) {
         let found = frame;
         if found == expected as u64 {

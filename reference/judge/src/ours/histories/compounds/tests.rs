@@ -7,9 +7,9 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::ours::configurations::variants;
-use crate::ours::histories::history_shapes;
 use crate::ours::histories::worlds::{JudgedWorld, ReportedPair};
-use sdop::world::{BodyId, Events};
+use crate::ours::histories::{ChangeKind, history_shapes};
+use sdop::world::{BodyId, WorldSnapshot};
 
 /// What a world does wrong to its list.
 type Fault = fn(&CompoundWorld, &mut Vec<ReportedPair>);
@@ -19,6 +19,7 @@ struct WrongWorld(CompoundWorld, Fault);
 
 impl JudgedWorld for WrongWorld {
     type Body = Body;
+    type Saved = WorldSnapshot;
 
     fn insert(&mut self, body: Body) -> Result<BodyId, HistoryError> {
         self.0.insert(body)
@@ -32,7 +33,7 @@ impl JudgedWorld for WrongWorld {
         self.0.change(id, from, to)
     }
 
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<(), HistoryError> {
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError> {
         self.0.exclude(pair, excluded)
     }
 
@@ -47,8 +48,24 @@ impl JudgedWorld for WrongWorld {
         Ok(listed)
     }
 
-    fn events(&mut self) -> Option<Events> {
+    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
         None
+    }
+
+    fn all(&self) -> Vec<(BodyId, Body)> {
+        self.0.all()
+    }
+
+    fn save(&self) -> WorldSnapshot {
+        self.0.save()
+    }
+
+    fn restore(&mut self, saved: &WorldSnapshot) -> Result<(), HistoryError> {
+        self.0.restore(saved)
+    }
+
+    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
+        self.0.detour(kind)
     }
 }
 
@@ -57,7 +74,7 @@ fn judged(fault: Fault) -> HistoryLedger {
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let mut below = |n| rng.random_range(0..n);
     let variant = variants().next().unwrap();
-    let robots = Robots::draw(history_shapes(variant, 7).unwrap(), &mut below).unwrap();
+    let robots = Robots::draw(history_shapes(variant, 7, false).unwrap(), &mut below).unwrap();
     let history = robots.history(&mut below);
     let states = State::all(&history).unwrap();
     let grown = GrownParts::new(&robots.shapes).unwrap();
@@ -69,7 +86,7 @@ fn judged(fault: Fault) -> HistoryLedger {
     let new = || WrongWorld(world(&robots, &way, mode).unwrap(), fault);
     truth.fresh = states.iter().map(|state| state.fresh(new()).unwrap()).collect();
     let mut ledger = HistoryLedger::default();
-    let life = Life::new(new(), &history, &states).unwrap();
+    let life = Life::new(|_| Ok(new()), &history, &states).unwrap();
     life.live(WorldKind::Compounds(way.strategy), mode, &truth, &mut ledger).unwrap();
     ledger
 }
