@@ -57,8 +57,8 @@ enum ComparisonFormat {
 /// # Errors
 /// A directory without a complete record; records of different experiments.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let [first, second] = [place(&args.first)?, place(&args.second)?];
-    let comparison = compare(first.path(), second.path())?;
+    let [(first, _copy), (second, _other)] = [place(&args.first)?, place(&args.second)?];
+    let comparison = compare(&first, &second)?;
     let why = why(&comparison, args.fail_slower);
     let text = match args.format {
         ComparisonFormat::Table => table(&comparison, args.most),
@@ -82,24 +82,8 @@ fn why(comparison: &RecordComparison, fail_slower: Option<f64>) -> Option<String
     Some(format!("a time is slower by {slowest:.1} %, more than {limit} %"))
 }
 
-/// Where a record can be read.
-enum RecordLocation {
-    Directory(PathBuf),
-    /// A copy out of a commit.
-    Copy(TempDir),
-}
-
-impl RecordLocation {
-    fn path(&self) -> &Path {
-        match self {
-            Self::Directory(path) => path,
-            Self::Copy(copy) => copy.path(),
-        }
-    }
-}
-
-/// A directory, or what a commit had there.
-fn place(named: &str) -> miette::Result<RecordLocation> {
+/// A directory, or a copy of what a commit had there, which lives as long as its second half.
+fn place(named: &str) -> miette::Result<(PathBuf, Option<TempDir>)> {
     let directory = PathBuf::from(named);
     match named.split_once(':') {
         Some((commit, path)) if !directory.exists() => {
@@ -107,9 +91,9 @@ fn place(named: &str) -> miette::Result<RecordLocation> {
             CodeVersion::extract(Path::new("."), commit, path, copy.path())
                 .into_diagnostic()
                 .wrap_err_with(|| format!("cannot read {path} of commit {commit}"))?;
-            Ok(RecordLocation::Copy(copy))
+            Ok((copy.path().to_owned(), Some(copy)))
         }
-        _ => Ok(RecordLocation::Directory(directory)),
+        _ => Ok((directory, None)),
     }
 }
 

@@ -1,5 +1,6 @@
 //! `sdop record`: runs an experiment and stores its measurements with their provenance.
 
+mod identifier;
 mod shared;
 mod steps;
 
@@ -24,15 +25,16 @@ use super::sweep::SweepArgs;
 ///
 /// Writes the experiment's tables and record.json, which has the command, commit, date, machine,
 /// compiler, load before and after, and the digest of every file and input. Without an experiment,
-/// lists all of them. Sweeps (reproduce, tradeoff, verify) can be shared by ranks of mpirun or
-/// split into shards; other experiments are measured in one process.
+/// lists all of them. With the first digits of a record's identifier, prints its record.json, from
+/// the git history if the tree no longer has it. Sweeps (reproduce, tradeoff, verify) can be shared
+/// by ranks of mpirun or split into shards; other experiments are measured in one process.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples: sdop record\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
+    after_help = "Examples: sdop record\n          sdop record a6d7f33e907e\n          sdop record reproduce kernels --name my-laptop\n          sdop record reproduce --name my-laptop -- --quick\n          \
     mpirun -n 64 sdop record verify --name my-cluster\n          sdop record verify --name my-cluster --shard 3/64, then once --merge"
 )]
 pub struct Args {
-    /// The experiments; kernels and peers mean all experiments in their group
+    /// The experiments (kernels and peers mean all experiments in their group), or an identifier
     experiments: Vec<String>,
     /// The machine's name in data/record
     #[arg(long, value_name = "NAME", default_value = "here")]
@@ -77,6 +79,13 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         print(&format!(
             "{list}\nAll need a checkout of the repository and run in its root. \"takes\" is from the latest record that says so."
         ))?;
+        return Ok(Outcome::Passed);
+    }
+    if let [digits] = &args.experiments[..]
+        && !args.adopt
+        && identifier::is_identifier(digits)
+    {
+        identifier::show(&args.out, digits)?;
         return Ok(Outcome::Passed);
     }
     if args.adopt {

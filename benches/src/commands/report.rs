@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop_bench::report::{CodeVersion, Quantities, Store, pages};
+use sdop_bench::measure::conditions::Conditions;
+use sdop_bench::report::{CodeVersion, Manifest, Quantities, Store, pages};
 
 use super::files::write;
 use super::output::{print, rows};
@@ -47,6 +48,9 @@ const FAR_FIGURE: (&str, &str) = ("kernels/far/far.csv", "far.svg");
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
 
+/// What a page says of a record whose times are disturbed, and of its machine.
+const LOADED: &str = "did other work";
+
 /// One template for each block that a page may carry, named after it; below `pages`, one for each
 /// whole page.
 const TEMPLATES: &str = "paper/templates";
@@ -67,7 +71,8 @@ const TEMPLATES: &str = "paper/templates";
 )]
 pub struct Args {
     /// Change nothing; exit with 1 if a page would change, a record was changed, two pages show a
-    /// number differently, or a page doesn't name the commit of an old record
+    /// number differently, or a page doesn't name the commit of an old record or the other work of
+    /// its machine
     #[arg(long)]
     check: bool,
     /// List the numbers that are on more than one page
@@ -241,6 +246,7 @@ fn one_page(
         }
     }
     problems.extend(unnamed_age(page, &rendered, &sources.store, now));
+    problems.extend(unnamed_load(page, &rendered, &sources.store));
     Ok(problems)
 }
 
@@ -273,4 +279,25 @@ fn unnamed_age(page: &str, text: &str, store: &Store, now: Option<&CodeVersion>)
         format!("{page}: {name} is older than the code: name its commit {commit} or measure again")
     })
     .collect()
+}
+
+/// Records used by a page whose machine did other work, where the page doesn't say so.
+fn unnamed_load(page: &str, text: &str, store: &Store) -> Vec<String> {
+    if text.split_whitespace().collect::<Vec<_>>().join(" ").contains(LOADED) {
+        return Vec::new();
+    }
+    let is_disturbed = |(name, manifest): &(String, Manifest)| {
+        let files = manifest.files.keys().filter(|file| file.ends_with(".json"));
+        let results = files.filter_map(|file| store.json(&format!("{name}/{file}")).ok());
+        let mut conditions = results.filter_map(|result| {
+            serde_json::from_value::<Conditions>(result["conditions"].clone()).ok()
+        });
+        conditions.any(|conditions| conditions.disturbed())
+    };
+    let disturbed = store.used().into_iter().filter(is_disturbed);
+    disturbed
+        .map(|(name, _)| {
+            format!("{page}: the machine of {name} {LOADED}: say so, or measure again")
+        })
+        .collect()
 }

@@ -14,6 +14,9 @@ use crate::measure::machine::Machine;
 /// The manifest's name in every record.
 pub const FILE: &str = "record.json";
 
+/// The names of a record's files that only the git history still has, one per line.
+const IN_HISTORY: &str = "in-history.txt";
+
 /// The version of the format that this program writes and reads.
 const VERSION: u32 = 1;
 
@@ -100,7 +103,9 @@ pub enum ManifestError {
     },
     /// A file that the manifest doesn't know, or one that is missing.
     #[error("{}: {problem}", path.display())]
-    #[diagnostic(help("a record's files are those that record.json lists; make the record again"))]
+    #[diagnostic(help(
+        "a record's files are those that record.json lists, without those that in-history.txt lists; make the record again"
+    ))]
     Files {
         /// The file.
         path: PathBuf,
@@ -194,12 +199,15 @@ impl Manifest {
         self.digest.get(..12).unwrap_or(&self.digest)
     }
 
+    /// Checks the files that are there. Those that only the git history has may be missing.
     fn check_files(&self, directory: &Path) -> Result<(), ManifestError> {
         let now = digests(directory)?;
+        let in_history = std::fs::read_to_string(directory.join(IN_HISTORY)).unwrap_or_default();
         let problem =
             |name: &str, problem| Err(ManifestError::Files { path: directory.join(name), problem });
         for (name, digest) in &self.files {
             match now.get(name) {
+                None if in_history.lines().any(|listed| listed == name) => {}
                 None => return problem(name, "missing"),
                 Some(other) if other != digest => {
                     return Err(ManifestError::Changed { path: directory.join(name) });
@@ -207,7 +215,8 @@ impl Manifest {
                 Some(_) => {}
             }
         }
-        match now.keys().find(|name| !self.files.contains_key(*name)) {
+        let mut names = now.keys().map(String::as_str).chain(in_history.lines());
+        match names.find(|name| !self.files.contains_key(*name)) {
             Some(name) => problem(name, "not among the record's files"),
             None => Ok(()),
         }
@@ -231,8 +240,8 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
 }
 
-/// The digest of every file in `directory` and in its directories, the manifest excepted. A
-/// directory that has a manifest is another record.
+/// The digest of every file in `directory` and in its directories, except the manifest and the list
+/// of files in the history. A directory that has a manifest is another record.
 fn digests(directory: &Path) -> Result<BTreeMap<String, String>, ManifestError> {
     let mut digests = BTreeMap::new();
     add_digests(directory, "", &mut digests)?;
@@ -254,7 +263,7 @@ fn add_digests(
         let name = format!("{prefix}{own}");
         if path.is_dir() && !path.join(FILE).is_file() {
             add_digests(&path, &format!("{name}/"), digests)?;
-        } else if path.is_file() && name != FILE {
+        } else if path.is_file() && name != FILE && name != IN_HISTORY {
             let bytes = std::fs::read(&path).map_err(failed(&path))?;
             digests.insert(name, sha256(&bytes));
         }
@@ -287,20 +296,6 @@ mod tests {
         assert_eq!(read.id().len(), 12);
     }
 
-    /// One digit changed by hand is seen.
-    #[test]
-    fn changed_digit_is_detected() {
-        let (directory, _) = record();
-        std::fs::write(directory.path().join("counts.csv"), "a,b\n1,3\n").unwrap();
-        let error = Manifest::read(directory.path()).unwrap_err();
-        assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
-        let (directory, manifest) = record();
-        let text = manifest.text().replace("sdop test", "sdop best");
-        std::fs::write(directory.path().join(FILE), text).unwrap();
-        let error = Manifest::read(directory.path()).unwrap_err();
-        assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
-    }
-
     /// Figures below are part of a record and records below are not.
     #[test]
     fn nested_records_are_separate() {
@@ -320,7 +315,7 @@ mod tests {
         assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
     }
 
-    /// A file more or less is seen.
+    /// A file more or less is seen, unless only the history has it.
     #[test]
     fn added_or_missing_file_is_detected() {
         let (directory, _) = record();
@@ -331,6 +326,14 @@ mod tests {
         ));
         let (directory, _) = record();
         std::fs::remove_file(directory.path().join("counts.csv")).unwrap();
+        assert!(matches!(
+            Manifest::read(directory.path()).unwrap_err(),
+            ManifestError::Files { .. }
+        ));
+        let list = directory.path().join(IN_HISTORY);
+        std::fs::write(&list, "counts.csv\n").unwrap();
+        assert_eq!(Manifest::read(directory.path()).unwrap().deterministic, ["counts.csv"]);
+        std::fs::write(&list, "counts.csv\ntimes.csv\n").unwrap();
         assert!(matches!(
             Manifest::read(directory.path()).unwrap_err(),
             ManifestError::Files { .. }

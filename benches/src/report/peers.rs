@@ -1,22 +1,33 @@
 //! The experiments of the comparison with other engines.
 
-use super::step::{Experiment, ExperimentStep, PAPER_500};
+use super::step::ExperimentStep::{Peers, SdopPrints};
+use super::step::{Experiment, PAPER_500};
 
-const MILLION: &[&str] = &["data/scenes/uniform-1m.toml"];
-
-/// A line per experiment: its name, the program's arguments, and what it measures. Then all others.
+/// A line per experiment: its name, the program's arguments, and what it measures. Then the finders
+/// and threads of which a million bodies are timed by stage.
 macro_rules! peers {
-    ({ $($name:literal $arguments:literal, $about:literal;)+ } $($other:expr),+ $(,)?) => {
+    ({ $($name:literal $arguments:literal, $about:literal;)+ } { $($finder:literal $threads:literal)+ }) => {
         /// Engines side by side, what they are compared on, and what the machine gave.
         pub(super) const PEERS: &[Experiment] = &[
-            $(Experiment {
-                name: concat!("peers/", $name),
-                about: $about,
-                steps: &[ExperimentStep::Peers($arguments)],
-                deterministic: &[],
-                scenes: &[],
-            },)+
-            $($other),+
+            $(Experiment::new(concat!("peers/", $name), $about, &[Peers($arguments)], &[]),)+
+            Experiment::new(
+                "peers/control",
+                "what a second thread is worth, and a million bodies by stage",
+                &[Peers("control"), $(SdopPrints(
+                    concat!("stages-", $finder, "-", $threads, ".json"),
+                    &[
+                        "run", "data/scenes/uniform-1m.toml", "--pairs", $finder, "--strategy", "s-dop-batch",
+                        "--frames", "100", "--threads", $threads, "--format", "json",
+                    ],
+                )),+],
+                &["data/scenes/uniform-1m.toml"],
+            ),
+            Experiment::new(
+                "peers/narrow",
+                "what a narrow phase costs a pair",
+                &[Peers("narrow data/scenes/paper-500.toml --frames 5")],
+                PAPER_500,
+            ),
         ];
     };
 }
@@ -54,42 +65,5 @@ peers! {
         "spreads-1m"   "--sizes 1000000 --scenes mixed,clustered --order random --threads 1 --peers sdop,parry3d refit,Embree",
             "a million of mixed radii and in clusters";
     }
-    Experiment {
-        name: "peers/control",
-        about: "what a second thread is worth, and a million bodies by stage",
-        steps: &[
-            ExperimentStep::Peers("control"),
-            ExperimentStep::SdopPrints("stages-grid-1.json", &stages("grid", "1")),
-            ExperimentStep::SdopPrints("stages-grid-2.json", &stages("grid", "2")),
-            ExperimentStep::SdopPrints("stages-auto-1.json", &stages("auto", "1")),
-            ExperimentStep::SdopPrints("stages-auto-2.json", &stages("auto", "2")),
-        ],
-        deterministic: &[],
-        scenes: MILLION,
-    },
-    Experiment {
-        name: "peers/narrow",
-        about: "what a narrow phase costs a pair",
-        steps: &[ExperimentStep::Peers("narrow data/scenes/paper-500.toml --frames 5")],
-        deterministic: &[],
-        scenes: PAPER_500,
-    },
-}
-
-/// A million bodies by stage.
-const fn stages(finder: &'static str, threads: &'static str) -> [&'static str; 12] {
-    [
-        "run",
-        "data/scenes/uniform-1m.toml",
-        "--pairs",
-        finder,
-        "--strategy",
-        "s-dop-batch",
-        "--frames",
-        "100",
-        "--threads",
-        threads,
-        "--format",
-        "json",
-    ]
+    { "grid" "1" "grid" "2" "auto" "1" "auto" "2" }
 }

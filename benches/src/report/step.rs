@@ -38,5 +38,17 @@ pub struct Experiment {
     pub scenes: &'static [&'static str],
 }
 
+impl Experiment {
+    /// An experiment without files that every machine must find alike.
+    pub(super) const fn new(
+        name: &'static str,
+        about: &'static str,
+        steps: &'static [ExperimentStep],
+        scenes: &'static [&'static str],
+    ) -> Self {
+        Self { name, about, steps, deterministic: &[], scenes }
+    }
+}
+
 /// The paper's scene of 500 objects.
 pub(super) const PAPER_500: &[&str] = &["data/scenes/paper-500.toml"];

@@ -169,8 +169,13 @@ impl Store {
                 break;
             }
         }
-        self.manifest(record)?;
-        Ok(self.root.join(&path))
+        let manifest = self.manifest(record)?;
+        let path = self.root.join(&path);
+        if path.is_file() {
+            return Ok(path);
+        }
+        let problem = format!("not in this tree; `sdop record {}` finds the record", manifest.id());
+        Err(StoreError::File { path, problem })
     }
 }
 

@@ -179,7 +179,7 @@ export class Panel {
     const alone = sides.length === 1;
     const put = (state: State, count: number) => {
       const place = this.legend.get(state);
-      if (place) place.textContent = alone ? `${grouped.format(count)} ` : "";
+      if (place) place.textContent = alone ? `${counted(count, "pairs", "pair")} ` : "";
     };
     put(State.Reported, one.apart);
     put(State.Meets, one.true === null ? 0 : one.true - one.missed);
@@ -298,8 +298,8 @@ export class Panel {
       [State.Idle]: "no pair",
       [State.Spheres]: truth ? "spheres overlap, culled" : "spheres overlap",
       [State.Reported]: truth ? "reported, but apart" : "reported",
-      [State.Meets]: "truly meet",
-      [State.Missed]: "missed",
+      [State.Meets]: "truly meet, reported",
+      [State.Missed]: "truly meet, missed",
     };
     return names[state];
   }
