@@ -13,7 +13,7 @@ use sdop::world::BodyId;
 type Held<W> = Vec<Option<(BodyId, <<W as LivingWorld>::World as JudgedWorld>::Body)>>;
 
 /// A world's saved state, its bodies and the excluded pairs.
-type Saved<W> = (<W as LivingWorld>::Saved, Held<W>, BTreeSet<[u32; 2]>);
+type Saved<W> = (<<W as LivingWorld>::World as JudgedWorld>::Saved, Held<W>, BTreeSet<[u32; 2]>);
 
 /// A long-lived world as a contestant. What a world refuses is a panic, which the judge reports.
 pub struct Living<W: LivingWorld> {
@@ -128,9 +128,9 @@ impl<W: LivingWorld> Contestant for Living<W> {
     }
 
     fn save(&mut self) -> bool {
-        let state = self.world.saved();
-        self.saved = state.map(|state| (state, self.held.clone(), self.excluded.clone()));
-        self.saved.is_some()
+        let state = self.world.world().save();
+        self.saved = Some((state, self.held.clone(), self.excluded.clone()));
+        true
     }
 
     fn restore(&mut self) -> bool {
@@ -138,7 +138,7 @@ impl<W: LivingWorld> Contestant for Living<W> {
             return false;
         };
         (self.held, self.excluded) = (held.clone(), excluded.clone());
-        self.world.go_back(state);
+        done(self.world.world().restore(state));
         true
     }
 }

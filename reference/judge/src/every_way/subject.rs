@@ -1,7 +1,7 @@
 //! Our cullers as a subject: in every way that they have, each in the mode whose turn it is.
 
 use super::lives::Living;
-use super::worlds::{MeshLife, asked};
+use super::worlds::{MeshLife, asked, asked_meshes};
 use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
@@ -67,7 +67,10 @@ impl EveryWay {
             // A culler for all, and a world for some, other ones of each case.
             let in_world = case.claim == Claim::Parts || (n + turn).is_multiple_of(WORLDS);
             let culler = (case.claim != Claim::Parts).then(|| posed(case, &way, mode));
-            all_report(culler.into_iter().chain(in_world.then(|| meshes(case, &way, mode))))
+            let in_index = in_world && matches!(case.claim, Claim::Hull | Claim::Mesh);
+            let world = in_world.then(|| meshes(case, &way, mode));
+            let index = in_index.then(|| asked_about(case, &way, mode));
+            all_report(culler.into_iter().chain(world).chain(index))
         };
         all_report((0..).zip(ways.zip(modes.iter().cycle())).map(lists))
     }
@@ -116,6 +119,12 @@ fn meshes(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, St
     let way = CullSettings { budget: Some(Budget::Tests(3)), ..way.clone() };
     let world = |scene: &Scene<'_>| MeshLife::new(scene.shapes, &world_culler(&way, mode));
     lived(case, |scene| world(scene).map(Living::new))
+}
+
+/// The frames by an index of a world, which is asked about each body's volumes.
+fn asked_about(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
+    let culler = world_culler(way, mode);
+    lived(case, |scene| asked_meshes(scene.shapes, &culler, mode).map(Living::new))
 }
 
 /// The frames by one way; the culler is made anew for another set of bodies.

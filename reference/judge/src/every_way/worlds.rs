@@ -6,23 +6,20 @@ use crate::case::Frame;
 use crate::contestant::BodyPart;
 use crate::ours::configurations::Mode;
 use crate::ours::histories::{Asked, CompoundWorld, HistoryError, JudgedWorld};
-use crate::ours::reference_shapes::Shapes;
 use sdop::Groups;
 use sdop::bodies::Aabb;
-use sdop::boxes::{BoxBody, BoxCullerBuilder, BoxWorld, BoxWorldSnapshot};
+use sdop::boxes::{BoxBody, BoxCullerBuilder, BoxWorld};
 use sdop::compound::{Compound, Part, PartCuller};
 use sdop::culler::CullerBuilder;
 use sdop::periodic::PeriodicBoxes;
 use sdop::rounding::{down, up};
 use sdop::volume::Shape;
-use sdop::world::{Body, World, WorldSnapshot};
+use sdop::world::{Body, World};
 
 /// A world that can have the bodies of a frame.
 pub trait LivingWorld {
     /// The world.
     type World: JudgedWorld;
-    /// A state of it.
-    type Saved;
 
     /// The world.
     fn world(&mut self) -> &mut Self::World;
@@ -54,16 +51,6 @@ pub trait LivingWorld {
         let _ = periods;
         Ok(false)
     }
-
-    /// Its state, if that can be saved.
-    fn saved(&self) -> Option<Self::Saved> {
-        None
-    }
-
-    /// Goes back to a state.
-    fn go_back(&mut self, saved: &Self::Saved) {
-        let _ = saved;
-    }
 }
 
 fn groups(frame: &Frame, i: usize) -> Groups {
@@ -88,7 +75,6 @@ fn box_body(frame: &Frame, i: usize) -> BoxBody {
 
 impl LivingWorld for BoxWorld {
     type World = Self;
-    type Saved = BoxWorldSnapshot;
 
     fn world(&mut self) -> &mut Self {
         self
@@ -100,22 +86,12 @@ impl LivingWorld for BoxWorld {
 
     fn has_margins(&self) -> bool {
         true
-    }
-
-    fn saved(&self) -> Option<BoxWorldSnapshot> {
-        Some(self.snapshot())
-    }
-
-    fn go_back(&mut self, saved: &BoxWorldSnapshot) {
-        let restored = BoxWorld::restore(self, saved);
-        restored.unwrap_or_else(|error| panic!("{error}"));
     }
 }
 
 /// Boxes of which an index is asked.
 impl LivingWorld for Asked<BoxWorld> {
     type World = Self;
-    type Saved = BoxWorldSnapshot;
 
     fn world(&mut self) -> &mut Self {
         self
@@ -128,19 +104,10 @@ impl LivingWorld for Asked<BoxWorld> {
     fn has_margins(&self) -> bool {
         true
     }
-
-    fn saved(&self) -> Option<BoxWorldSnapshot> {
-        self.world.saved()
-    }
-
-    fn go_back(&mut self, saved: &BoxWorldSnapshot) {
-        self.world.go_back(saved);
-    }
 }
 
 impl LivingWorld for PeriodicBoxes {
     type World = Self;
-    type Saved = ();
 
     fn world(&mut self) -> &mut Self {
         self
@@ -199,7 +166,6 @@ impl MeshLife {
 
 impl LivingWorld for MeshLife {
     type World = CompoundWorld;
-    type Saved = WorldSnapshot;
 
     fn world(&mut self) -> &mut CompoundWorld {
         &mut self.world
@@ -211,9 +177,7 @@ impl LivingWorld for MeshLife {
             [] => frame.bodies.shape[i],
             _ => self.compound(parts)?,
         };
-        let translation = frame.bodies.translation[i].map(f64::from);
-        let body = Body::at(shape, frame.bodies.rotation[i], translation);
-        Ok(Body { motion: frame.motion(i), groups: groups(frame, i), ..body })
+        Ok(mesh_body(frame, i, shape))
     }
 
     fn has_parts(&self) -> bool {
@@ -221,7 +185,35 @@ impl LivingWorld for MeshLife {
     }
 }
 
+fn mesh_body(frame: &Frame, i: usize, shape: u32) -> Body {
+    let translation = frame.bodies.translation[i].map(f64::from);
+    let body = Body::at(shape, frame.bodies.rotation[i], translation);
+    Body { motion: frame.motion(i), groups: groups(frame, i), ..body }
+}
+
+/// Meshes of which an index is asked.
+impl LivingWorld for Asked<World> {
+    type World = Self;
+
+    fn world(&mut self) -> &mut Self {
+        self
+    }
+
+    fn body(&mut self, frame: &Frame, i: usize) -> Result<Body, HistoryError> {
+        Ok(mesh_body(frame, i, frame.bodies.shape[i]))
+    }
+}
+
+/// A world of meshes that an index is asked about.
+pub fn asked_meshes(
+    shapes: &[Shape],
+    culler: &CullerBuilder,
+    mode: Mode,
+) -> Result<Asked<World>, HistoryError> {
+    Asked::new(World::with(shapes.to_vec(), culler)?, shapes, mode)
+}
+
 /// A world of boxes that an index is asked about.
 pub fn asked(culler: &BoxCullerBuilder, mode: Mode) -> Result<Asked<BoxWorld>, HistoryError> {
-    Asked::new(BoxWorld::with(culler)?, &Shapes::default(), mode)
+    Asked::new(BoxWorld::with(culler)?, &[], mode)
 }

@@ -11,7 +11,7 @@ use sdop::boxes::{BoxBody, BoxWorld};
 use sdop::query::{Line, QueryIndex, QueryShape, QuerySource, QueryVolume};
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
-use sdop::volume::{Axes, DirectionSet};
+use sdop::volume::{Axes, DirectionSet, Shape};
 use sdop::world::{Body, BodyId, World};
 
 use super::judge::{
@@ -93,12 +93,12 @@ pub struct Asked<W> {
 }
 
 impl<W: AskedWorld> Asked<W> {
-    pub fn new(world: W, shapes: &Shapes, mode: Mode) -> Result<Self, HistoryError> {
+    pub fn new(world: W, shapes: &[Shape], mode: Mode) -> Result<Self, HistoryError> {
         let index = QueryIndex::with_threads(mode.threads)?;
         Ok(Self {
             world,
             index: index.on_tier(mode.tier),
-            shapes: shapes.built.iter().map(QueryShape::new).collect(),
+            shapes: shapes.iter().map(QueryShape::new).collect(),
         })
     }
 }
@@ -209,8 +209,7 @@ pub fn judge_queries_of_boxes(
     let truth = Truth::exact(required_boxes(&states)); // boxes are compared as they are
     let mut ledger = HistoryLedger::default();
     for &mode in modes {
-        let make =
-            |turn| Asked::new(BoxWorld::with(&box_culler(turn, mode))?, &Shapes::default(), mode);
+        let make = |turn| Asked::new(BoxWorld::with(&box_culler(turn, mode))?, &[], mode);
         let life = Life::new(make, history, &states)?;
         life.live(WorldKind::AskedBoxes, mode, &truth, &mut ledger)?;
     }
@@ -240,7 +239,7 @@ pub fn judge_queries_of_meshes(
     let asked = |mode| {
         let built = shapes.built.clone();
         let world = World::with(built, &culler(&way, Mode::plain(Tier::SCALAR)))?;
-        Asked::new(world, shapes, mode)
+        Asked::new(world, &shapes.built, mode)
     };
     let states = State::all(history)?;
     let grown = with_margins(shapes)?;
