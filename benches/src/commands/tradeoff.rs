@@ -175,7 +175,6 @@ fn plan(args: &Args) -> TradeoffPlan {
     TradeoffPlan {
         seeds: args.seeds.unwrap_or(quick(2, 5)),
         samples: quick(6, 20) as u32,
-        pairs: quick(8_000, 80_000) as u32,
         window: quick(30, 120) as u32,
         stride: 10,
         tier: args.machine.tier(),

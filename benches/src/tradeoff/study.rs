@@ -5,17 +5,13 @@ use miette::IntoDiagnostic as _;
 use super::Estimate;
 use super::budget::{BudgetRow, ClockRow};
 use super::counts::{Tally, share};
-use super::decide;
 use super::density::Density;
 use super::interest;
 use super::pays::{self, Line, Point, Standing};
 use super::result::{Tradeoff, VariantResult};
-use super::safety::SafetyRow;
-use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
 use super::units::{ComparedVariants, SeedCounts, Settings, StudyPart};
 use super::variant::Variant;
-use super::vary::Variation;
 use super::worlds::WorldTimes;
 use crate::cost::pass::Pass;
 use crate::cost::table;
@@ -29,15 +25,12 @@ pub struct Findings {
     compared: Option<ComparedVariants>,
     seeds: Vec<SeedCounts>,
     budgets: Vec<BudgetRow>,
-    shapes: Vec<ShapeSurvival>,
     passes: Vec<Pass>,
     narrow_phase: NarrowPhase,
     clock: Vec<ClockRow>,
     interest: Vec<[Estimate; 2]>,
     worlds: Vec<WorldTimes>,
     densities: Vec<Density>,
-    variations: Vec<Variation>,
-    safety: Vec<SafetyRow>,
 }
 
 impl Findings {
@@ -47,15 +40,12 @@ impl Findings {
             StudyPart::Compared(compared) => self.compared = Some(compared),
             StudyPart::Seed(counts) => self.seeds.push(counts),
             StudyPart::Budgets(rows) => self.budgets = rows,
-            StudyPart::Shape(shape) => self.shapes.push(shape),
             StudyPart::Pass(pass) => self.passes.push(pass),
             StudyPart::NarrowPhase(seconds) => self.narrow_phase = seconds,
             StudyPart::Clock(rows) => self.clock = rows,
             StudyPart::Interest(times) => self.interest = times,
             StudyPart::Worlds(times) => self.worlds = times,
             StudyPart::Density(density) => self.densities.extend(density),
-            StudyPart::Variation(variation) => self.variations.extend(variation),
-            StudyPart::Safety(rows) => self.safety = rows,
         }
     }
 
@@ -92,7 +82,6 @@ impl Findings {
         let prices = prices.flat_map(|&regime| table::prices(&measured.passes, regime));
         let cheapest = pays::envelope(&rows.iter().map(line).collect::<Vec<Line>>());
         Some(Tradeoff {
-            decisions: decide::table(&self.densities, &self.shapes),
             prices: prices.collect(),
             conditions: before.after(rows.iter().map(VariantResult::seconds)),
             scene: settings.scene.clone(),
@@ -110,11 +99,8 @@ impl Findings {
             rows,
             cheapest,
             densities: self.densities,
-            variations: self.variations,
             budgets: self.budgets,
             clock: self.clock,
-            shapes: self.shapes,
-            safety: self.safety,
         })
     }
 }

@@ -79,7 +79,7 @@ const FULL: RunSize = RunSize { seeds: 64, frames: 400, effort: Effort { turns: 
 /// Scenes that can't be read, a shard that doesn't exist, results that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     sweep::enter(&args.sweep)?;
-    let experiments = Experiments::new(&plan(args)?, !args.quick)?;
+    let experiments = Experiments::new(&plan(args)?)?;
     let before = Conditions::before();
     let mut results = Results::of_header(&experiments.header()?)?;
     let mut take = |_, result: &str| results.take(result);

@@ -14,8 +14,7 @@ use sdop_bench::reproduce::check::{PaperClaim, Verdict};
 use sdop_bench::reproduce::closed_form::{probability, relative_reach};
 use sdop_bench::reproduce::rates::{self, Rate};
 use sdop_bench::reproduce::readings::{self, Table1Cell};
-use sdop_bench::reproduce::sensitivity::Interpretation;
-use sdop_bench::reproduce::{Estimate, PaperScene, Results, StrategyRun, claims, study};
+use sdop_bench::reproduce::{PaperScene, Results, StrategyRun, claims, study};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -36,16 +35,12 @@ pub struct Tables {
     pub prices: Vec<ScenePrice>,
     pub table_1: Vec<Table1Cell>,
     pub rates: Vec<Rate>,
-    pub hidden: Vec<HiddenRow>,
     /// Warm frames.
     pub costs: Vec<Cost>,
     /// Cold frames.
     pub cold_costs: Vec<Cost>,
-    pub survival: Vec<SurvivalRow>,
     pub claims: Vec<PaperClaim>,
     pub study: Vec<PaperClaim>,
-    /// Interpretations of what the paper doesn't state; empty with `--quick`.
-    pub interpretations: Vec<Interpretation>,
     #[serde(skip)]
     pub counts: Vec<CountRow>,
     #[serde(skip)]
@@ -145,23 +140,6 @@ pub struct TimeRow {
     simulation_step: f64,
 }
 
-/// The F from which on two strategies' frame rates are within five percent; none where they are
-/// without any F.
-#[derive(Serialize)]
-pub struct HiddenRow {
-    pub scene: &'static str,
-    pub of: [Strategy; 2],
-    pub from: Option<Estimate>,
-}
-
-/// or-DOP hits among sphere hits.
-#[derive(Serialize)]
-pub struct SurvivalRow {
-    pub k: usize,
-    pub overlap: &'static str,
-    pub percent: Estimate,
-}
-
 /// One number that supports or contradicts a claim.
 #[derive(Serialize)]
 struct CheckRow<'a> {
@@ -179,11 +157,6 @@ impl Tables {
     /// All tables of the results.
     pub fn new(results: &Results, machine: &Machine, command: String, before: Conditions) -> Self {
         let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
-        let survival = |row: &sdop_bench::reproduce::Survival| SurvivalRow {
-            k: row.k.k(),
-            overlap: row.overlap.name(),
-            percent: Estimate::of(&row.shares).scaled(100.0),
-        };
         let costs = results.costs(Regime::Warm);
         Self {
             command,
@@ -202,13 +175,10 @@ impl Tables {
             prices: prices(results),
             table_1: readings::table(results),
             rates: rates::table(results),
-            hidden: hidden(results),
             costs,
             cold_costs: results.costs(Regime::Cold),
-            survival: results.survival.iter().map(survival).collect(),
             claims: claims::all(results),
             study: study::all(results),
-            interpretations: results.interpretations.clone(),
             counts,
             times: results.runs.iter().map(time_row).collect(),
         }
@@ -217,21 +187,15 @@ impl Tables {
     /// The CSV files: name without extension, rows.
     pub fn files(&self) -> miette::Result<Vec<(&'static str, Value)>> {
         let value = |rows: serde_json::Result<Value>| rows.into_diagnostic();
-        let mut files = vec![
+        Ok(vec![
             ("counts", value(serde_json::to_value(&self.counts))?),
             ("times", value(serde_json::to_value(&self.times))?),
             ("table_1", value(serde_json::to_value(&self.table_1))?),
             ("frame_rates", value(serde_json::to_value(&self.rates))?),
             ("costs", value(serde_json::to_value(self.both_costs()))?),
             ("prices", value(serde_json::to_value(&self.prices))?),
-            ("survival", value(serde_json::to_value(&self.survival))?),
             ("claims", value(serde_json::to_value(self.checks()))?),
-        ];
-        if !self.interpretations.is_empty() {
-            let rows = value(serde_json::to_value(&self.interpretations))?;
-            files.push(("interpretations", rows));
-        }
-        Ok(files)
+        ])
     }
 
     fn both_costs(&self) -> Vec<&Cost> {
@@ -294,29 +258,6 @@ fn box_row(scene: PaperScene, run: &StrategyRun) -> BoxRow {
         radius: run.radius,
         percent: 100.0 * probability(relative_reach(run.side, run.radius)),
     }
-}
-
-/// The pairs of strategies that the paper compares, in the scenes of 500 objects.
-fn hidden(results: &Results) -> Vec<HiddenRow> {
-    use Strategy::{None as Control, SDopBatch, SDopObjectOfInterest, SDopSequential, Sphere};
-    let compared = [
-        [SDopObjectOfInterest, Control],
-        [SDopObjectOfInterest, Sphere],
-        [SDopSequential, Sphere],
-        [SDopBatch, Sphere],
-        [Strategy::OrDop, SDopBatch],
-    ];
-    let mut rows = Vec::new();
-    for &scene in &results.plan.names {
-        if results.example(scene.name()).is_some_and(|run| run.bodies == 500) {
-            rows.extend(compared.map(|of| HiddenRow {
-                scene: scene.name(),
-                of,
-                from: rates::hides(results, scene.name(), of, 0.95),
-            }));
-        }
-    }
-    rows
 }
 
 /// Prices for warm and for cold frames, scene by scene.

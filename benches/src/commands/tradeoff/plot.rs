@@ -233,9 +233,8 @@ mod tests {
         serde_json::from_value(serde_json::json!({
             "scene": "s", "bodies": 2, "frames": 1, "samples": 1, "seeds": [1], "simd": "scalar",
             "truth": estimate(1.0), "partners": 1.0, "narrow_phase": {"miss": 1e-6, "hit": 1e-6},
-            "rows": rows, "cheapest": [], "densities": [], "variations": [], "budgets": [],
-            "clock": [], "interest": [], "shapes": [], "safety": [], "prices": [],
-            "decisions": [], "conditions": Conditions::default(), "advice": "",
+            "rows": rows, "cheapest": [], "densities": [], "budgets": [],
+            "clock": [], "interest": [], "prices": [], "conditions": Conditions::default(), "advice": "",
         }))
         .unwrap()
     }

@@ -1,12 +1,9 @@
 //! The result as tables for a terminal.
 
 use comfy_table::Table;
-use sdop::settings::{Axes, Overlap};
 use sdop_bench::cost::table::CheckedPrediction;
 use sdop_bench::cost::terms::Terms;
-use sdop_bench::tradeoff::decide::{CHECKS, Decision};
-use sdop_bench::tradeoff::pays::{Line, Standing};
-use sdop_bench::tradeoff::shapes::ShapeSurvival;
+use sdop_bench::tradeoff::pays::{CHECKS, Standing, choose};
 use sdop_bench::tradeoff::{Estimate, Tradeoff, VariantResult};
 
 use crate::commands::output::{rows, table};
@@ -43,7 +40,7 @@ pub fn text(result: &Tradeoff) -> String {
     parts.extend(result.conditions.warning());
     parts.extend([
         heading(result),
-        "Which variant, by density, class of shapes and price of a narrow-phase check".into(),
+        "Which variant, by density and price of a narrow-phase check".into(),
         decisions(result).to_string(),
         variants(result).to_string(),
     ]);
@@ -57,12 +54,6 @@ pub fn text(result: &Tradeoff) -> String {
         interest(result).to_string(),
         "Cp (ns) above which each pays, spheres alone before it, by density".into(),
         break_even(result).to_string(),
-        "Which variant, when one thing about the scene is changed".into(),
-        variations(result).to_string(),
-        "Survivors per sphere hit (two bodies of one shape, principal axes)".into(),
-        shapes(result).to_string(),
-        "The price of safety".into(),
-        safety(result).to_string(),
     ]);
     parts.join("\n\n")
 }
@@ -85,24 +76,17 @@ fn in_worlds(result: &Tradeoff) -> Option<String> {
     (!fastest.is_empty()).then(|| format!("{title}\n\n{times}"))
 }
 
-/// One row per density and class of shapes, one column per price of a check: what to use, and what
-/// is tied with it.
+/// One row per density, one column per price of a check: what to use, and what is tied with it.
 pub fn decisions(result: &Tradeoff) -> Table {
-    let checks: Vec<String> = CHECKS.iter().map(|check| nanoseconds(*check)).collect();
-    let header = [
-        &["sphere overlaps per body", "shapes"],
-        &checks.iter().map(String::as_str).collect::<Vec<_>>()[..],
-    ]
-    .concat();
-    let mut rows = table(&header);
-    for decisions in
-        result.decisions.chunk_by(|a, b| (a.partners, a.class) == (b.partners, b.class))
-    {
-        let cell = |decision: &Decision| with_ties(&decision.best, &decision.tied);
-        let first = [format!("{:.2}", decisions[0].partners), decisions[0].class.to_string()];
-        rows.add_row(first.into_iter().chain(decisions.iter().map(cell)));
-    }
-    rows
+    let checks = CHECKS.map(nanoseconds);
+    let header =
+        [&["sphere overlaps per body"][..], &checks.each_ref().map(String::as_str)].concat();
+    rows(&header, &result.densities, |density| {
+        let choice = |check: f64| choose(&density.lines, check);
+        let cell = |check| choice(check).map_or("–".into(), |c| with_ties(&c.best, &c.tied));
+        let best = CHECKS.map(cell);
+        std::iter::once(format!("{:.2}", density.partners)).chain(best).collect()
+    })
 }
 
 fn with_ties(best: &str, tied: &[String]) -> String {
@@ -111,52 +95,6 @@ fn with_ties(best: &str, tied: &[String]) -> String {
         [one] => format!("{best} (tied: {one})"),
         [one, rest @ ..] => format!("{best} (tied: {one} and {} more)", rest.len()),
     }
-}
-
-/// One row per change of the scene, one column per price of a check: what to use, and what is tied
-/// with it.
-pub fn variations(result: &Tradeoff) -> Table {
-    let checks = CHECKS.map(nanoseconds);
-    let header = [
-        "changed",
-        "bodies",
-        "triangles per mesh",
-        "radii per frame",
-        "sphere overlaps per body",
-        "Co of an or-DOP ms",
-        "exact check µs",
-        "spheres, warm µs",
-        "best at 1000 ns, warm µs",
-    ];
-    let header = [&header[..], &checks.each_ref().map(String::as_str)].concat();
-    rows(&header, &result.variations, |varied| {
-        let construct = |line: &Line| line.ordop.map(|_| line.construct);
-        let construct = varied.lines.iter().filter_map(construct).fold(0.0, f64::max);
-        let changed = match varied.mix {
-            Some(mix) => format!("{}: {mix}", varied.aspect),
-            None => varied.aspect.to_string(),
-        };
-        let mut cells = vec![
-            changed,
-            varied.bodies.to_string(),
-            format!("{:.0}", varied.triangles),
-            format!("{:.3}", varied.motion),
-            format!("{:.2}", varied.partners),
-            format!("{:.1}", 1e3 * construct),
-            format!("{:.1}", 1e6 * varied.narrow_phase.miss),
-        ];
-        let best = varied.best.iter().find(|best| best.check == 1e-6);
-        let best = best.and_then(|best| varied.lines.iter().find(|line| line.name == best.name));
-        for line in [varied.lines.first(), best] {
-            cells.push(
-                line.map_or("–".into(), |line| {
-                    plus_minus(&Estimate::in_order(&line.times), 1e6, 1)
-                }),
-            );
-        }
-        cells.extend(varied.best.iter().map(|best| with_ties(&best.name, &best.tied)));
-        cells
-    })
 }
 
 fn nanoseconds(seconds: f64) -> String {
@@ -319,62 +257,4 @@ pub fn break_even(result: &Tradeoff) -> Table {
         rows.add_row(cells);
     }
     rows
-}
-
-/// One row per shape: the shares of pairs that the two-sided test at each k, each other test, hulls
-/// and meshes don't separate.
-pub fn shapes(result: &Tradeoff) -> Table {
-    let mut header = vec!["shape".to_owned()];
-    for &overlap in Overlap::ALL {
-        header.extend([6, 14, 18, 26].map(|k| format!("{overlap} {k}")));
-    }
-    header.extend(["hull", "mesh", "outside"].map(str::to_owned));
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    let mut rows = table(&header);
-    for shape in &result.shapes {
-        let mut cells = vec![shape.shape.clone()];
-        for &overlap in Overlap::ALL {
-            let share = |k| survivors(shape, k, Axes::Principal, overlap);
-            cells.extend([6, 14, 18, 26].map(|k| share(k).map_or("–".into(), short)));
-        }
-        let outside = format!("{:.2} %", 100.0 * shape.outside);
-        cells.extend([short(&shape.hull), short(&shape.mesh), outside]);
-        rows.add_row(cells);
-    }
-    rows
-}
-
-/// Survivors per sphere hit of one kind of or-DOP.
-pub fn survivors(
-    shape: &ShapeSurvival,
-    k: usize,
-    axes: Axes,
-    overlap: Overlap,
-) -> Option<&Estimate> {
-    let fits = |s: &&sdop_bench::tradeoff::shapes::Survival| {
-        (s.k, s.axes, s.overlap) == (k, axes, overlap)
-    };
-    shape.ordops.iter().find(fits).map(|s| &s.share)
-}
-
-fn short(estimate: &Estimate) -> String {
-    plus_minus(estimate, 1.0, 3)
-}
-
-/// A line an arithmetic and tier.
-pub fn safety(result: &Tradeoff) -> Table {
-    let header =
-        ["strategy", "arithmetic", "simd", "reported", "extra", "lost", "warm µs", "quartiles"];
-    rows(&header, &result.safety, |row| {
-        vec![
-            row.strategy.to_string(),
-            row.arithmetic.to_string(),
-            row.simd.clone(),
-            row.reported.to_string(),
-            row.extra.to_string(),
-            row.lost.to_string(),
-            format!("{:.1}", 1e6 * row.seconds.median),
-            format!("{:.1} to {:.1}", 1e6 * row.seconds.low, 1e6 * row.seconds.high),
-        ]
-    })
 }
