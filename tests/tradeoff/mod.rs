@@ -141,7 +141,7 @@ fn finer_variants_report_fewer() {
     let truth = ExactJudge::new(&scene.shapes).unwrap().truth(&samples, None).unwrap();
     let tier = Tier::detect();
     let tally = |variant: &Variant| Tally::of(&scene, variant, tier, &samples, &truth).unwrap();
-    let variants = variant::all(&scene, 30);
+    let variants = variant::all(&scene.cull, 30);
     let tallies: Vec<Tally> = variants.iter().map(tally).collect();
     for (variant, found) in variants.iter().zip(&tallies) {
         assert_eq!(found.quality().recall, 1.0, "{}", variant.name);
@@ -188,7 +188,7 @@ fn worlds_are_compared_where_bodies_rest() {
         for unit in of_worlds {
             let found: serde_json::Value =
                 serde_json::from_str(&comparison.run(unit).unwrap()).unwrap();
-            let rows = found["Worlds"].as_array().unwrap();
+            let rows = found["worlds"].as_array().unwrap();
             let names: Vec<&str> =
                 rows.iter().map(|row| row["variant"].as_str().unwrap()).collect();
             assert!(names.contains(&"sphere") && names.contains(&"aabb"), "{names:?}");

@@ -17,6 +17,7 @@ pub mod paper;
 mod plan;
 pub mod rates;
 pub mod readings;
+pub mod rows;
 pub mod study;
 pub mod units;
 

@@ -12,9 +12,11 @@ pub mod advise;
 pub mod budget;
 pub mod counts;
 pub mod density;
+mod findings;
 pub mod interest;
 pub mod pays;
 mod result;
+mod rows;
 mod study;
 pub mod timing;
 pub mod truth;
@@ -23,8 +25,8 @@ pub mod variant;
 pub mod worlds;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate};
+pub use findings::Findings;
 pub use result::{Tradeoff, VariantResult};
-pub use study::Findings;
 pub use units::TradeoffPlan;
 
 use std::path::PathBuf;

@@ -10,15 +10,16 @@ use std::sync::{Mutex, PoisonError};
 use miette::IntoDiagnostic as _;
 use serde::{Deserialize, Serialize};
 
-use super::budget::{self, BudgetRow, ClockRow, Window};
+use super::TradeoffError;
+use super::budget::{self, BudgetRow, Window};
 use super::counts::Tally;
-use super::density::{self, Density};
+use super::density;
+use super::findings::{ComparedVariants, Findings, SeedCounts};
 use super::interest;
 use super::timing::{PASSES, Windows};
-use super::truth::{ExactJudge, NarrowPhase, Sample, samples};
+use super::truth::{ExactJudge, Sample, samples};
 use super::variant::{self, Variant};
-use super::worlds::{self, WorldTimes};
-use super::{Estimate, TradeoffError};
+use super::worlds;
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::{Pass, pass};
 use crate::measure::machine::Machine;
@@ -111,43 +112,6 @@ enum TradeoffUnit {
     Density(f32),
 }
 
-/// The result of a unit.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) enum StudyPart {
-    Compared(ComparedVariants),
-    Seed(SeedCounts),
-    Budgets(Vec<BudgetRow>),
-    Pass(Pass),
-    NarrowPhase(NarrowPhase),
-    Clock(Vec<ClockRow>),
-    /// Eager and lazy.
-    Interest(Vec<[Estimate; 2]>),
-    Worlds(Vec<WorldTimes>),
-    Density(Option<Density>),
-}
-
-/// The compared variants.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ComparedVariants {
-    /// Mean sphere hits per frame.
-    pub(super) hits: f64,
-    pub(super) variants: Vec<Variant>,
-    /// Volume / hull volume of each variant.
-    pub(super) volumes: Vec<Option<f64>>,
-}
-
-/// Counts of one seed.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SeedCounts {
-    /// The counts of each variant.
-    pub(super) tallies: Vec<Tally>,
-    /// Counts of interest sets, only with the first seed.
-    pub(super) interest: Vec<interest::InterestCounts>,
-}
-
 impl Comparison {
     /// Builds the scene and the comparison.
     ///
@@ -162,7 +126,7 @@ impl Comparison {
         let hits = Tally::unjudged(&scene, &spheres, plan.tier, &samples)?.reported_a_frame();
         Ok(Self {
             plan: plan.clone(),
-            variants: variant::all(&scene, hits.round() as u64),
+            variants: variant::all(&scene.cull, hits.round() as u64),
             units: units(&seeds(&file, plan), scene.effects.rest.is_some()),
             file,
             scene,
@@ -187,35 +151,34 @@ impl Comparison {
         }
     }
 
-    fn find(&self, unit: TradeoffUnit) -> Result<StudyPart, TradeoffError> {
+    /// What a unit finds: findings with one part.
+    fn find(&self, unit: TradeoffUnit) -> Result<Findings, TradeoffError> {
         let (file, scene, tier) = (&self.file, &self.scene, self.plan.tier);
-        Ok(match unit {
-            TradeoffUnit::Compared => StudyPart::Compared(self.compared()),
-            TradeoffUnit::Seed(seed) => StudyPart::Seed(self.counts(seed)?),
-            TradeoffUnit::Budgets => StudyPart::Budgets(self.budgets()?),
-            TradeoffUnit::Pass(seed) => StudyPart::Pass(self.pass(seed)?),
+        let mut found = Findings::default();
+        match unit {
+            TradeoffUnit::Compared => found.compared = Some(self.compared()),
+            TradeoffUnit::Seed(seed) => found.seeds.push(self.counts(seed)?),
+            TradeoffUnit::Budgets => found.budgets = self.budgets()?,
+            TradeoffUnit::Pass(seed) => found.passes.push(self.pass(seed)?),
             TradeoffUnit::NarrowPhase => {
                 let judge = ExactJudge::new(&scene.shapes)?;
-                StudyPart::NarrowPhase(judge.price_of_spheres(
-                    scene,
-                    &scene.bodies,
-                    tier,
-                    CHECKED_PAIRS,
-                )?)
+                let price = judge.price_of_spheres(scene, &scene.bodies, tier, CHECKED_PAIRS)?;
+                found.narrow_phase = Some(price);
             }
             TradeoffUnit::Clock => {
                 let frames = self.plan.window.min(scene.frames);
-                StudyPart::Clock(budget::by_clock(scene, tier, frames)?)
+                found.clock = budget::by_clock(scene, tier, frames)?;
             }
             TradeoffUnit::Interest => {
-                StudyPart::Interest(interest::times(scene, tier, self.plan.samples)?)
+                found.interest = interest::times(scene, tier, self.plan.samples)?;
             }
-            TradeoffUnit::Worlds => StudyPart::Worlds(worlds::times(scene, &self.variants, tier)?),
+            TradeoffUnit::Worlds => found.worlds = worlds::times(scene, &self.variants, tier)?,
             TradeoffUnit::Density(factor) => {
                 let samples = self.plan.samples.min(CHANGED_SAMPLES);
-                StudyPart::Density(density::at(file, factor, tier, samples)?)
+                found.densities.extend(density::at(file, factor, tier, samples)?);
             }
-        })
+        }
+        Ok(found)
     }
 
     fn compared(&self) -> ComparedVariants {
@@ -327,14 +290,9 @@ impl Sweep for Comparison {
     }
 
     fn timed(&self, unit: usize) -> bool {
-        match self.units[unit] {
-            TradeoffUnit::Compared | TradeoffUnit::Seed(_) | TradeoffUnit::Budgets => false,
-            TradeoffUnit::Pass(_)
-            | TradeoffUnit::NarrowPhase
-            | TradeoffUnit::Clock
-            | TradeoffUnit::Interest
-            | TradeoffUnit::Worlds
-            | TradeoffUnit::Density(_) => true,
-        }
+        let counts = |unit| {
+            matches!(unit, TradeoffUnit::Compared | TradeoffUnit::Seed(_) | TradeoffUnit::Budgets)
+        };
+        !counts(self.units[unit])
     }
 }
