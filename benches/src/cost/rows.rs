@@ -23,13 +23,13 @@ const TERMS: [Term; 9] = [
     ("Co", "s", |t| t.construct),
 ];
 
-/// Sums over volumes, in s per frame.
-const SUMS: [(&str, fn(&Terms) -> f64); 5] = [
-    ("Nu*Cu", |t| t.update),
-    ("F", |t| t.finding),
-    ("Nv*Cv", |t| t.test),
-    ("all terms", Terms::recurring),
-    ("without F", Terms::in_paper),
+/// Sums over volumes.
+const SUMS: [Term; 5] = [
+    ("Nu*Cu", "s per frame", |t| t.update),
+    ("F", "s per frame", |t| t.finding),
+    ("Nv*Cv", "s per frame", |t| t.test),
+    ("all terms", "s per frame", Terms::recurring),
+    ("without F", "s per frame", Terms::in_paper),
 ];
 
 /// The rows of `sdop cost`.
@@ -56,9 +56,9 @@ pub fn add_cost(rows: &mut Rows, cost: &Cost) {
             }
         }
     }
-    for (name, term) in SUMS {
+    for (name, unit, term) in SUMS {
         let exact = Estimate { mean: cost.sum(term), half_width: f64::INFINITY, seeds: n };
-        rows.add(of, name, "s per frame", exact);
+        rows.add(of, name, unit, exact);
     }
     for (names, unit, compared) in [
         (["sum", "measured", "residual"], "s per frame", &cost.frame),
