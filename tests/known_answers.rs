@@ -1,17 +1,19 @@
-//! The estimators of `sdop tradeoff` compared with known answers from integral geometry and from
-//! the literature.
+//! Shares of pairs that or-DOPs and hulls separate, compared with known answers from integral
+//! geometry and from the literature.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its input has failed")]
 
 use std::f64::consts::PI;
 
 use sdop::mesh::ProceduralShape;
+use sdop::rounding::pose::{rotate, rotation};
 use sdop::settings::{Axes, DirectionSet, Overlap};
 use sdop::simd::Tier;
-use sdop::volume::{OrDop, Shape, ShapeSpec};
+use sdop::volume::{OrDop, Origin, Shape, ShapeSpec};
 use sdop_bench::random::Stream;
 use sdop_bench::tradeoff::Estimate;
-use sdop_bench::tradeoff::shapes::{Crowd, share};
+
+use crate::drawn_pairs::DrawnPairs;
 
 const PAIRS: u32 = 40_000;
 const BATCHES: u64 = 8;
@@ -21,8 +23,10 @@ fn cuboid([x, y, z]: [f32; 3]) -> Shape {
     Shape::build(&mesh, &ShapeSpec::default()).unwrap()
 }
 
-fn crowds(shapes: &[Shape], stretch: f32, pairs: u32) -> Vec<Crowd> {
-    (0..BATCHES).map(|batch| Crowd::new(shapes, stretch, pairs / BATCHES as u32, batch)).collect()
+fn draws(shapes: &[Shape], stretch: f32, pairs: u32) -> Vec<DrawnPairs> {
+    (0..BATCHES)
+        .map(|batch| DrawnPairs::new(shapes, stretch, pairs / BATCHES as u32, batch))
+        .collect()
 }
 
 fn ordops(shapes: &[Shape], k: DirectionSet) -> Vec<OrDop> {
@@ -44,16 +48,17 @@ fn boxes_match_minkowski_volume() {
         let exact = minkowski(sizes);
         assert!((exact - known).abs() < 0.003, "{sizes:?}: {exact}");
         let shapes = [cuboid(sizes.map(|x| x as f32))];
-        let crowds = crowds(&shapes, 1.0, PAIRS);
+        let draws = draws(&shapes, 1.0, PAIRS);
         let boxes = ordops(&shapes, DirectionSet::K6);
-        let hits = |crowd: &Crowd, overlap| crowd.ordop_hits(&shapes, &boxes, overlap, tier).len();
-        let full = share(&crowds, |crowd| hits(crowd, Overlap::Full));
-        let hulls = share(&crowds, |crowd| crowd.hull_hits(&shapes));
+        let hits =
+            |drawn: &DrawnPairs, overlap| drawn.ordop_hits(&shapes, &boxes, overlap, tier).len();
+        let full = share(&draws, |drawn| hits(drawn, Overlap::Full));
+        let hulls = share(&draws, |drawn| drawn.hull_hits(&shapes));
         assert!(full.covers(exact), "{sizes:?}: {full:?} for {exact}");
         assert!(hulls.covers(exact), "{sizes:?}: {hulls:?} for {exact}");
         assert!(full.half_width < 0.01);
         // The estimate is sharp enough to tell the box from its six-axes test.
-        let normals = share(&crowds, |crowd| hits(crowd, Overlap::TwoSided));
+        let normals = share(&draws, |drawn| hits(drawn, Overlap::TwoSided));
         assert!(!normals.covers(exact));
     }
 }
@@ -63,17 +68,17 @@ fn boxes_match_minkowski_volume() {
 /// ours have uniform sizes, and overlapping spheres.
 #[test]
 fn six_axes_keep_seven_percent() {
-    let mut draws = Stream::new(7, 0);
+    let mut sizes = Stream::new(7, 0);
     let shapes: Vec<Shape> =
-        (0..200).map(|_| cuboid([(); 3].map(|()| draws.between(0.05, 1.0)))).collect();
+        (0..200).map(|_| cuboid([(); 3].map(|()| sizes.between(0.05, 1.0)))).collect();
     let boxes = ordops(&shapes, DirectionSet::K6);
     let tier = Tier::detect();
-    let kept: Vec<f64> = crowds(&shapes, 1.0, 2 * PAIRS)
+    let kept: Vec<f64> = draws(&shapes, 1.0, 2 * PAIRS)
         .iter()
-        .map(|crowd| {
-            let hits = |overlap| crowd.ordop_hits(&shapes, &boxes, overlap, tier).len() as f64;
+        .map(|drawn| {
+            let hits = |overlap| drawn.ordop_hits(&shapes, &boxes, overlap, tier).len() as f64;
             let (normals, full) = (hits(Overlap::TwoSided), hits(Overlap::Full));
-            (normals - full) / (crowd.pairs().len() as f64 - full)
+            (normals - full) / (drawn.pairs().len() as f64 - full)
         })
         .collect();
     let kept = Estimate::of(&kept);
@@ -96,8 +101,34 @@ fn ordops_rarely_meet_outside_spheres() {
     assert!((0.25..0.45).contains(&round), "{round}");
 }
 
+/// 18-DOP hits outside of the spheres' hits, per hit inside. A ball's 18-DOP reaches 1.23 radii.
 fn outside(name: &str) -> f64 {
-    let mut shapes = sdop_bench::tradeoff::shapes::builtin().unwrap();
-    shapes.retain(|shape| shape.name == name);
-    sdop_bench::tradeoff::shapes::outside(&shapes, 8 * PAIRS, Tier::detect())
+    let form = match name {
+        "cube" => ProceduralShape::Box { x: 1.0, y: 1.0, z: 1.0 },
+        "box 1:1:2" => ProceduralShape::Box { x: 1.0, y: 1.0, z: 2.0 },
+        name => ProceduralShape::default_of(name).unwrap(),
+    };
+    let spec = ShapeSpec { origin: Origin::Ball, ..ShapeSpec::default() };
+    let shape = [Shape::build(&form.build().unwrap(), &spec).unwrap()];
+    let drawn = DrawnPairs::new(&shape, 1.3, 8 * PAIRS, BATCHES);
+    let ordop = ordops(&shape, DirectionSet::K18);
+    let found = drawn.ordop_hits(&shape, &ordop, Overlap::Full, Tier::detect());
+    let centre = |body: u32| {
+        let body = body as usize;
+        let offset = rotate(&rotation(drawn.bodies.rotation[body]), shape[0].ball.centre);
+        [0, 1, 2].map(|axis| f64::from(drawn.bodies.translation[body][axis]) + offset[axis])
+    };
+    let reach = 2.0 * f64::from(shape[0].ball.radius);
+    let is_far = |&[i, j]: &[u32; 2]| {
+        let squared: f64 = centre(i).iter().zip(centre(j)).map(|(a, b)| (a - b).powi(2)).sum();
+        squared > reach * reach
+    };
+    let beyond = found.iter().filter(is_far).count();
+    beyond as f64 / (found.len() - beyond) as f64
+}
+
+/// The share of hits over equally large draws.
+fn share(drawn: &[DrawnPairs], hits: impl Fn(&DrawnPairs) -> usize) -> Estimate {
+    let share = |one: &DrawnPairs| hits(one) as f64 / one.pairs().len() as f64;
+    Estimate::of(&drawn.iter().map(share).collect::<Vec<_>>())
 }

@@ -2,5 +2,7 @@
 
 mod accounts;
 mod cost;
+#[path = "support/drawn_pairs.rs"]
+mod drawn_pairs;
 mod known_answers;
 mod reproduce;

@@ -1,5 +1,8 @@
 //! Files of the project that its programs carry with them.
 
+/// The experiments that `sdop record` runs.
+pub const EXPERIMENTS: &str = include_str!("../experiments.toml");
+
 macro_rules! corpus {
     (($d:tt) $($test:ident = $name:literal;)+) => {
         /// The groups of hard cases: the text of each one's file, by name.

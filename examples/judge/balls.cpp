@@ -2,9 +2,11 @@
 //
 //     c++ -O2 -std=c++17 -o balls examples/judge/balls.cpp
 //     sdop judge ./balls --wire text --claims sphere
+//     sdop bench data/scenes/paper-500.toml --exec ./balls --wire text --claims sphere
 //
 // Compiled with -DNO_MARGIN, it compares without room for its own rounding.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,7 +14,6 @@
 #include <string>
 #include <vector>
 
-// --- reading words ------------------------------------------------------------------------------
 static std::string word() { char w[4096]; return std::scanf("%4095s", w) == 1 ? w : ""; }
 static int count() { return std::atoi(word().c_str()); }
 static float real() {
@@ -75,20 +76,19 @@ int main() {
         } else if (w == "frame") {
             int frame = count(), n = count();
             balls.resize(n);
-            for (int i = 0; i < n; i++) {
-                float q[4], t[3];
-                skip(1); // p
-                for (float &x : q) x = real();
-                for (float &x : t) x = real();
-                balls[i] = posed(shapes[bodies[i].shape], q, t);
-            }
+            std::vector<float> poses(7 * n); // q, then t
+            for (int i = 0; i < 7 * n; poses[i++] = real()) skip(i % 7 == 0); // p
+            auto start = std::chrono::steady_clock::now();
+            for (int i = 0; i < n; i++) balls[i] = posed(shapes[bodies[i].shape], &poses[7 * i], &poses[7 * i + 4]);
             std::vector<int> pairs;
+            long tests = 0; // nv; nu, the updates, are all bodies
             for (int j = 0; j < n; j++)
                 for (int i = 0; i < j; i++)
-                    if (!(bodies[i].fixed && bodies[j].fixed) && meet(balls[i], balls[j])) pairs.insert(pairs.end(), {i, j});
+                    if (!(bodies[i].fixed && bodies[j].fixed) && ++tests && meet(balls[i], balls[j])) pairs.insert(pairs.end(), {i, j});
+            long ns = (std::chrono::steady_clock::now() - start) / std::chrono::nanoseconds(1);
             std::printf("frame %d %zu", frame, pairs.size() / 2);
             for (int id : pairs) std::printf(" %d", id);
-            std::printf("\n");
+            std::printf(" ns %ld nu %d nv %ld\n", ns, n, tests);
         }
     }
 }

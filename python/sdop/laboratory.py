@@ -113,7 +113,7 @@ def cost(scene: str | os.PathLike[str], *flags: str) -> list[dict[str, str | flo
     ----------
     scene : path of a scene file
     flags : str
-        Further flags of ``sdop cost``, such as ``"--strategy=s-dop"``.
+        Further flags of ``sdop cost``, such as ``"--strategy=s-dop-batch"``.
 
     Returns
     -------

@@ -155,7 +155,7 @@ impl PythonSubject {
                 culler.call_method1("frame", (rotations, translations))?
             };
             let pairs = whole_rows::<2>(&pairs, "pairs")?;
-            answers.push(Answer { pairs, ns: None });
+            answers.push(Answer { pairs, ..Answer::default() });
             if frame.save && !told(&culler, "save", ())? {
                 return Ok(Some("its state can't be saved".to_owned()));
             }

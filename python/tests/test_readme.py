@@ -19,7 +19,7 @@ def test_blocks_of_the_readme_run(monkeypatch):
     assert names["hits"].tolist() == [[0, names["a"]]] and 0 < names["at"][0] < 0.5
     assert names["bodies"].tolist() == [[names["c"], names["d"]]] and names["numbers"].tolist() == [[1, 0]]
     assert names["found"].tolist() == [[names["left"], names["right"]]] and names["images"].tolist() == [[-1, 0, 0]]
-    assert {row["term"] for row in names["quality"]} >= {"precision", "time"} and len(names["prices"]) > 10
+    assert {row["metric"] for row in names["quality"]} >= {"precision", "time"} and len(names["prices"]) > 10
 
 
 def test_examples_in_docstrings_hold():

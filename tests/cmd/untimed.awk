@@ -5,5 +5,5 @@ skipped { if (index($0, skipped) == 1) skipped = ""; next }
     if (/[\[{]$/) { match($0, /^ */); skipped = substr($0, 1, RLENGTH) (/\[$/ ? "]" : "}") }
     next
 }
-/^ *"[^"]*\.(json|svg|md|csv)": / && !/"(counts|table_1|survival)\.csv"/ { next }
+/^ *"[^"]*\.(json|svg|md|csv)": / && !/"(counts)\.csv"/ { next }
 { print }

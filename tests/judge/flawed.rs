@@ -231,7 +231,7 @@ impl Subject for Knowing<'_> {
         let answer = |(frame, mut pairs): (&Frame, Vec<[u32; 2]>)| {
             // Pairs of bodies that the frame doesn't have would be noticed at once.
             pairs.retain(|pair| (pair[1] as usize) < frame.bodies.len());
-            Answer { pairs, ns: None }
+            Answer { pairs, ..Answer::default() }
         };
         Ok(frames.map(answer).collect())
     }

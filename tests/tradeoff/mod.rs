@@ -5,21 +5,21 @@
 use std::fs;
 use std::path::Path;
 
-use sdop::rounding::sphere::inflate_radius;
+use sdop::mesh::ProceduralShape;
 use sdop::simd::Tier;
-use sdop::volume::Hull;
+use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
 use sdop_bench::hull_test::{HullGraph, PosedHull, may_touch};
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_bench::sweep::Sweep as _;
 use sdop_bench::tradeoff::TradeoffPlan;
 use sdop_bench::tradeoff::counts::Tally;
-use sdop_bench::tradeoff::safety::without_margins;
-use sdop_bench::tradeoff::shapes::{Crowd, builtin};
 use sdop_bench::tradeoff::truth::{ExactJudge, samples};
 use sdop_bench::tradeoff::units::Comparison;
 use sdop_bench::tradeoff::variant::{self, Variant};
 use sdop_reference::Pose;
 use sdop_reference::exact::{meeting, mesh::Mesh};
+
+use crate::drawn_pairs::DrawnPairs;
 
 const SCENE: &str = r#"
 name = "few"
@@ -48,6 +48,15 @@ walls = "specular"
 spin = { rate = [0.5, 1.0] }
 "#;
 
+/// A cube and the procedural shapes, about the centres of their balls.
+fn built_shapes() -> Vec<Shape> {
+    let spec = ShapeSpec { origin: Origin::Ball, ..ShapeSpec::default() };
+    let others = ProceduralShape::NAMES.iter().filter(|name| **name != "box");
+    let others = others.map(|name| ProceduralShape::default_of(name).unwrap());
+    let all = std::iter::once(ProceduralShape::Box { x: 1.0, y: 1.0, z: 1.0 }).chain(others);
+    all.map(|shape| Shape::build(&shape.build().unwrap(), &spec).unwrap()).collect()
+}
+
 fn scene() -> Scene {
     SceneFile::parse(SCENE, "few.toml", Path::new("")).unwrap().build().unwrap()
 }
@@ -56,13 +65,13 @@ fn scene() -> Scene {
 #[test]
 fn hulls_agree_with_exact_meshes() {
     let (mut meetings, mut pairs) = (0, 0);
-    for shape in builtin().unwrap() {
+    for shape in built_shapes() {
         let hull = Hull::of(&shape.vertices);
         let mesh = Mesh::new(&shape.vertices, &hull.facets).unwrap();
         let graphs = [HullGraph::new(&shape)];
-        let crowd = Crowd::new(std::slice::from_ref(&shape), 1.0, 300, 5);
-        let bodies = &crowd.bodies;
-        for [i, j] in crowd.pairs() {
+        let drawn = DrawnPairs::new(std::slice::from_ref(&shape), 1.0, 300, 5);
+        let bodies = &drawn.bodies;
+        for [i, j] in drawn.pairs() {
             let pose = |b: u32| {
                 Pose::new(bodies.rotation[b as usize], bodies.translation[b as usize]).unwrap()
             };
@@ -80,15 +89,15 @@ fn hulls_agree_with_exact_meshes() {
 fn touching_hulls_are_reported() {
     // Unit cubes face to face, corner to corner, edge to edge: exact in f32, a sign in f64 could
     // fall either way.
-    let cubes = [builtin().unwrap().swap_remove(0)];
+    let cubes = [built_shapes().remove(0)];
     let graphs = [HullGraph::new(&cubes[0])];
     let half = 0.5_f32;
     for gap in [[1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [1.0, -1.0, 0.3], [0.0, 0.0, 0.0]] {
         for (stretch, touch) in [(1.0, true), (1.0 + 1e-6, gap == [0.0; 3])] {
-            let mut crowd = Crowd::new(&cubes, 1.0, 1, 0);
-            crowd.bodies.rotation = vec![[0.0, 0.0, 0.0, 1.0]; 2];
-            crowd.bodies.translation = vec![[0.0; 3], gap.map(|x: f32| 2.0 * half * x * stretch)];
-            let posed = |b| PosedHull::of(&graphs, &crowd.bodies, b);
+            let mut drawn = DrawnPairs::new(&cubes, 1.0, 1, 0);
+            drawn.bodies.rotation = vec![[0.0, 0.0, 0.0, 1.0]; 2];
+            drawn.bodies.translation = vec![[0.0; 3], gap.map(|x: f32| 2.0 * half * x * stretch)];
+            let posed = |b| PosedHull::of(&graphs, &drawn.bodies, b);
             assert_eq!(may_touch(&posed(0), &posed(1)), touch, "{gap:?} {stretch}");
         }
     }
@@ -132,7 +141,7 @@ fn finer_variants_report_fewer() {
     let truth = ExactJudge::new(&scene.shapes).unwrap().truth(&samples, None).unwrap();
     let tier = Tier::detect();
     let tally = |variant: &Variant| Tally::of(&scene, variant, tier, &samples, &truth).unwrap();
-    let variants = variant::all(&scene, 30);
+    let variants = variant::all(&scene.cull, 30);
     let tallies: Vec<Tally> = variants.iter().map(tally).collect();
     for (variant, found) in variants.iter().zip(&tallies) {
         assert_eq!(found.quality().recall, 1.0, "{}", variant.name);
@@ -156,18 +165,6 @@ fn finer_variants_report_fewer() {
     }
 }
 
-/// Shrunk volumes are what the margins make of the true ones.
-#[test]
-fn margins_equal_shrunk_volumes() {
-    for shape in builtin().unwrap() {
-        let bare = without_margins(&shape);
-        assert!(inflate_radius(bare.ball.radius) <= shape.ball.radius);
-        assert!(inflate_radius(bare.ball.radius.next_up()) > shape.ball.radius);
-        let shrunk = shape.ordop.hi.iter().zip(&bare.ordop.hi).all(|(hi, bare)| bare < hi);
-        assert!(shrunk, "{}", shape.name);
-    }
-}
-
 /// Where bodies fall asleep, each variant that a world can have is timed in one, and both report
 /// the same pairs. Elsewhere nothing is.
 #[test]
@@ -176,7 +173,6 @@ fn worlds_are_compared_where_bodies_rest() {
     let plan = TradeoffPlan {
         seeds: 1,
         samples: 2,
-        pairs: 1,
         window: 1,
         stride: 1,
         tier: Tier::detect(),
@@ -192,7 +188,7 @@ fn worlds_are_compared_where_bodies_rest() {
         for unit in of_worlds {
             let found: serde_json::Value =
                 serde_json::from_str(&comparison.run(unit).unwrap()).unwrap();
-            let rows = found["Worlds"].as_array().unwrap();
+            let rows = found["worlds"].as_array().unwrap();
             let names: Vec<&str> =
                 rows.iter().map(|row| row["variant"].as_str().unwrap()).collect();
             assert!(names.contains(&"sphere") && names.contains(&"aabb"), "{names:?}");

@@ -92,7 +92,7 @@ fn boxes(case: &Case) -> Result<Vec<Answer>, TimingError> {
         let is_pair =
             |pair: &[u32; 2]| pair.iter().any(|&body| frame.bodies.dynamic[body as usize]);
         let pairs = culler.pairs().sorted().into_iter().filter(is_pair).collect();
-        answers.push(Answer { pairs, ns: Some(ns) });
+        answers.push(Answer { pairs, ns: Some(ns), ..Answer::default() });
     }
     Ok(answers)
 }

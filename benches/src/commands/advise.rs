@@ -2,12 +2,14 @@
 
 use miette::miette;
 use sdop::settings::{CullSettings, Strategy};
+use sdop_bench::report::digits::interval;
+use sdop_bench::tradeoff::Estimate;
 use sdop_bench::tradeoff::advise::{Advice, Candidate, CandidateFilter, FRAMES, advise};
 use sdop_bench::tradeoff::worlds::WorldTimes;
 
 use super::Outcome;
-use super::output::{Format, emit, rows};
-use super::scene_args::{MachineArgs, SceneArgs};
+use super::output::{Format, Listing, emit, paragraphs, rows};
+use super::scene_args::{CandidateArgs, MachineArgs, SceneArgs};
 
 /// The default price of a narrow-phase check, in nanoseconds.
 const DEFAULT_CHECK_NANOSECONDS: f64 = 1000.0;
@@ -24,12 +26,15 @@ const DEFAULT_CHECK_NANOSECONDS: f64 = 1000.0;
 #[command(after_help = "Example: sdop advise data/scenes/paper-500.toml --narrow-ns 200")]
 pub struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    scene: SceneArgs<CandidateArgs>,
     /// Price of a narrow-phase check of a pair that doesn't meet, in nanoseconds
     #[arg(long, value_name = "X", default_value_t = DEFAULT_CHECK_NANOSECONDS, value_parser = nanoseconds)]
     narrow_ns: f64,
     #[command(flatten)]
     machine: MachineArgs,
+    /// Print all tables: also every finder's time
+    #[arg(long)]
+    all: bool,
     /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -41,92 +46,88 @@ pub struct Args {
 /// An invalid scene.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let file = args.scene.read()?;
-    let tried = CandidateFilter { finder: args.scene.finder(), axes: args.scene.axes() };
+    let &CandidateArgs { pairs, axes } = args.scene.cull();
+    let tried = CandidateFilter { finder: pairs, axes };
     let advice = advise(&file, tried, 1e-9 * args.narrow_ns, args.machine.tier())?
         .ok_or_else(|| miette!("nothing could be timed"))?;
     match args.format {
         Format::Csv => emit(Format::Csv, &advice.candidates, |_| String::new())?,
-        format => emit(format, &advice, text)?,
+        format => emit(format, &advice, |advice| text(advice, args.all))?,
     }
     Ok(Outcome::Passed)
 }
 
-fn text(advice: &Advice) -> String {
+fn text(advice: &Advice, is_whole: bool) -> String {
     let us = |seconds: f64| format!("{:.1} µs", 1e6 * seconds);
     let of = |name: &str| advice.candidates.iter().find(|candidate| candidate.name == name);
-    let spheres = of("sphere")
-        .map_or(String::new(), |spheres| format!("; spheres alone take {}", us(spheres.total)));
-    let sum = of(&advice.best).map_or(String::new(), |best| {
+    let spheres = of("sphere").map(|it| format!("; spheres alone take {}", us(it.total)));
+    let sum = of(&advice.best).map(|best| {
         format!(
-            ": {} of culling + {:.1} pairs × {:.0} ns = {} per frame{spheres}",
+            ": {} of culling + {:.1} pairs × {:.0} ns = {} per frame{}",
             us(best.time.mean),
             best.pairs,
             1e9 * advice.check,
-            us(advice.total)
+            us(advice.total),
+            spheres.unwrap_or_default()
         )
     });
     let tied = match advice.tied.as_slice() {
         [] => "No other is tied with it: every other total is higher by more than its interval."
-            .to_owned(),
+            .into(),
         tied => format!(
             "Tied with it, since the interval of the difference covers zero: {}.",
             tied.join("; ")
         ),
     };
+    let stretches = advice.cheapest.iter().map(|stretch| match stretch.from {
+        0.0 => stretch.name.clone(),
+        from => format!("{} from {:.0} ns", stretch.name, 1e9 * from),
+    });
     let finders = match advice.tied_finders.as_slice() {
         [] => String::new(),
         tied => format!(" (tied with {})", tied.join(", ")),
     };
-    let stretches: Vec<String> = advice
-        .cheapest
-        .iter()
-        .map(|stretch| match stretch.from {
-            0.0 => stretch.name.clone(),
-            from => format!("{} from {:.0} ns", stretch.name, 1e9 * from),
-        })
-        .collect();
-    let mut text = format!(
-        "Use {}{sum}.\n{tied}\nBy the price of a check: {}.\n\n{}\n{}: {} bodies, {} frames ({FRAMES} at most), pairs from {}{finders}\n{}\n\nFinders, for S-DOP\n{}",
-        advice.best,
-        stretches.join("; "),
-        to_paste(&advice.cull, advice.hulls),
-        advice.scene,
-        advice.bodies,
-        advice.frames,
-        advice.cull.pairs,
-        table(&advice.candidates),
-        table(&advice.finders),
-    );
+    let Advice { best, scene, bodies, frames, cull, hulls, .. } = advice;
+    let mut parts = vec![
+        format!("Use {best}{}.", sum.unwrap_or_default()),
+        tied,
+        format!("By the price of a check: {}.\n", stretches.collect::<Vec<_>>().join("; ")),
+        to_paste(cull, *hulls),
+        format!(
+            "{scene}: {bodies} bodies, {frames} frames ({FRAMES} at most), pairs from {}{finders}",
+            cull.pairs
+        ),
+        table(&advice.candidates).to_string(),
+    ];
     if let Some(WorldTimes { variant, culler, world, .. }) = &advice.world {
         let way = if world.mean < culler.mean { "Use" } else { "Don't use" };
-        text = format!(
-            "{text}\n\n{way} a World, which is given moved bodies and keeps the pairs of all others: {variant} takes {} there, \
-             and {} in a Culler.",
+        parts.push(format!(
+            "{way} a World, which is given moved bodies and keeps the pairs of all others: {variant} takes {} there, and \
+             {} in a Culler.",
             us(world.mean),
             us(culler.mean),
-        );
+        ));
     }
-    if let Some(warning) = advice.conditions.warning() {
-        text = format!("{text}\n{warning}");
-    }
-    text
+    parts.push(match is_whole {
+        true => format!("\nFinders, for S-DOP\n{}", table(&advice.finders)),
+        false => "--all prints the finders' times.".to_owned(),
+    });
+    parts.extend(advice.conditions.warning());
+    paragraphs(&parts.join("\n"))
 }
 
-fn table(candidates: &[Candidate]) -> String {
-    let header = ["variant", "warm µs", "±", "pairs", "total µs", "above the best, µs", "±"];
+fn table(candidates: &[Candidate]) -> Listing {
+    let header = ["variant", "warm µs", "pairs", "total µs", "above the best, µs"];
     rows(&header, candidates, |candidate: &Candidate| {
-        let us = |seconds: f64| format!("{:.1}", 1e6 * seconds);
+        let us = |time: &Estimate| interval(&time.scaled(1e6));
         vec![
             candidate.name.clone(),
-            us(candidate.time.mean),
-            us(candidate.time.half_width),
+            us(&candidate.time),
             format!("{:.1}", candidate.pairs),
-            us(candidate.total),
-            us(candidate.beyond.mean),
-            us(candidate.beyond.half_width),
+            format!("{:.1}", 1e6 * candidate.total),
+            us(&candidate.beyond),
         ]
     })
-    .to_string()
 }
 
 /// The advice as a scene file's table, as flags, and as Rust.
@@ -135,15 +136,15 @@ fn to_paste(cull: &CullSettings, hulls: bool) -> String {
     let mut toml = format!("[cull]\nstrategy = \"{strategy}\"\npairs = \"{pairs}\"\n");
     let mut flags = format!("--strategy {strategy} --pairs {pairs}");
     let mut rust = format!(
-        "sdop::Culler::builder().strategy(sdop::Strategy::{strategy:?}).finder(sdop::Finder::{pairs:?})"
+        "    sdop::Culler::builder()\n        .strategy(sdop::Strategy::{strategy:?})\n        .finder(sdop::Finder::{pairs:?})\n"
     );
     let mut shape = String::new();
     if *strategy == Strategy::SDopSequential {
         toml += &format!("k = {k}\naxes = \"{axes}\"\noverlap = \"{overlap}\"\n");
-        flags += &format!(" --k {k} --axes {axes} --overlap {overlap}");
-        rust += &format!(".overlap(sdop::Overlap::{overlap:?})");
+        flags += &format!(" \\\n    --k {k} --axes {axes} --overlap {overlap}");
+        rust += &format!("        .overlap(sdop::Overlap::{overlap:?})\n");
         shape = format!(
-            "    sdop::ShapeSpec {{ directions: sdop::DirectionSet::{k:?}, axes: sdop::Axes::{axes:?}, ..Default::default() }}\n"
+            "    sdop::ShapeSpec {{\n        directions: sdop::DirectionSet::{k:?},\n        axes: sdop::Axes::{axes:?},\n        ..Default::default()\n    }}\n"
         );
     }
     let hulls = if hulls {
@@ -151,7 +152,7 @@ fn to_paste(cull: &CullSettings, hulls: bool) -> String {
     } else {
         ""
     };
-    format!("{toml}\nAs flags: {flags}\nIn Rust:\n{shape}    {rust}\n{hulls}")
+    format!("{toml}\nAs flags: {flags}\nIn Rust:\n{shape}{rust}{hulls}")
 }
 
 fn nanoseconds(text: &str) -> Result<f64, String> {
@@ -212,7 +213,7 @@ mod tests {
         ] {
             assert!(has(&text, code), "{text}\n{code}");
         }
-        assert!(text.contains("--k 26 --axes model --overlap one-sided"));
+        assert!(text.contains("--k 26 --axes model --overlap one-sided"), "{text}");
         assert!(text.contains("convex hulls"));
         let boxes = CullSettings { strategy: Strategy::Aabb, ..CullSettings::default() };
         let text = to_paste(&boxes, false);

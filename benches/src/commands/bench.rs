@@ -4,20 +4,23 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use miette::IntoDiagnostic as _;
-use sdop_bench::outsiders::timing::{ContestantTiming, compare, frames};
+use sdop_bench::outsiders::timing::{ContestantTiming, OwnPrices, compare, frames, strategy};
+use sdop_bench::report::digits::number;
 use sdop_bench::scene::SceneFile;
 use sdop_judge::process::Program;
 use sdop_judge::wire::Wire;
 use sdop_judge::{Claim, Outcome as CaseOutcome};
+use serde::Serialize;
 
-use super::output::{Format, emit, rows};
+use super::output::{Format, emit, paragraphs, rows};
 use super::{Outcome, one_of};
 
 /// Compare the time of a program with ours on a scene's frames
 ///
 /// Every frame is judged before its time counts. A program's time is the `ns` that it reports with
 /// each answer; the table marks it as self-reported. Our time is the wall time of the call. The two
-/// programs take turns.
+/// programs take turns. If the program also reports `nu`, the volumes that it updated, and `nv`,
+/// the pairs that it tested, a second table has T = Nu·Cu + F + Nv·Cv of both, at our prices.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example: sdop bench data/scenes/paper-500.toml --exec ./mine --wire text --claims sphere --frames 50"
@@ -61,8 +64,25 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         timeout: Duration::from_secs(args.timeout),
     };
     let table = compare(&args.exec, &program, &case, args.rounds).into_diagnostic()?;
-    emit(args.format, &table, |table| page(table, args))?;
+    let has_counts = table.last().is_some_and(|theirs| theirs.counts.is_some());
+    let prices = match strategy(args.claims).filter(|_| has_counts) {
+        Some(strategy) => OwnPrices::of(&scene, strategy, args.frames)?,
+        None => None,
+    };
+    let report = BenchReport { prices, contestants: table };
+    match args.format {
+        Format::Csv => emit(Format::Csv, &report.contestants, |_| String::new())?,
+        format => emit(format, &report, |report| page(report, args))?,
+    }
+    let table = report.contestants;
     Ok(outcome(&table))
+}
+
+/// What is printed.
+#[derive(Serialize)]
+struct BenchReport {
+    prices: Option<OwnPrices>,
+    contestants: Vec<ContestantTiming>,
 }
 
 /// A contestant that fails takes precedence over one that skips the scene.
@@ -81,7 +101,7 @@ fn outcome(table: &[ContestantTiming]) -> Outcome {
     skipped.map_or(Outcome::Passed, Outcome::Incomplete)
 }
 
-fn page(table: &[ContestantTiming], args: &Args) -> String {
+fn page(report: &BenchReport, args: &Args) -> String {
     let header = ["contestant", "judged", "pairs", "median ns per frame", "clock"];
     let line = |row: &ContestantTiming| {
         let judged = match &row.outcome {
@@ -93,11 +113,38 @@ fn page(table: &[ContestantTiming], args: &Args) -> String {
         let time = row.median_ns.map_or_else(|| "none".to_owned(), |ns| ns.to_string());
         vec![row.name.clone(), judged, row.reported.to_string(), time, row.clock.to_owned()]
     };
-    format!(
-        "claim {}, {} frames, {} turns\n{}",
-        args.claims,
-        args.frames,
-        args.rounds,
-        rows(&header, table, line)
-    )
+    let (claim, frames, rounds) = (args.claims, args.frames, args.rounds);
+    let table = rows(&header, &report.contestants, line);
+    let mut text = format!("claim {claim}, {frames} frames, {rounds} turns\n{table}");
+    if let Some(prices) = report.prices {
+        text += &format!("\n\n{}", terms(&report.contestants, prices));
+    }
+    text
+}
+
+/// T of both by the formula, from their own counts and our prices.
+fn terms(contestants: &[ContestantTiming], prices: OwnPrices) -> String {
+    let header =
+        ["contestant", "Nu", "Nv", "Nu·Cu, µs", "F, µs", "Nv·Cv, µs", "T, µs", "measured, µs"];
+    let OwnPrices { update, test, finding } = prices;
+    let line = |(place, row): &(usize, &ContestantTiming)| {
+        let us = |seconds: f64| number(1e6 * seconds);
+        let [nu, nv] = row.counts.unwrap_or([f64::NAN; 2]);
+        // How a program finds its pairs isn't known.
+        let own_finding = if *place == 0 { finding } else { 0.0 };
+        let sum = nu * update + own_finding + nv * test;
+        let measured = row.median_ns.map_or("–".to_owned(), |ns| us(1e-9 * ns as f64));
+        let found = if *place == 0 { us(finding) } else { "–".to_owned() };
+        let mut cells = vec![row.name.clone(), number(nu), number(nv), us(nu * update)];
+        cells.extend([found, us(nv * test), us(sum), measured]);
+        cells
+    };
+    let all: Vec<(usize, &ContestantTiming)> = contestants.iter().enumerate().collect();
+    let table = rows(&header, &all, line);
+    paragraphs(&format!(
+        "Counts per frame, and T = Nu·Cu + F + Nv·Cv at our prices: Cu = {} ns, Cv = {} ns\n{table}\nWhat a program \
+         measures beyond T, it pays for dearer updates and tests than ours, and for finding pairs.",
+        number(1e9 * update),
+        number(1e9 * test)
+    ))
 }

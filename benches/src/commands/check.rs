@@ -83,7 +83,8 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
 }
 
 fn recorded(args: &Args, pairs: Vec<Option<Vec<[u32; 2]>>>) -> miette::Result<Vec<Answer>> {
-    let answer = |pairs: Option<Vec<[u32; 2]>>| pairs.map(|pairs| Answer { pairs, ns: None });
+    let answer =
+        |pairs: Option<Vec<[u32; 2]>>| pairs.map(|pairs| Answer { pairs, ..Answer::default() });
     let answers: Option<Vec<Answer>> = pairs.into_iter().map(answer).collect();
     answers.ok_or_else(|| {
         miette!(

@@ -1,21 +1,21 @@
 //! `sdop cmp`: compares two records.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use miette::{IntoDiagnostic as _, WrapErr as _};
-use sdop_bench::report::{CodeVersion, MeasuredChange, RecordComparison, compare};
+use sdop_bench::report::{CodeVersion, CountDifference, MeasuredChange, RecordComparison, compare};
 use tempfile::TempDir;
 
 use super::Outcome;
-use super::output::{csv_text, json_with_reason, print, rows};
+use super::output::{csv_text, json_with_reason, paragraphs, print, rows};
 
 /// Compare two records: counts must be equal, times are ratios with intervals
 ///
-/// Compares the rows that both records have; one line counts the rows that only one of them has.
-/// Counts that differ are listed. Times are shown as second / first, the largest change first and
-/// the control last: "same" if the intervals overlap, "?" if a record has no intervals.
+/// First prints in which settings, machines and code the records differ. Rows with equal names are
+/// compared: counts must be equal, unless flags differ, and means are shown as second / first, the
+/// largest change first and the control last: "same" if the intervals overlap, "?" if a record has
+/// no intervals.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop cmp data/record/epyc-2core-avx512/reproduce data/record/xeon-2core-avx512/reproduce\n         \
@@ -31,7 +31,7 @@ pub struct Args {
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     fail_slower: Option<f64>,
     /// How many rows of times to list
-    #[arg(long, value_name = "N", default_value_t = 15)]
+    #[arg(long, value_name = "N", default_value_t = 5)]
     most: usize,
     /// Output format
     #[arg(long, value_enum, default_value_t)]
@@ -116,74 +116,77 @@ fn verdict(change: &MeasuredChange) -> &'static str {
 fn cells(change: &MeasuredChange) -> Vec<String> {
     let interval =
         change.interval.map_or_else(String::new, |[low, high]| format!("{low:.2} to {high:.2}"));
+    let column = match change.column.as_str() {
+        "value" => String::new(), // of a row that says what it is
+        column => format!(", {column}"),
+    };
     vec![
-        format!("{}: {}", change.file, change.row),
-        change.column.clone(),
+        format!("{}: {}{column}", change.file, change.row),
         format!("{:.3}", change.ratio),
         interval,
         verdict(change).to_owned(),
     ]
 }
 
+/// Items that are shown of a longer list.
+const MOST_LISTED: usize = 5;
+
+/// The first items as lines, and how many there are beyond them.
+fn listed(out: &mut String, all: impl ExactSizeIterator<Item = String>) {
+    let beyond = all.len().saturating_sub(MOST_LISTED);
+    all.take(MOST_LISTED).for_each(|line| *out += &format!("{line}\n"));
+    if beyond > 0 {
+        *out += &format!("and {beyond} more\n");
+    }
+}
+
+/// What differs in settings, what can be compared, and whether it agrees.
 fn head(comparison: &RecordComparison) -> String {
-    let [a, b] = &comparison.ids;
-    let mut out = format!(
-        "{a} and {b}: {} files equal to the bit{}",
-        comparison.equal.len(),
-        if comparison.equal.is_empty() { "" } else { ": " }
+    let RecordComparison { ids: [a, b], settings, equal, differences, changes, .. } = comparison;
+    let mut out = format!("{a} and {b}\n");
+    for setting in settings {
+        out += &format!("differ in {setting}\n");
+    }
+    if !equal.is_empty() {
+        out += &format!("{} files equal to the bit: {}\n", equal.len(), equal.join(", "));
+    }
+    listed(&mut out, comparison.warnings.iter().map(|warning| format!("WARNING {warning}")));
+    listed(
+        &mut out,
+        differences.iter().map(|difference| {
+            let column = difference.column.as_deref().unwrap_or("row");
+            let CountDifference { file, row, first, second, .. } = difference;
+            format!("DIFFERS {file}: {row}, {column}: {first} and {second}")
+        }),
     );
-    out.push_str(&comparison.equal.join(", "));
-    out.push('\n');
-    for warning in &comparison.warnings {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "WARNING {warning}");
-    }
-    for difference in &comparison.differences {
-        let column = difference.column.as_deref().unwrap_or("row");
-        let _ = writeln!(
-            out,
-            "DIFFERS {}: {}, {column}: {} and {}",
-            difference.file, difference.row, difference.first, difference.second
-        );
-    }
-    for note in comparison.notes.iter().take(MOST_NOTES) {
-        let _ = writeln!(out, "note: {note}");
-    }
-    if comparison.notes.len() > MOST_NOTES {
-        let _ = writeln!(out, "and {} notes more", comparison.notes.len() - MOST_NOTES);
+    listed(&mut out, comparison.notes.iter().map(|note| format!("note: {note}")));
+    let count = |same| changes.iter().filter(|change| change.same == same).count();
+    out + &format!(
+        "{} means compared: {} agree within their intervals, {} don't, {} have none\n",
+        changes.len(),
+        count(Some(true)),
+        count(Some(false)),
+        count(None)
+    )
+}
+
+const HEADER: [&str; 4] = ["measurement", "second / first", "interval", "verdict"];
+
+fn table(comparison: &RecordComparison, most: usize) -> String {
+    let listed = &comparison.changes[..most.min(comparison.changes.len())];
+    let mut out = paragraphs(&head(comparison));
+    if !listed.is_empty() {
+        out += &format!("\n{}", rows(&HEADER, listed, cells));
     }
     out
 }
 
-/// Notes that are shown.
-const MOST_NOTES: usize = 10;
-
-/// How many times are listed of how many.
-fn tail(comparison: &RecordComparison, most: usize) -> String {
-    let same = comparison.changes.iter().filter(|change| change.same == Some(true));
-    let (all, same) = (comparison.changes.len(), same.count());
-    let listed = most.min(all);
-    format!("{all} times compared, {same} the same within their intervals, {listed} listed")
-}
-
-const HEADER: [&str; 5] = ["measurement", "column", "second / first", "interval", "verdict"];
-
-fn table(comparison: &RecordComparison, most: usize) -> String {
-    let listed = &comparison.changes[..most.min(comparison.changes.len())];
-    let mut out = head(comparison);
-    if !listed.is_empty() {
-        out.push_str(&rows(&HEADER, listed, cells).to_string());
-        out.push('\n');
-    }
-    out + &tail(comparison, most)
-}
-
 fn markdown(comparison: &RecordComparison, most: usize) -> String {
-    let mut out = head(comparison) + "\n| " + &HEADER.join(" | ") + " |\n|---|---|--:|---|---|\n";
+    let mut out = head(comparison) + "\n| " + &HEADER.join(" | ") + " |\n|---|--:|---|---|\n";
     for change in comparison.changes.iter().take(most) {
         out.push_str("| ");
         out.push_str(&cells(change).join(" | "));
         out.push_str(" |\n");
     }
-    out + "\n" + &tail(comparison, most)
+    out
 }

@@ -1,26 +1,21 @@
 //! `sdop cost`: prints the formula's predicted time and the measured time per strategy.
 
-pub mod lines;
-
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use comfy_table::Table;
-use miette::{IntoDiagnostic, miette};
+use miette::{IntoDiagnostic as _, miette};
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::cost::design;
-use sdop_bench::cost::level::CacheLevel;
+use sdop_bench::cost::rows::of_report;
 use sdop_bench::cost::study::{CostPlan, CostReport, possible, study};
-use sdop_bench::cost::table::{CheckedPrediction, Cost, MOST_RIGHT_RESIDUAL, PriceRow};
-use sdop_bench::cost::terms::Terms;
+use sdop_bench::cost::table::{Cost, MOST_RIGHT_RESIDUAL};
+use sdop_bench::measure::row::Row;
 use sdop_bench::measure::turns::Regime;
-use sdop_bench::reproduce::Estimate;
 
-use super::files::write;
-use super::output::{Format, decimal, emit, progress, rows, table};
+use super::Outcome;
+use super::files::{svg, write};
+use super::output::{Column, Format, counted, emit, paragraphs, pivot, progress};
 use super::reproduce::draw_costs;
 use super::scene_args::{MachineArgs, SceneArgs};
-use super::{Outcome, prices};
 
 /// Frames per pass, unless the scene or a flag has fewer.
 const DEFAULT_FRAMES: u32 = 200;
@@ -35,8 +30,8 @@ const EFFORT: Effort = Effort { turns: 1, builds: 9 };
 /// scene's shapes alone, so that T is a true prediction; scenes named by --also have the same
 /// prices. The residual is measured / predicted - 1; if it exceeds 5 %, the row names the
 /// assumption that fails. Without --strategy, all strategies for which the scene has settings are
-/// measured. A scene with `rest` is also culled by worlds, which keep the pairs of sleeping bodies:
-/// F is then a price per queried, thawed and kept body.
+/// measured. A `World`, which keeps the pairs of sleeping bodies, isn't modelled; `advise` and
+/// `tradeoff` time it.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {
@@ -48,15 +43,18 @@ pub struct Args {
     /// Write each scene's result to SCENE.json in this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Passes to measure, at different times: with the scene's seed and those after it
+    /// Seeds to measure, from the scene's on, each in a pass of its own
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     seeds: u64,
     #[command(flatten)]
     machine: MachineArgs,
     /// Draw the terms and the measured times to this SVG file
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg)]
     plot: Option<PathBuf>,
-    /// Output format; CSV has one line per term
+    /// Print all tables: also cold frames, counts by volume, prices and construction
+    #[arg(long)]
+    all: bool,
+    /// Output format; CSV has one number per row
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -83,12 +81,13 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     match args.format {
         Format::Csv => {
-            let lines: Vec<_> = reports.iter().flat_map(lines::of_report).collect();
-            emit(Format::Csv, &lines, |_| String::new())?;
+            let rows: Vec<Row> = reports.iter().flat_map(of_report).collect();
+            emit(Format::Csv, &rows, |_| String::new())?;
         }
-        Format::Json if others.is_empty() => emit(Format::Json, first, text)?,
+        Format::Json if others.is_empty() => emit(Format::Json, first, |_| String::new())?,
         format => emit(format, &reports, |reports| {
-            reports.iter().map(text).collect::<Vec<_>>().join("\n\n")
+            let texts = reports.iter().map(|report| text(report, args.all));
+            texts.collect::<Vec<_>>().join("\n\n")
         })?,
     }
     Ok(Outcome::Passed)
@@ -127,79 +126,104 @@ fn of(report: &CostReport, regime: Regime) -> impl Iterator<Item = &Cost> {
     report.costs.iter().filter(move |cost| cost.regime == regime)
 }
 
-fn text(report: &CostReport) -> String {
-    let mut text = String::new();
-    // Writing to a String cannot fail.
-    let _ = write_text(&mut text, report);
-    text
-}
+/// T by its terms, in µs per frame.
+const FRAME: [Column<'_>; 6] = [
+    ("Nu·Cu", "Nu*Cu", 1e6),
+    ("F", "F", 1e6),
+    ("Nv·Cv", "Nv*Cv", 1e6),
+    ("sum", "all terms", 1e6),
+    ("measured", "measured", 1e6),
+    ("residual, %", "residual", 100.0),
+];
 
-fn write_text(out: &mut String, report: &CostReport) -> std::fmt::Result {
-    let CostReport { scene, bodies, frames, scene_frames, seeds, .. } = report;
-    writeln!(
-        out,
-        "{scene}: {bodies} bodies, {} passes of {frames} frames; {}, 1 thread",
-        seeds.len(),
-        report.machine.simd
-    )?;
-    if frames < scene_frames {
-        writeln!(
-            out,
-            "The scene has {scene_frames} frames: so many of them tell the time of one; --frames takes another number."
-        )?;
-    }
-    if let Some(warning) = report.conditions.warning() {
-        writeln!(out, "{warning}")?;
-    }
+/// The counts and terms of a volume.
+const VOLUME: [Column<'_>; 8] = [
+    ("Nu", "Nu", 1.0),
+    ("Nv", "Nv", 1.0),
+    ("hits", "hits", 1.0),
+    ("bodies with hits", "bodies with hits", 1.0),
+    ("further slabs", "further slabs", 1.0),
+    ("Nu·Cu, µs", "Nu*Cu", 1e6),
+    ("F, µs", "F", 1e6),
+    ("Nv·Cv, µs", "Nv*Cv", 1e6),
+];
+
+/// The prices of a volume.
+const PRICES: [Column<'_>; 10] = [
+    ("Co, ms", "price Co", 1e3),
+    ("Co, ns per body", "price Co per body", 1e9),
+    ("Cu, ns", "price Cu", 1e9),
+    ("F, ns per frame", "price F per frame", 1e9),
+    ("F, ns per body", "price F per body", 1e9),
+    ("F, ns per body with hits", "price F per body with hits", 1e9),
+    ("F, ns per listed pair", "price F per listed pair", 1e9),
+    ("Cv hit, ns", "price Cv hit", 1e9),
+    ("Cv miss, ns", "price Cv miss", 1e9),
+    ("Cv further slab, ns", "price Cv further slab", 1e9),
+];
+
+/// Construction, and T with it.
+const TOTAL: [Column<'_>; 6] = [
+    ("Co predicted", "Co predicted", 1e3),
+    ("Co measured", "Co measured", 1e3),
+    ("residual, %", "Co residual", 100.0),
+    ("T predicted", "T predicted", 1e3),
+    ("T measured", "T measured", 1e3),
+    ("residual, %", "T residual", 100.0),
+];
+
+fn text(report: &CostReport, is_whole: bool) -> String {
+    let CostReport { scene, bodies, frames, scene_frames, seeds, machine, .. } = report;
     let level = report.costs.first().and_then(|cost| cost.level);
-    let level =
-        level.map_or_else(String::new, |level: CacheLevel| format!(", working set in {level}"));
-    for &regime in Regime::ALL {
-        writeln!(
-            out,
-            "\n{} frames{level}, µs per frame\n{}",
-            title(regime),
-            strategy_rows(report, regime)
-        )?;
-        write_failures(out, report, regime)?;
+    let level = level.map_or_else(String::new, |level| format!(", working set in {level}"));
+    let mut parts = vec![format!(
+        "{scene}: {bodies} bodies{level}; {}, {frames} of {scene_frames} frames each; {}, 1 thread",
+        counted(seeds.len(), "seed"),
+        machine.simd
+    )];
+    parts.extend(report.conditions.warning());
+    let rows = of_report(report);
+    let (warm, cold) = (Regime::Warm, Regime::Cold);
+    let mut frames_of = |regime| {
+        let failures = of(report, regime).filter_map(failure);
+        let table = pivot(&rows, regime, false, &FRAME);
+        parts.push(format!("{} frames, µs\n{table}", title(regime)));
+        parts.extend(failures);
+    };
+    frames_of(warm);
+    if is_whole {
+        frames_of(cold);
+        for (title, regime, by_volume, columns) in [
+            ("Counts and terms per warm frame", warm, true, &VOLUME[..]),
+            ("Prices for warm frames", warm, true, &PRICES),
+            ("Prices for cold frames", cold, true, &PRICES),
+            ("With construction, warm: ms for all frames", warm, false, &TOTAL),
+        ] {
+            parts.push(format!("{title}\n{}", pivot(&rows, regime, by_volume, columns)));
+        }
+        parts.push(format!(
+            "A term is its count times its price; prices are from {} calibration scenes. Quote one with the machine, the \
+             volume, warm or cold, and the cache. Bodies with hits and further slabs follow from the counts, if hits are \
+             spread evenly.",
+            design::SCENES
+        ));
     }
-    writeln!(out, "\nCounts and terms of warm frames, by volume\n{}", volume_rows(report))?;
-    for &regime in Regime::ALL {
-        let of = |price: &&PriceRow| price.regime == regime;
-        let prices: Vec<_> = report.prices.iter().filter(of).collect();
-        writeln!(
-            out,
-            "\nPrices for {regime} frames{level}, from {} calibration scenes\n{}",
-            design::SCENES,
-            rows(&prices::COLUMNS, &prices, |price| prices::cells(price, |e| plus_minus(
-                e.mean,
-                e.half_width
-            )))
-        )?;
-    }
-    writeln!(out, "\nWith construction: ms for all {frames} frames, warm\n{}", total_rows(report))?;
-    writeln!(
-        out,
-        "A term is its count times its price. Quote a price with the machine, the volume, warm or cold, and the cache.\n\
-         F is pair finding, which the paper's equation lacks: \"paper\" is the sum without it.\n\
-         \"With hits\" and \"further slabs\" follow from the counts, if hits are spread evenly.\n\
-         ± is a 95 % interval over passes; of the residual it holds the calibration's uncertainty as well."
-    )
+    let rest = if is_whole { "" } else { " --all prints counts, prices and cold frames." };
+    parts.push(format!(
+        "F is pair finding, which the paper's equation lacks. ± is a 95 % interval over seeds, of the residual with the \
+         calibration's uncertainty.{rest}"
+    ));
+    paragraphs(&parts.join("\n\n"))
 }
 
-/// The predictions that are off, each with the assumption that fails.
-fn write_failures(out: &mut String, report: &CostReport, regime: Regime) -> std::fmt::Result {
-    for cost in of(report, regime) {
-        if let Some(assumption) = cost.fails {
-            writeln!(
-                out,
-                "{}: more than {:.0} % off. What fails: {assumption}.",
-                cost.variant,
-                100.0 * MOST_RIGHT_RESIDUAL
-            )?;
-        }
-    }
-    Ok(())
+/// What is wrong with a prediction that is off: the assumption that fails.
+fn failure(cost: &Cost) -> Option<String> {
+    let assumption = cost.fails?;
+    Some(format!(
+        "{}: more than {:.0} % off. What fails: {assumption}.",
+        cost.variant,
+        100.0 * MOST_RIGHT_RESIDUAL
+    ))
 }
 
 fn title(regime: Regime) -> &'static str {
@@ -207,114 +231,4 @@ fn title(regime: Regime) -> &'static str {
         Regime::Warm => "Warm",
         Regime::Cold => "Cold",
     }
-}
-
-fn strategy_rows(report: &CostReport, regime: Regime) -> Table {
-    let mut rows = table(&[
-        "strategy",
-        "Nu·Cu",
-        "F",
-        "Nv·Cv",
-        "sum",
-        "measured",
-        "±",
-        "quartiles",
-        "residual",
-        "±",
-        "paper",
-    ]);
-    for cost in of(report, regime) {
-        let us = |seconds: f64| hundredths(1e6 * seconds);
-        let CheckedPrediction { measured, residual, .. } = cost.frame;
-        let mut row = vec![cost.variant.clone()];
-        row.extend([
-            us(cost.sum(|t| t.update)),
-            us(cost.sum(|t| t.finding)),
-            us(cost.sum(|t| t.test)),
-            us(cost.frame.predicted.mean),
-            us(measured.mean),
-            us(measured.half_width),
-            format!("{} to {}", us(cost.quartiles.low), us(cost.quartiles.high)),
-        ]);
-        row.extend(percents(&residual));
-        row.push(us(cost.sum(Terms::in_paper)));
-        rows.add_row(row);
-    }
-    rows
-}
-
-fn total_rows(report: &CostReport) -> Table {
-    let mut rows = table(&[
-        "strategy",
-        "Co predicted",
-        "Co measured",
-        "residual",
-        "±",
-        "T predicted",
-        "T measured",
-        "residual",
-        "±",
-    ]);
-    for cost in of(report, Regime::Warm) {
-        let mut row = vec![cost.variant.clone()];
-        for compared in [&cost.construct, &cost.total] {
-            row.push(hundredths(1e3 * compared.predicted.mean));
-            row.push(hundredths(1e3 * compared.measured.mean));
-            row.extend(percents(&compared.residual));
-        }
-        rows.add_row(row);
-    }
-    rows
-}
-
-fn percents(residual: &Estimate) -> [String; 2] {
-    [format!("{:+.1} %", 100.0 * residual.mean), format!("{:.1}", 100.0 * residual.half_width)]
-}
-
-/// The counts of each volume of each strategy, and the resulting terms.
-fn volume_rows(report: &CostReport) -> Table {
-    let mut rows = table(&[
-        "strategy",
-        "volume",
-        "Nu",
-        "Nv",
-        "hits",
-        "bodies with hits",
-        "further slabs",
-        "queried",
-        "thawed",
-        "kept",
-        "Nu·Cu, µs",
-        "F, µs",
-        "Nv·Cv, µs",
-    ]);
-    for cost in of(report, Regime::Warm) {
-        for (terms, widths) in cost.terms.iter().zip(&cost.widths) {
-            let us = |mean: f64, width: f64| plus_minus(1e6 * mean, 1e6 * width);
-            rows.add_row([
-                cost.variant.clone(),
-                terms.volume.to_string(),
-                decimal(terms.updates),
-                decimal(terms.tests),
-                decimal(terms.hits),
-                decimal(terms.rows),
-                decimal(terms.further),
-                decimal(terms.queried),
-                decimal(terms.thawed),
-                decimal(terms.kept),
-                us(terms.update, widths.update),
-                us(terms.finding, widths.finding),
-                us(terms.test, widths.test),
-            ]);
-        }
-    }
-    rows
-}
-
-fn plus_minus(mean: f64, half_width: f64) -> String {
-    if half_width.is_finite() { format!("{mean:.2} ± {half_width:.2}") } else { hundredths(mean) }
-}
-
-fn hundredths(value: f64) -> String {
-    format!("{value:.2}")
 }

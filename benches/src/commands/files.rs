@@ -1,6 +1,6 @@
 //! Writing results, the size limit of input files, and the command that repeats a run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
 
@@ -41,6 +41,18 @@ pub fn read(path: &Path) -> miette::Result<String> {
     sdop::files::read_text(path, sdop::files::MAX_BYTES)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot read {}", path.display()))
+}
+
+/// The path of a figure, which is SVG.
+///
+/// # Errors
+/// Another kind of picture.
+pub fn svg(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension().is_some_and(|ending| ending == "svg") {
+        true => Ok(path),
+        false => Err(format!("figures are SVG: name it {}", path.with_extension("svg").display())),
+    }
 }
 
 /// The environment variable by which `sdop record` passes its own command line to the programs that

@@ -14,7 +14,6 @@ mod cmp;
 #[cfg(feature = "maintain")]
 mod completions;
 mod cost;
-mod curves;
 mod files;
 mod judge;
 #[cfg(feature = "maintain")]
@@ -22,8 +21,6 @@ mod man;
 mod merge;
 mod mesh;
 mod output;
-mod palette;
-mod prices;
 mod ranks;
 mod record;
 #[cfg(feature = "maintain")]
@@ -31,6 +28,7 @@ mod report;
 mod reproduce;
 mod run;
 mod scene_args;
+mod style;
 mod sweep;
 mod tradeoff;
 mod verify;
@@ -65,23 +63,23 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    Reproduce(reproduce::Args),
     Run(run::Args),
-    Cost(cost::Args),
-    Advise(advise::Args),
+    View(view::Args),
     Mesh(mesh::Args),
+    Advise(advise::Args),
+    Cost(cost::Args),
     Tradeoff(tradeoff::Args),
-    Verify(verify::Args),
     Judge(judge::Args),
-    Merge(merge::Args),
-    Cases(cases::Args),
+    Verify(verify::Args),
     Check(check::Args),
     Bench(bench::Args),
-    #[cfg(feature = "maintain")]
-    Board(board::Args),
-    View(view::Args),
+    Reproduce(reproduce::Args),
     Record(record::Args),
     Cmp(cmp::Args),
+    Cases(cases::Args),
+    Merge(merge::Args),
+    #[cfg(feature = "maintain")]
+    Board(board::Args),
     #[cfg(feature = "maintain")]
     Report(report::Args),
     #[cfg(feature = "maintain")]

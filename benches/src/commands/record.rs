@@ -1,22 +1,16 @@
 //! `sdop record`: runs an experiment and stores its measurements with their provenance.
 
+mod flow;
 mod identifier;
-mod shared;
-mod steps;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use miette::{IntoDiagnostic as _, WrapErr as _, miette};
-use sdop_bench::measure::machine::Machine;
-use sdop_bench::mpi;
-use sdop_bench::report::{
-    CodeVersion, Experiment, ExperimentStep, FILE, Load, Manifest, experiments,
-};
+use miette::{IntoDiagnostic as _, miette};
+use sdop_bench::report::{CodeVersion, Experiment, FILE, Manifest, experiments};
 
 use super::Outcome;
-use super::files::{COMMAND, SHARING, write};
+use super::files::write;
 use super::output::{print, rows};
 use super::scene_args::MachineArgs;
 use super::sweep::SweepArgs;
@@ -70,10 +64,10 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         let header = ["experiment", "measures", "takes", "needs"];
         let list = rows(&header, &all, |experiment| {
             vec![
-                experiment.name.to_owned(),
-                experiment.about.to_owned(),
+                experiment.name.clone(),
+                experiment.about.clone(),
                 duration(&args.out, experiment),
-                experiment.needs(),
+                experiment.needs.clone(),
             ]
         });
         print(&format!(
@@ -96,19 +90,9 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         return Ok(Outcome::Passed);
     }
     // All names and arguments are looked at before anything is measured.
-    let chosen = chosen(args)?;
-    for experiment in chosen {
-        let directory = place(args, experiment.name);
-        if mpi::rank() > 0 {
-            shared::serve(args, experiment, &directory)?;
-        } else if args.sweep.shard().is_some() {
-            shared::shard(args, experiment, &directory)?;
-        } else {
-            if args.merge {
-                shared::merge(args, experiment, &directory)?;
-            } else {
-                measure(args, experiment, &directory)?;
-            }
+    for experiment in chosen(args)? {
+        let directory = place(args, &experiment.name);
+        if flow::record(args, experiment, &directory)? {
             say(&directory)?;
         }
     }
@@ -122,7 +106,7 @@ fn chosen(args: &Args) -> miette::Result<Vec<&'static Experiment>> {
         chosen.extend(named(name)?);
     }
     for experiment in &chosen {
-        further(args, experiment)?;
+        flow::further(args, experiment)?;
         if let Some(file) = experiment.missing(Path::new(".")) {
             return Err(miette!(
                 help = "run it in the root of a checkout of the repository",
@@ -139,12 +123,12 @@ fn chosen(args: &Args) -> miette::Result<Vec<&'static Experiment>> {
 fn duration(records: &Path, experiment: &Experiment) -> String {
     let machines = std::fs::read_dir(records).into_iter().flatten().flatten();
     let measured = machines.filter_map(|machine| {
-        let manifest = Manifest::read(&machine.path().join(experiment.name)).ok()?;
+        let manifest = Manifest::read(&machine.path().join(&experiment.name)).ok()?;
         let seconds = manifest.seconds?;
         Some((manifest.date, machine.file_name(), seconds))
     });
     match measured.max_by(|a, b| a.0.cmp(&b.0)) {
-        None => experiment.roughly().to_owned(),
+        None => experiment.takes.clone(),
         Some((_, machine, seconds)) => {
             let time = humantime::format_duration(Duration::from_secs(seconds.ceil() as u64));
             format!("{time} ({})", machine.to_string_lossy())
@@ -164,7 +148,7 @@ fn named(name: &str) -> miette::Result<Vec<&'static Experiment>> {
     };
     let found: Vec<_> = experiments().filter(belongs).collect();
     if found.is_empty() {
-        let names: Vec<&str> = experiments().map(|experiment| experiment.name).collect();
+        let names: Vec<&str> = experiments().map(|experiment| &*experiment.name).collect();
         return Err(miette!(
             help = format!("one of: {}", names.join(", ")),
             "unknown experiment `{name}`"
@@ -183,137 +167,6 @@ fn say(directory: &Path) -> miette::Result<()> {
     ))
 }
 
-/// Measures into a temporary directory next to the record's, and renames it when the record is
-/// complete.
-fn measure(args: &Args, experiment: &Experiment, directory: &Path) -> miette::Result<()> {
-    let part = prepare(directory)?;
-    let (before, start) = (Load::now(), Instant::now());
-    execute(args, experiment, &part)?;
-    let seconds = start.elapsed().as_secs_f64();
-    let command = command_line(experiment, args);
-    let mut manifest =
-        Manifest::describe(&part, experiment.name, command, experiment.deterministic)?;
-    manifest.machine = Some(Machine::here(args.machine.tier()));
-    manifest.load = before.zip(Load::now()).map(|(before, after)| [before, after]);
-    manifest.seconds = Some(seconds);
-    finish(args, experiment, manifest, directory)
-}
-
-/// A directory whose name goes on beyond another's.
-fn beside(directory: &Path, ending: &str) -> PathBuf {
-    let mut beside = directory.as_os_str().to_owned();
-    beside.push(ending);
-    beside.into()
-}
-
-/// The directory for a record that isn't whole, without what an earlier run left there.
-fn prepare(directory: &Path) -> miette::Result<PathBuf> {
-    let part = beside(directory, ".part");
-    let prepare = || {
-        if part.exists() {
-            std::fs::remove_dir_all(&part)?;
-        }
-        std::fs::create_dir_all(&part)
-    };
-    prepare().into_diagnostic().wrap_err_with(|| format!("cannot write {}", part.display()))?;
-    Ok(part)
-}
-
-/// Writes the manifest of a record that is whole, and puts it in its place.
-fn finish(
-    args: &Args,
-    experiment: &Experiment,
-    mut manifest: Manifest,
-    directory: &Path,
-) -> miette::Result<()> {
-    manifest.note.clone_from(&args.note);
-    manifest.add_inputs(Path::new("."), experiment.scenes)?;
-    let part = beside(directory, ".part");
-    write(&part.join(FILE), manifest.text())?;
-    let replace = || {
-        if directory.exists() {
-            std::fs::remove_dir_all(directory)?;
-        }
-        std::fs::rename(&part, directory)
-    };
-    replace().into_diagnostic().wrap_err_with(|| format!("cannot write {}", directory.display()))
-}
-
-/// What a step's command gets beyond its own arguments: the SIMD level too, which the record names,
-/// so that it is what ran.
-fn further(args: &Args, experiment: &Experiment) -> miette::Result<Vec<String>> {
-    let behind = |flag: &&&str| args.more.iter().any(|argument| argument.starts_with(**flag));
-    if let Some(flag) = SHARING.iter().chain(&["--simd"]).find(behind) {
-        return Err(miette!(
-            help = "put it before the --: it decides what is recorded",
-            "{flag} after the --"
-        ));
-    }
-    let mut more = args.more.clone();
-    if let Some(tier) = args.machine.asked() {
-        let ours = |step: &ExperimentStep| {
-            matches!(step, ExperimentStep::Sdop(_) | ExperimentStep::SdopPrints(..))
-        };
-        if !experiment.steps.iter().all(ours) {
-            return Err(miette!(
-                help = "leave the level out: only experiments that sdop runs itself can be limited to one",
-                "{} chooses its SIMD levels",
-                experiment.name
-            ));
-        }
-        more.extend(["--simd".to_owned(), tier.name().to_owned()]);
-    }
-    Ok(more)
-}
-
-/// Runs the experiment's steps.
-fn execute(args: &Args, experiment: &Experiment, out: &Path) -> miette::Result<()> {
-    for (index, step) in experiment.steps.iter().enumerate() {
-        let (mut command, file) = complete(args, experiment, step, out)?;
-        let words = command.get_args().map(|word| word.to_string_lossy());
-        let line = words.collect::<Vec<_>>().join(" ");
-        let (name, of) = (experiment.name, experiment.steps.len());
-        eprintln!("{name} {}/{of}: {line}", index + 1);
-        let said = steps::output(experiment, step, &mut command)?;
-        if let Some(file) = file {
-            write(&out.join(file), said)?;
-        }
-    }
-    Ok(())
-}
-
-/// A step's command with the arguments that this run adds, and the file for its output.
-fn complete(
-    args: &Args,
-    experiment: &Experiment,
-    step: &ExperimentStep,
-    out: &Path,
-) -> miette::Result<(Command, Option<&'static str>)> {
-    let (mut command, file) = steps::command(step, out)?;
-    if shared::sweep(experiment) {
-        command.args(args.sweep.arguments());
-        if file.is_some() {
-            // Its shard.
-            command.arg("--out").arg(out);
-        }
-    }
-    command.args(further(args, experiment)?).env(COMMAND, command_line(experiment, args));
-    Ok((command, file))
-}
-
-/// The command as a reader types it.
-fn command_line(experiment: &Experiment, args: &Args) -> String {
-    let mut command = format!("sdop record {}", experiment.name);
-    if let Some(tier) = args.machine.asked() {
-        command.push_str(&format!(" --simd {tier}"));
-    }
-    if !args.more.is_empty() {
-        command.push_str(" -- ");
-        command.push_str(&args.more.join(" "));
-    }
-    command
-}
-
 /// Describes files that were measured before records had manifests.
 fn adopt(
     args: &Args,
@@ -321,7 +174,7 @@ fn adopt(
     known: Option<&Experiment>,
     directory: &Path,
 ) -> miette::Result<()> {
-    let deterministic = known.map_or(&[][..], |experiment| experiment.deterministic);
+    let deterministic = known.map_or(&[][..], |experiment| &experiment.deterministic);
     let mut manifest = Manifest::describe(directory, name, String::new(), deterministic)?;
     for file in manifest.files.keys().filter(|file| file.ends_with(".json")) {
         let text = std::fs::read_to_string(directory.join(file)).into_diagnostic()?;
@@ -334,7 +187,7 @@ fn adopt(
     }
     if manifest.command.is_empty() {
         manifest.command =
-            known.map_or_else(String::new, |experiment| command_line(experiment, args));
+            known.map_or_else(String::new, |experiment| flow::command_line(experiment, args));
     }
     manifest.caches.clear();
     let touched = CodeVersion::last_touching(Path::new("."), directory);

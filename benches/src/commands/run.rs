@@ -1,6 +1,5 @@
 //! `sdop run`: simulates and culls one scene, and prints counters and times.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use sdop::Tier;
@@ -9,6 +8,7 @@ use sdop::settings::{Budget, CullSettings, Interest, Strategy, TestedVolume};
 use sdop_bench::domain::{BorderSeconds, RankLine};
 use sdop_bench::effects::EffectReport;
 use sdop_bench::measure::conditions::Conditions;
+use sdop_bench::measure::counts::Volume;
 use sdop_bench::percentiles::Percentiles;
 use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::Scene;
@@ -23,7 +23,7 @@ use serde_json::{Map, Value};
 mod ranks;
 
 use super::Outcome;
-use super::output::{Format, emit, progress, table};
+use super::output::{Format, Listing, counted, emit, paragraphs, progress, table};
 use super::scene_args::{MachineArgs, SceneArgs};
 
 /// Simulate and cull one scene
@@ -43,6 +43,9 @@ pub struct Args {
     /// Add to the record which meshes meet, decided in exact arithmetic; slow for large scenes
     #[arg(long, requires = "record")]
     truth: bool,
+    /// Print all tables: also the effects, those that aren't simulated too
+    #[arg(long)]
+    all: bool,
     /// Output format
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -114,7 +117,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if sdop_bench::mpi::launched() > 1 {
         return Ok(ranks::run(args));
     }
-    let scene = args.scene.read()?.build_exact()?;
+    let scene = args.scene.read_culled()?.build_exact()?;
     let tier = args.machine.tier();
     let mut recorder = match &args.record {
         Some(path) => {
@@ -162,7 +165,7 @@ fn print(
 ) -> miette::Result<()> {
     let (tier, threads) = (args.machine.tier(), args.threads.into());
     let report = report(scene, (tier, threads), summary, conditions, shared);
-    emit(args.format, &report, |report| text(report, scene, summary))
+    emit(args.format, &report, |report| text(report, scene, summary, args.all))
 }
 
 fn report<'a>(
@@ -233,75 +236,59 @@ fn counters(strategy: Strategy, counters: &Counters) -> Map<String, Value> {
     map
 }
 
-fn text(report: &RunReport<'_>, scene: &Scene, summary: &Summary) -> String {
-    let mut text = String::new();
-    // Writing to a String cannot fail.
-    let _ = write_text(&mut text, report, scene, summary);
-    text
-}
-
-fn write_text(
-    out: &mut String,
-    report: &RunReport<'_>,
-    scene: &Scene,
-    summary: &Summary,
-) -> std::fmt::Result {
-    let pairs = if report.pairs == report.finder {
-        report.pairs.to_owned()
-    } else {
-        format!("{} ({})", report.pairs, report.finder)
-    };
-    let dynamic: usize = scene.share().moving.iter().map(|run| run.len()).sum();
-    writeln!(
-        out,
-        "{}, seed {}: {} bodies ({dynamic} dynamic), {} frames",
-        report.scene, report.seed, report.bodies, report.frames
-    )?;
-    writeln!(
-        out,
-        "{} over {}, k = {}, {} axes, {}, {} updates; {}, threads: {}",
-        report.strategy,
-        pairs,
-        report.k,
-        report.axes,
-        report.overlap,
-        report.updates,
-        report.simd,
-        report.threads
-    )?;
-    writeln!(out, "{}", stages(&report.seconds, report.frames))?;
+fn text(report: &RunReport<'_>, scene: &Scene, summary: &Summary, is_whole: bool) -> String {
+    let mut parts =
+        vec![heading(report, scene), stages(&report.seconds, report.frames).to_string()];
     let Percentiles { p50, p99, most } = report.frame_seconds;
     let [p50, p99, most] = [p50, p99, most].map(|seconds| 1e3 * seconds);
-    writeln!(out, "culling per frame, ms: p50 {p50:.3}, p99 {p99:.3}, most {most:.3}")?;
-    writeln!(out, "{}", volumes(scene.cull.strategy, &summary.counters))?;
+    parts.push(format!("culling per frame, ms: p50 {p50:.3}, p99 {p99:.3}, most {most:.3}"));
+    parts.push(volumes(scene.cull.strategy, &summary.counters).to_string());
     let Counters { reported, untested, .. } = summary.counters;
-    let frames = f64::from(report.frames);
-    writeln!(
-        out,
-        "reported {reported} pairs ({:.1} per frame), of which untested {untested}",
-        reported as f64 / frames
-    )?;
-    writeln!(out, "{}", effects(&summary.effects))?;
-    writeln!(out, "volumes sha256 {}", report.volumes_sha256)?;
+    let per_frame = reported as f64 / f64::from(report.frames);
+    let mut found = format!("reported {reported} pairs ({per_frame:.1} per frame)");
+    if scene.cull.budget.is_some() {
+        found += &format!(", of which untested {untested}");
+    }
+    parts.push(found);
+    if is_whole {
+        parts.push(effects(&summary.effects).to_string());
+    }
+    parts.push(format!("volumes sha256 {}", report.volumes_sha256));
     let hash = match report.pairs_digest {
         None => "– (nothing is culled)",
         Some(_) => report.pairs_sha256.unwrap_or("– (too many to sort in one place)"),
     };
-    writeln!(out, "pairs sha256   {hash}")?;
-    if let Some(digest) = report.pairs_digest {
-        writeln!(out, "pairs digest   {digest}")?;
+    parts.push(format!("pairs sha256   {hash}"));
+    parts.extend(report.pairs_digest.map(|digest| format!("pairs digest   {digest}")));
+    parts.extend(report.ranks.map(|ranks| rank_rows(ranks, report.frames).to_string()));
+    parts.extend(report.conditions.warning());
+    paragraphs(&parts.join("\n"))
+}
+
+/// The scene, and the settings that its strategy has.
+fn heading(report: &RunReport<'_>, scene: &Scene) -> String {
+    let RunReport { scene: name, seed, bodies, frames, strategy, pairs, finder, .. } = report;
+    let dynamic: usize = scene.share().moving.iter().map(|run| run.len()).sum();
+    let mut settings = format!("{strategy}, pairs from {pairs}");
+    if pairs != finder {
+        settings += &format!(" ({finder})");
     }
-    if let Some(ranks) = report.ranks {
-        writeln!(out, "{}", rank_rows(ranks, report.frames))?;
+    let tested: Vec<TestedVolume> = scene.cull.strategy.scheme().volumes().collect();
+    if tested.contains(&TestedVolume::OrDop) {
+        let RunReport { k, axes, overlap, updates, .. } = report;
+        settings += &format!(", k = {k}, {axes} axes, {overlap}, {updates} updates");
+    } else if tested.contains(&TestedVolume::KDop) {
+        settings += &format!(", k = {}", report.k);
     }
-    match report.conditions.warning() {
-        None => Ok(()),
-        Some(warning) => writeln!(out, "{warning}"),
-    }
+    let threads = counted(report.threads, "thread");
+    format!(
+        "{name}, seed {seed}: {bodies} bodies ({dynamic} dynamic), {frames} frames\n{settings}; {}, {threads}",
+        report.simd
+    )
 }
 
 /// Seconds per stage. Construction happens once, so it has no time per frame.
-fn stages(seconds: &RunTerms, frames: u32) -> comfy_table::Table {
+fn stages(seconds: &RunTerms, frames: u32) -> Listing {
     let RunTerms { culling: seconds, border } = seconds;
     let mut rows = table(&["stage", "seconds", "ns / frame"]);
     rows.add_row(["construct", &format!("{:.6}", seconds.construct), "once"]);
@@ -323,7 +310,7 @@ fn stages(seconds: &RunTerms, frames: u32) -> comfy_table::Table {
 }
 
 /// What each rank had to do.
-fn rank_rows(ranks: &[RankLine], frames: u32) -> comfy_table::Table {
+fn rank_rows(ranks: &[RankLine], frames: u32) -> Listing {
     let mut rows = table(&[
         "rank",
         "bodies",
@@ -361,26 +348,23 @@ fn rank_rows(ranks: &[RankLine], frames: u32) -> comfy_table::Table {
     rows
 }
 
-fn volumes(strategy: Strategy, counters: &Counters) -> comfy_table::Table {
+/// The counts of the volumes that the strategy tests.
+fn volumes(strategy: Strategy, counters: &Counters) -> Listing {
     let mut rows = table(&["volume", "updates", "tests", "hits", "hits / tests"]);
-    let used = [
-        Some(("sphere", &counters.sphere)),
-        Some(("or-dop", &counters.ordop)),
-        other_volume(strategy).map(|volume| (volume.name(), counters.of(volume))),
-    ];
-    for (name, volume) in used.into_iter().flatten() {
-        let share = match volume.tests {
+    for volume in strategy.scheme().volumes() {
+        let counted = counters.of(volume);
+        let share = match counted.tests {
             0 => "–".to_owned(),
-            tests => format!("{:.3} %", 100.0 * volume.hits as f64 / tests as f64),
+            tests => format!("{:.3} %", 100.0 * counted.hits as f64 / tests as f64),
         };
         let [updates, tests, hits] =
-            [volume.updates, volume.tests, volume.hits].map(|count| count.to_string());
-        rows.add_row([name.to_owned(), updates, tests, hits, share]);
+            [counted.updates, counted.tests, counted.hits].map(|count| count.to_string());
+        rows.add_row([Volume::from(volume).name().to_owned(), updates, tests, hits, share]);
     }
     rows
 }
 
-fn effects(reports: &[EffectReport]) -> comfy_table::Table {
+fn effects(reports: &[EffectReport]) -> Listing {
     let mut rows = table(&["effect", "steps", "seconds", "ns / body"]);
     for effect in reports {
         if effect.listed {

@@ -1,23 +1,29 @@
 //! The arguments of every command that runs a scene: the file, and flags that override its values.
 
+use std::ffi::OsStr;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use miette::miette;
 use sdop::Tier;
+use sdop::choice::nearest;
 use sdop::settings::{
-    Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, Updates,
+    Axes, Budget, CullSettings, Finder, Interest, Order, Overlap, Strategy, TestedVolume, Updates,
 };
 use sdop::volume::DirectionSet;
-use sdop_bench::scene::{Scene, SceneFile};
+use sdop_bench::scene::SceneFile;
+use sdop_bench::tradeoff::variant::named;
 use serde::Deserialize as _;
 use toml::de::ValueDeserializer;
 
 use super::files::ReadArgs;
 use super::one_of;
 
-/// A scene file and flags that override it.
+/// A scene file and flags that override it; `C` are the culling flags that the command takes.
 #[derive(clap::Args)]
-pub struct SceneArgs {
+pub struct SceneArgs<C: clap::Args = CullArgs> {
     /// The scene file (TOML), for example data/scenes/paper-500.toml
     scene: PathBuf,
     /// Frames to cull; the first is the scene as placed
@@ -29,35 +35,31 @@ pub struct SceneArgs {
     #[command(flatten)]
     files: ReadArgs,
     #[command(flatten)]
-    cull: CullArgs,
+    cull: C,
 }
 
 /// Flags that override the scene's `[cull]` table, key by key.
+pub trait Overrides {
+    /// Puts the flags that were given over the settings.
+    fn apply(&self, cull: &mut CullSettings);
+}
+
+/// All such flags.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Culling (each overrides the scene's [cull])")]
 pub struct CullArgs {
-    /// Which volumes are tested, and in which order
-    #[arg(long, value_parser = one_of::<Strategy>(Strategy::NAMES))]
-    strategy: Option<Strategy>,
-    /// Pair finder: how candidates for the first volume test are found
-    #[arg(long, value_name = "FINDER", value_parser = one_of::<Finder>(Finder::NAMES))]
-    pairs: Option<Finder>,
+    /// Which volumes are tested, and in which order: a strategy, or a variant as tables name it,
+    /// such as "s-dop 26, model" or or-14
+    #[arg(long, value_parser = StrategyParser)]
+    strategy: Option<String>,
+    #[command(flatten)]
+    of_variants: VariantArgs,
     /// Number of the or-DOP's half-spaces
     #[arg(long, value_parser = one_of::<DirectionSet>(DirectionSet::NAMES))]
     k: Option<DirectionSet>,
-    /// The or-DOP's axes
-    #[arg(long, value_parser = one_of::<Axes>(Axes::NAMES))]
-    axes: Option<Axes>,
-    /// Which separating axes the or-DOP test tries
-    #[arg(long, value_parser = one_of::<Overlap>(Overlap::NAMES))]
-    overlap: Option<Overlap>,
     /// When or-DOPs are updated
     #[arg(long, value_parser = one_of::<Updates>(Updates::NAMES))]
     updates: Option<Updates>,
-    /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1],
-    /// half_angle = 30 }'
-    #[arg(long, value_parser = interest)]
-    interest: Option<Interest>,
     /// Time-critical: or-DOP tests per frame
     #[arg(long, value_name = "TESTS", conflicts_with = "budget_us")]
     budget_tests: Option<u64>,
@@ -69,6 +71,33 @@ pub struct CullArgs {
     order: Option<Order>,
 }
 
+/// The flags that a comparison of all variants leaves open.
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+#[command(next_help_heading = "Culling (each overrides the scene's [cull])")]
+pub struct VariantArgs {
+    #[command(flatten)]
+    tried: CandidateArgs,
+    /// Which separating axes the or-DOP test tries
+    #[arg(long, value_parser = one_of::<Overlap>(Overlap::NAMES))]
+    overlap: Option<Overlap>,
+    /// Bodies of interest, as in 0,5,7, or a view cone, as in '{ body = 0, direction = [0, 0, 1],
+    /// half_angle = 30 }'
+    #[arg(long, value_parser = interest)]
+    interest: Option<Interest>,
+}
+
+/// The flags that limit what a recommendation tries.
+#[derive(Clone, Debug, Default, PartialEq, clap::Args)]
+#[command(next_help_heading = "Culling (each overrides the scene's [cull])")]
+pub struct CandidateArgs {
+    /// Pair finder: how candidates for the first volume test are found
+    #[arg(long, value_name = "FINDER", value_parser = one_of::<Finder>(Finder::NAMES))]
+    pub pairs: Option<Finder>,
+    /// The or-DOP's axes
+    #[arg(long, value_parser = one_of::<Axes>(Axes::NAMES))]
+    pub axes: Option<Axes>,
+}
+
 /// The machine's resources that the culler uses.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Machine")]
@@ -78,16 +107,7 @@ pub struct MachineArgs {
     simd: Option<Tier>,
 }
 
-impl SceneArgs {
-    /// Reads and builds the scene with the overrides in place, to be studied in f32.
-    ///
-    /// # Errors
-    /// A scene that can't be read or built, translations that f32 rounds too far, or settings that
-    /// it can't have.
-    pub fn build(&self) -> miette::Result<Scene> {
-        Ok(self.read()?.build()?)
-    }
-
+impl<C: clap::Args + Overrides> SceneArgs<C> {
     /// The most bytes that are read of a file, or of a line of a record.
     pub fn max_bytes(&self) -> u64 {
         self.files.max_bytes()
@@ -119,7 +139,38 @@ impl SceneArgs {
             file.spec.seed = seed;
         }
         self.cull.apply(&mut file.spec.cull);
+        if let Some(warning) = file.spec.idle_speed() {
+            eprintln!("warning: {}: {warning}", scene.display());
+        }
         Ok(file)
+    }
+
+    /// The requested number of frames, if any.
+    pub fn frames(&self) -> Option<u32> {
+        self.frames
+    }
+
+    /// The culling flags.
+    pub fn cull(&self) -> &C {
+        &self.cull
+    }
+}
+
+impl SceneArgs {
+    /// Reads the scene, whose strategy decides which of the flags have an effect.
+    ///
+    /// # Errors
+    /// As [`Self::read`]; a flag without effect.
+    pub fn read_culled(&self) -> miette::Result<SceneFile> {
+        let file = self.read()?;
+        match self.cull.without_effect(&file.spec.cull) {
+            None => Ok(file),
+            Some((flag, why)) => Err(miette!(
+                help = format!("leave {flag} out, or choose another --strategy"),
+                "{flag} has no effect: {} {why}",
+                file.spec.cull.strategy
+            )),
+        }
     }
 
     /// The requested seed, if any.
@@ -142,47 +193,109 @@ impl SceneArgs {
         (self.cull != CullArgs::default()).then_some("a culling flag")
     }
 
-    /// The requested number of frames, if any.
-    pub fn frames(&self) -> Option<u32> {
-        self.frames
-    }
-
-    /// The requested finder, if any.
-    pub fn finder(&self) -> Option<Finder> {
-        self.cull.pairs
-    }
-
-    /// The requested axes, if any.
-    pub fn axes(&self) -> Option<Axes> {
-        self.cull.axes
-    }
-
     /// The requested strategy, if any.
     pub fn strategy(&self) -> Option<Strategy> {
-        self.cull.strategy
+        self.cull.strategy.is_some().then(|| self.settings().strategy)
+    }
+}
+
+/// Puts a flag over a setting.
+fn over<T: Clone>(setting: &mut T, flag: Option<&T>) {
+    if let Some(value) = flag {
+        setting.clone_from(value);
+    }
+}
+
+impl Overrides for CandidateArgs {
+    fn apply(&self, cull: &mut CullSettings) {
+        over(&mut cull.pairs, self.pairs.as_ref());
+        over(&mut cull.axes, self.axes.as_ref());
+    }
+}
+
+impl Overrides for VariantArgs {
+    fn apply(&self, cull: &mut CullSettings) {
+        self.tried.apply(cull);
+        over(&mut cull.overlap, self.overlap.as_ref());
+        if self.interest.is_some() {
+            cull.interest.clone_from(&self.interest);
+        }
+    }
+}
+
+impl Overrides for CullArgs {
+    fn apply(&self, cull: &mut CullSettings) {
+        self.of_variants.apply(cull);
+        over(&mut cull.k, self.k.as_ref());
+        over(&mut cull.updates, self.updates.as_ref());
+        over(&mut cull.order, self.order.as_ref());
+        let tests = self.budget_tests.map(Budget::Tests);
+        cull.budget = tests.or(self.budget_us.map(Budget::Microseconds)).or(cull.budget);
+        if let Some(variant) = self.strategy.as_deref().and_then(|name| named(cull, name)) {
+            *cull = variant.settings;
+        }
     }
 }
 
 impl CullArgs {
-    /// Puts the flags that were given over the settings.
-    pub fn apply(&self, cull: &mut CullSettings) {
-        fn over<T: Clone>(setting: &mut T, flag: Option<&T>) {
-            if let Some(value) = flag {
-                setting.clone_from(value);
-            }
+    /// A flag that changes nothing, and why.
+    fn without_effect(&self, cull: &CullSettings) -> Option<(&'static str, &'static str)> {
+        let scheme = cull.strategy.scheme();
+        let has = |volume| scheme.volumes().any(|own| own == volume);
+        let (is_oriented, has_k) = (has(TestedVolume::OrDop), has(TestedVolume::KDop));
+        let is_critical = cull.strategy == Strategy::SDopTimeCritical;
+        let critical = "has no budget";
+        let given = [
+            ("--k", self.k.is_some() && !is_oriented && !has_k, "has no k"),
+            ("--axes", self.of_variants.tried.axes.is_some() && !is_oriented, "has no or-DOP"),
+            ("--overlap", self.of_variants.overlap.is_some() && !is_oriented, "has no or-DOP"),
+            ("--updates", self.updates.is_some() && !is_oriented, "has no or-DOP"),
+            ("--budget-tests", self.budget_tests.is_some() && !is_critical, critical),
+            ("--budget-us", self.budget_us.is_some() && !is_critical, critical),
+            ("--order", self.order.is_some() && !is_critical, critical),
+        ];
+        given.into_iter().find(|(_, is_idle, _)| *is_idle).map(|(flag, _, why)| (flag, why))
+    }
+}
+
+/// Parses the name of a strategy or of a variant; help lists the strategies.
+#[derive(Clone)]
+struct StrategyParser;
+
+impl TypedValueParser for StrategyParser {
+    type Value = String;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<String, clap::Error> {
+        let text = value.to_string_lossy();
+        if named(&CullSettings::default(), &text).is_some_and(|variant| !variant.hulls) {
+            return Ok(text.into_owned());
         }
-        over(&mut cull.strategy, self.strategy.as_ref());
-        over(&mut cull.pairs, self.pairs.as_ref());
-        over(&mut cull.k, self.k.as_ref());
-        over(&mut cull.axes, self.axes.as_ref());
-        over(&mut cull.overlap, self.overlap.as_ref());
-        over(&mut cull.updates, self.updates.as_ref());
-        over(&mut cull.order, self.order.as_ref());
-        if self.interest.is_some() {
-            cull.interest.clone_from(&self.interest);
-        }
-        let tests = self.budget_tests.map(Budget::Tests);
-        cull.budget = tests.or(self.budget_us.map(Budget::Microseconds)).or(cull.budget);
+        let mut error = clap::Error::new(ErrorKind::InvalidValue).with_cmd(command);
+        let mut add = |kind, value| drop(error.insert(kind, value));
+        let flag = argument.map_or_else(|| "--strategy".to_owned(), ToString::to_string);
+        add(ContextKind::InvalidArg, ContextValue::String(flag));
+        add(ContextKind::InvalidValue, ContextValue::String(text.clone().into_owned()));
+        let names = Strategy::NAMES.iter().map(|name| (*name).to_owned());
+        add(ContextKind::ValidValue, ContextValue::Strings(names.collect()));
+        let begins = Strategy::NAMES.iter().find(|name| name.starts_with(&*text));
+        let similar = begins.copied().or_else(|| nearest(&text, Strategy::NAMES.iter().copied()));
+        let tip = match similar {
+            Some(name) => format!("a similar value exists: '{name}'"),
+            None => "variants are named as in tables: \"s-dop 26\", \"s-dop 14, model, one-sided\", or-18; hulls are \
+                     tested by no strategy"
+                .to_owned(),
+        };
+        add(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        Err(error)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(Strategy::NAMES.iter().map(PossibleValue::new)))
     }
 }
 

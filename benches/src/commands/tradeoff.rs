@@ -1,6 +1,5 @@
 //! `sdop tradeoff`: measures what accuracy costs in time on one scene, and when it pays.
 
-mod csv;
 mod plot;
 mod tables;
 
@@ -19,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use super::Outcome;
 use super::files::{self, command, write};
 use super::output::{Format, csv_text, emit, emit_with_reason};
-use super::scene_args::{MachineArgs, SceneArgs};
+use super::scene_args::{MachineArgs, SceneArgs, VariantArgs};
 use super::sweep::{self, SweepArgs};
 
 /// Measure precision and time for every volume and strategy
@@ -35,7 +34,7 @@ use super::sweep::{self, SweepArgs};
     mpirun -n 8 sdop tradeoff data/scenes/paper-500.toml --seeds 64 --out target/tradeoff")]
 pub struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    scene: SceneArgs<VariantArgs>,
     #[command(flatten)]
     machine: MachineArgs,
     /// A shorter run with fewer seeds, frames and pairs: wider intervals in a quarter of the time
@@ -120,7 +119,7 @@ pub fn merged(merged: &MergedUnits, out: &Path, format: Format) -> miette::Resul
     let (line, unknown) = (merged.header.line.clone(), Conditions::default());
     let recorded = RecordedTradeoff::new(line, findings, &settings, unknown)?;
     write_all(out, out, &recorded)?;
-    print(&recorded, format, tables::brief)
+    print(&recorded, format, false)
 }
 
 impl RecordedTradeoff {
@@ -146,26 +145,20 @@ impl Args {
             let paper = self.paper.as_ref().unwrap_or(directory);
             write_all(directory, paper, recorded)?;
         }
-        let text = if self.all { tables::text } else { tables::brief };
-        print(recorded, self.format, text)
+        print(recorded, self.format, self.all)
     }
 }
 
-fn print(
-    recorded: &RecordedTradeoff,
-    format: Format,
-    text: fn(&Tradeoff) -> String,
-) -> miette::Result<Outcome> {
+fn print(recorded: &RecordedTradeoff, format: Format, is_whole: bool) -> miette::Result<Outcome> {
     let result = &recorded.result;
     let failures: Vec<&str> = result.failures().collect();
     let why = (!failures.is_empty())
         .then(|| format!("true pairs were missed by: {}", failures.join("; ")));
     match format {
-        // A line per number of a variant; the rest is in the other formats.
-        Format::Csv => emit(Format::Csv, &csv::lines(result), |_| String::new())?,
-        format => {
-            emit_with_reason(format, recorded, why.as_deref(), |recorded| text(&recorded.result))?
-        }
+        Format::Csv => emit(Format::Csv, &result.rows(), |_| String::new())?,
+        format => emit_with_reason(format, recorded, why.as_deref(), |recorded| {
+            tables::text(&recorded.result, is_whole)
+        })?,
     }
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
 }
@@ -175,7 +168,6 @@ fn plan(args: &Args) -> TradeoffPlan {
     TradeoffPlan {
         seeds: args.seeds.unwrap_or(quick(2, 5)),
         samples: quick(6, 20) as u32,
-        pairs: quick(8_000, 80_000) as u32,
         window: quick(30, 120) as u32,
         stride: 10,
         tier: args.machine.tier(),
@@ -205,8 +197,8 @@ fn read(path: &Path) -> miette::Result<RecordedTradeoff> {
 fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miette::Result<()> {
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
-    let csv = csv_text(serde_json::to_value(csv::lines(result)).into_diagnostic()?)?;
-    let seeds = csv_text(serde_json::to_value(csv::seeds(result)).into_diagnostic()?)?;
+    let csv = csv_text(serde_json::to_value(result.rows()).into_diagnostic()?)?;
+    let seeds = csv_text(serde_json::to_value(seeds(result)).into_diagnostic()?)?;
     write(&numbers.join("tradeoff.json"), &json)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
     write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;
@@ -214,6 +206,30 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miett
         write(&paper.join("figures").join(name), &svg)?;
     }
     Ok(())
+}
+
+/// What a variant reported with one seed.
+#[derive(Serialize)]
+struct SeedLine<'a> {
+    variant: &'a str,
+    seed: u64,
+    precision: f64,
+    pairs_sha256: &'a str,
+}
+
+/// What every variant reported, seed by seed: equal on every machine.
+fn seeds(result: &Tradeoff) -> Vec<SeedLine<'_>> {
+    let mut lines = Vec::new();
+    for row in &result.rows {
+        let found = result.seeds.iter().zip(&row.precisions).zip(&row.pairs_sha256);
+        lines.extend(found.map(|((&seed, &precision), pairs_sha256)| SeedLine {
+            variant: &row.name,
+            seed,
+            precision,
+            pairs_sha256,
+        }));
+    }
+    lines
 }
 
 /// The figures of a record's `tradeoff.json`, each with its file's name.

@@ -12,7 +12,6 @@ use super::explain::{self, Round, TurnObservation, VariantTurns};
 use super::hit_premium::HitPremium;
 use super::level::CacheLevel;
 use super::predict::Prices;
-use super::world_calibration::WorldCalibration;
 use crate::measure::counts::Counts;
 use crate::measure::culling::Culling;
 use crate::measure::turns::{FrameTimes, Regime, Turns, median, next_turn, turn_frames};
@@ -84,7 +83,6 @@ pub struct Calibration {
     prepared: Vec<PreparedVariant>,
     variants: usize,
     spheres: usize,
-    worlds: WorldCalibration,
     subjects: Vec<(Scene, Trajectory)>,
     turns: Turns,
     tier: Tier,
@@ -94,8 +92,7 @@ pub struct Calibration {
 
 impl Calibration {
     /// Prepares the calibration scenes. Spheres alone are always calibrated, and or-DOPs after
-    /// spheres whenever they refine: their prices are the same for every strategy. Worlds, which
-    /// come last among the variants, have calibration scenes and prices of their own.
+    /// spheres whenever they refine: their prices are the same for every strategy.
     ///
     /// # Errors
     /// The effects can't be simulated.
@@ -106,9 +103,7 @@ impl Calibration {
         effort: Effort,
     ) -> Result<Self, SimulationError> {
         let spheres = Variant::spheres(&scene.cull);
-        let (worlds, variants): (Vec<Variant>, Vec<Variant>) =
-            variants.iter().cloned().partition(|variant| variant.in_world);
-        let mut all = variants.clone();
+        let mut all = variants.to_vec();
         let shared =
             std::iter::once(spheres.clone()).chain(variants.iter().filter_map(explain::anchor));
         for variant in shared {
@@ -123,7 +118,6 @@ impl Calibration {
         Ok(Self {
             prepared: all.iter().map(|variant| PreparedVariant::new(variant, scene)).collect(),
             variants: variants.len(),
-            worlds: WorldCalibration::new(scene, &worlds, &all, tier)?,
             spheres: all.iter().position(|one| is_same(one, &spheres)).unwrap_or(0),
             subjects: design::scenes(scene).map(subject).collect::<Result<_, SimulationError>>()?,
             turns: Turns::from_stream(1),
@@ -153,12 +147,10 @@ impl Calibration {
             self.turn(number * SCENE_STEP % SCENES)?;
         }
         let round = Round { lanes: expected::lanes(self.tier), level: self.level };
-        let mut worlds = self.worlds.round(round)?;
         let prices = std::array::from_fn(|regime| {
             let all: Vec<_> = self.prepared.iter().map(|one| one.calibrated(regime)).collect();
             let mut prices = explain::prices(&all, round);
             prices.truncate(self.variants);
-            prices.append(&mut worlds[regime]);
             prices
         });
         Ok(CalibrationRound { prices, builds: self.effort.builds })

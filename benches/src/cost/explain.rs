@@ -35,7 +35,7 @@ pub(super) struct TurnObservation {
 }
 
 impl TurnObservation {
-    pub fn per_frame(&self, count: u64) -> f64 {
+    fn per_frame(&self, count: u64) -> f64 {
         count as f64 / self.frames as f64
     }
 }
@@ -100,7 +100,7 @@ pub(super) fn anchor(variant: &Variant) -> Option<Variant> {
 }
 
 /// Adds the price of building: each volume's own, and to the last one the culler's.
-pub(super) fn constructed(one: &VariantTurns<'_>, mut costs: Vec<VolumeCosts>) -> Vec<Price> {
+fn constructed(one: &VariantTurns<'_>, mut costs: Vec<VolumeCosts>) -> Vec<Price> {
     let row = |turn: &TurnObservation| Measurement::of([1.0, turn.bodies as f64], turn.construct);
     let [empty, body] = fit::prices(&one.turns.iter().map(row).collect::<Vec<_>>());
     for (costs, built) in costs.iter_mut().zip(&one.built) {
@@ -138,11 +138,7 @@ fn alone(volume: Volume, turns: &[TurnObservation], lanes: usize) -> VolumeCosts
 }
 
 /// Updates: seconds per frame and per update of `volume`, given the price of `other`'s.
-pub(super) fn update(
-    volume: Volume,
-    turns: &[TurnObservation],
-    (other, price): (Volume, f64),
-) -> [f64; 2] {
+fn update(volume: Volume, turns: &[TurnObservation], (other, price): (Volume, f64)) -> [f64; 2] {
     let row = |turn: &TurnObservation| Measurement {
         counts: [1.0, turn.per_frame(turn.counts.of(volume).updates)],
         seconds: turn.stages.update - price * turn.per_frame(turn.counts.of(other).updates),

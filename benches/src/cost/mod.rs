@@ -15,7 +15,6 @@
 //! | Cv of a miss | tests, which grow as the square of bodies | finding, or refining for or-DOPs |
 //! | Cv of a hit | the share of hits at one number of bodies; of a second test, lists of known shares | the same |
 //! | Cv of a further slab | the share of hits: how many vectors of world-aligned slabs continue | finding |
-//! | F per queried, thawed and kept body | shares of sleeping bodies, in worlds | finding |
 //! | F per listed pair | pairs that are listed for a second test, in addition to the costs of spheres alone | finding, refining |
 
 pub mod calibrate;
@@ -23,17 +22,15 @@ pub mod construct;
 pub mod design;
 mod expected;
 mod explain;
-mod explain_world;
 mod fit;
 mod hit_premium;
 pub mod level;
 pub mod pass;
 pub mod predict;
+pub mod rows;
 pub mod study;
 pub mod table;
 pub mod terms;
-mod world_calibration;
-mod world_design;
 
 use serde::{Deserialize, Serialize};
 
@@ -54,13 +51,6 @@ pub struct VolumeCosts {
     pub body: f64,
     /// F per body that has a hit among its candidates: listing a vector of hits, full or not.
     pub row: f64,
-    /// F per body of a world whose partners are searched for: setting it, moving it in the index,
-    /// the search, and changing its pairs.
-    pub query: f64,
-    /// F per such body that wasn't queried in the frame before, in addition.
-    pub thaw: f64,
-    /// F per body of a world that is kept as it is.
-    pub keep: f64,
     /// F per pair that passed the test before: listing it for this one, and with an object of
     /// interest selecting and merging it.
     pub handle: f64,
@@ -70,4 +60,47 @@ pub struct VolumeCosts {
     pub miss: f64,
     /// Cv of a pair for each further slab that its vector is tested on, world-aligned volumes only.
     pub further: f64,
+}
+
+/// A price: its key in files, what it is of, its unit, and where it is.
+pub struct PriceKind {
+    /// Its key in files.
+    pub key: &'static str,
+    /// Its name in tables.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Where it is.
+    pub of: fn(&mut VolumeCosts) -> &mut f64,
+}
+
+impl PriceKind {
+    /// Its value.
+    #[must_use]
+    pub fn value(&self, mut costs: VolumeCosts) -> f64 {
+        *(self.of)(&mut costs)
+    }
+}
+
+/// All prices, in the order of the formula.
+pub const PRICES: [PriceKind; 10] = [
+    price("construct", "Co", "s", |c| &mut c.construct),
+    price("construct_body", "Co per body", "s", |c| &mut c.construct_body),
+    price("update", "Cu", "s per update", |c| &mut c.update),
+    price("frame", "F per frame", "s per frame", |c| &mut c.frame),
+    price("body", "F per body", "s per body and frame", |c| &mut c.body),
+    price("row", "F per body with hits", "s per body", |c| &mut c.row),
+    price("handle", "F per listed pair", "s per pair", |c| &mut c.handle),
+    price("hit", "Cv hit", "s per test", |c| &mut c.hit),
+    price("miss", "Cv miss", "s per test", |c| &mut c.miss),
+    price("further", "Cv further slab", "s per slab", |c| &mut c.further),
+];
+
+const fn price(
+    key: &'static str,
+    name: &'static str,
+    unit: &'static str,
+    of: fn(&mut VolumeCosts) -> &mut f64,
+) -> PriceKind {
+    PriceKind { key, name, unit, of }
 }

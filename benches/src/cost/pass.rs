@@ -62,8 +62,8 @@ pub trait Frames {
 
 /// The frames of a scene's run, from the first on.
 ///
-/// Where bodies rest, a turn has as many frames as one of the calibration of worlds. A world reads
-/// only a part of its data per frame, so it takes several frames to bring that into the caches.
+/// Where bodies rest, turns are long: a world reads only a part of its data per frame, so it takes
+/// several frames to bring that into the caches.
 pub struct SceneFrames {
     trajectory: Trajectory,
     turn_frames: usize,

@@ -4,18 +4,16 @@
 //!
 //! is the paper's equation 1 with F, pair finding, as a separate stage. F has a price per frame,
 //! per body, per body that has hits, and per pair that is passed to a second test. (Such a pair is
-//! listed; with an object of interest it is also selected and merged.) In a world that keeps pairs,
-//! F has prices per body that is queried, thawed or kept instead. Cv has separate prices for hits
-//! and for misses, and for world-aligned volumes a third, for slabs after the first.
+//! listed; with an object of interest it is also selected and merged.) Cv has separate prices for
+//! hits and for misses, and for world-aligned volumes a third, for slabs after the first.
 
 use serde::{Deserialize, Serialize};
 
-use super::VolumeCosts;
 use super::expected;
 use super::level::CacheLevel;
 use super::terms::Terms;
+use super::{PRICES, VolumeCosts};
 use crate::measure::counts::{Counts, Volume};
-use sdop::counters::RestCounters;
 
 /// Prices of one volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,9 +58,7 @@ impl FirstTest {
             [counters.updates, counters.tests, counters.hits].map(|count| count as f64 / frames);
         // Oriented volumes have no first test: each candidate is listed. World-aligned ones list as
         // spheres do, which is lost among their slabs: times don't tell its price.
-        // A world tests listed pairs one by one.
         let (lists_hits, is_aligned) = match volume {
-            _ if counts.culler.rest != RestCounters::default() => (false, false),
             Volume::Sphere => (true, false),
             Volume::Aabb | Volume::KDop => (false, true),
             Volume::OrDop | Volume::Obb | Volume::Hull => (false, false),
@@ -101,9 +97,6 @@ impl Prices {
             // All pairs that pass the test before, whether they are then tested or not.
             let before = place.checked_sub(1).and_then(|before| self.volumes.get(before));
             let handed_on = before.map_or(0, |before| counts.of(before.volume).hits);
-            let rest = &counts.culler.rest;
-            let [queried, thawed, kept] = [rest.queried, rest.thawed, rest.kept]
-                .map(|count| if place == 0 { count as f64 / frames } else { 0.0 });
             let idle = match (place, price.volume) {
                 (1.., Volume::OrDop) => expected::idle(first.tests, self.lanes),
                 _ => 0.0,
@@ -115,17 +108,11 @@ impl Prices {
                 hits,
                 rows,
                 further,
-                queried,
-                thawed,
-                kept,
                 construct: costs.construct + bodies * costs.construct_body,
                 update: costs.update * counters.updates as f64 / frames,
                 finding: costs.frame
                     + bodies * costs.body
                     + rows * costs.row
-                    + queried * costs.query
-                    + thawed * costs.thaw
-                    + kept * costs.keep
                     + handed_on as f64 / frames * costs.handle
                     + idle * costs.miss,
                 test: hits * costs.hit + misses * costs.miss + further * costs.further,
@@ -140,24 +127,11 @@ impl Prices {
         let mut mean = rounds.clone().next()?.clone();
         let n = rounds.clone().count() as f64;
         for (at, price) in mean.volumes.iter_mut().enumerate() {
-            let over = |value: fn(&VolumeCosts) -> f64| {
-                rounds.clone().map(|round| value(&round.volumes[at].costs)).sum::<f64>() / n
-            };
-            price.costs = VolumeCosts {
-                construct: over(|c| c.construct),
-                update: over(|c| c.update),
-                construct_body: over(|c| c.construct_body),
-                frame: over(|c| c.frame),
-                body: over(|c| c.body),
-                row: over(|c| c.row),
-                query: over(|c| c.query),
-                thaw: over(|c| c.thaw),
-                keep: over(|c| c.keep),
-                handle: over(|c| c.handle),
-                hit: over(|c| c.hit),
-                miss: over(|c| c.miss),
-                further: over(|c| c.further),
-            };
+            for kind in PRICES {
+                let sum: f64 =
+                    rounds.clone().map(|round| kind.value(round.volumes[at].costs)).sum();
+                *(kind.of)(&mut price.costs) = sum / n;
+            }
         }
         Some(mean)
     }

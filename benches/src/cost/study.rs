@@ -167,12 +167,7 @@ pub fn study(
     };
     scenes.iter().try_for_each(|other| other.is_like(first))?;
     let of_strategy = |&strategy| Variant::strategy(&first.scene.cull, strategy);
-    let mut variants: Vec<Variant> = plan.strategies.iter().map(of_strategy).collect();
-    if first.scene.effects.rest.is_some() {
-        let worlds = variants.iter().filter(|variant| variant.may_be_in_world());
-        let worlds: Vec<Variant> = worlds.cloned().map(Variant::in_world).collect();
-        variants.extend(worlds);
-    }
+    let variants: Vec<Variant> = plan.strategies.iter().map(of_strategy).collect();
     let mut calibrations: BTreeMap<CacheLevel, Calibration> = BTreeMap::new();
     for studied in &scenes {
         if let Entry::Vacant(free) = calibrations.entry(studied.level()) {

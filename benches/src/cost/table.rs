@@ -1,13 +1,15 @@
 //! T of each variant in each regime: the formula's terms, at the mean prices of all rounds of
 //! calibration, and the measured times. A term is the printed count times the printed price.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
-use super::VolumeCosts;
+use super::PRICES;
 use super::level::CacheLevel;
 use super::pass::{Pass, VariantRun};
 use super::predict::Prices;
-use super::terms::{TermWidths, Terms};
+use super::terms::Terms;
 use crate::measure::counts::Volume;
 use crate::measure::culling::StageSeconds;
 use crate::measure::estimate::Estimate;
@@ -87,7 +89,7 @@ pub struct Cost {
     pub terms: Vec<Terms>,
     /// Half-widths of the terms' intervals over passes; empty in earlier records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub widths: Vec<TermWidths>,
+    pub widths: Vec<Terms>,
     /// Seconds per frame without construction: the terms' sum, and the median over frames.
     pub frame: CheckedPrediction,
     /// The frames' quartiles, means over passes.
@@ -156,8 +158,8 @@ pub fn cost(
     let of_volume =
         |from: &[Vec<Terms>], at: usize| from.iter().map(|terms| terms[at]).collect::<Vec<_>>();
     let widths = |at| {
-        let passes = TermWidths::of(&of_volume(&parts, at))?;
-        Some(passes.joined(&TermWidths::of(&of_volume(&by_round, at))?))
+        let passes = Terms::widths(&of_volume(&parts, at))?;
+        Some(passes.joined(Terms::widths(&of_volume(&by_round, at))?))
     };
     let terms: Vec<Terms> =
         (0..first.len()).filter_map(|at| Terms::mean(&of_volume(&parts, at))).collect();
@@ -233,42 +235,9 @@ pub struct PriceRow {
     /// The cache that holds the working set; `None` in earlier records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<CacheLevel>,
-    /// Co, seconds: all shapes' volumes and an empty culler.
-    pub construct: Estimate,
-    /// Co per body, seconds.
-    pub construct_body: Estimate,
-    /// Cu, seconds.
-    pub update: Estimate,
-    /// F per frame, seconds.
-    pub frame: Estimate,
-    /// F per body and frame, seconds.
-    pub body: Estimate,
-    /// F per body that has a hit, seconds; 0 in earlier records.
-    #[serde(default = "nothing")]
-    pub row: Estimate,
-    /// F per queried body of a world, seconds; 0 in earlier records, as the next two.
-    #[serde(default = "nothing")]
-    pub query: Estimate,
-    /// F per thawed body of a world, in addition, seconds.
-    #[serde(default = "nothing")]
-    pub thaw: Estimate,
-    /// F per kept body of a world, seconds.
-    #[serde(default = "nothing")]
-    pub keep: Estimate,
-    /// F per pair passed on, seconds.
-    pub handle: Estimate,
-    /// Cv of a hit, seconds.
-    pub hit: Estimate,
-    /// Cv of a miss, seconds.
-    pub miss: Estimate,
-    /// Cv of a further slab, seconds; 0 in earlier records.
-    #[serde(default = "nothing")]
-    pub further: Estimate,
-}
-
-/// The price 0, for what has none.
-fn nothing() -> Estimate {
-    Estimate { mean: 0.0, half_width: 0.0, seeds: 0 }
+    /// Each price by its [key](super::PriceKind::key), in seconds.
+    #[serde(flatten)]
+    pub prices: BTreeMap<String, Estimate>,
 }
 
 /// The prices from the rounds of some passes, in the order of variants and tests.
@@ -279,28 +248,17 @@ pub fn prices(priced: &[&Pass], regime: Regime) -> Vec<PriceRow> {
     for at in 0..variants {
         let rounds = rounds(priced, at, regime);
         for (number, price) in rounds[0].volumes.iter().enumerate() {
-            let over = |value: fn(&VolumeCosts) -> f64| {
-                let of = |round: &&Prices| value(&round.volumes[number].costs);
-                Estimate::in_order(&rounds.iter().map(of).collect::<Vec<_>>())
-            };
+            let prices = PRICES.map(|kind| {
+                let of = |round: &&Prices| kind.value(round.volumes[number].costs);
+                let rounds: Vec<f64> = rounds.iter().map(of).collect();
+                (kind.key.to_owned(), Estimate::in_order(&rounds))
+            });
             rows.push(PriceRow {
                 variant: rounds[0].variant.clone(),
                 volume: price.volume,
                 regime,
                 level: Some(rounds[0].level),
-                construct: over(|c| c.construct),
-                construct_body: over(|c| c.construct_body),
-                update: over(|c| c.update),
-                frame: over(|c| c.frame),
-                body: over(|c| c.body),
-                row: over(|c| c.row),
-                query: over(|c| c.query),
-                thaw: over(|c| c.thaw),
-                keep: over(|c| c.keep),
-                handle: over(|c| c.handle),
-                hit: over(|c| c.hit),
-                miss: over(|c| c.miss),
-                further: over(|c| c.further),
+                prices: prices.into(),
             });
         }
     }

@@ -5,112 +5,57 @@ use serde::{Deserialize, Serialize};
 use crate::measure::counts::Volume;
 use crate::measure::estimate::{Estimate, or_infinite};
 
-/// The terms of the formula for one volume: seconds per frame, except `construct`, which is paid
-/// once.
+/// The terms of the formula for one volume, or the half-widths of their intervals: seconds per
+/// frame, except `construct`, which is paid once.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Terms {
     /// The volume.
     #[serde(rename = "name")]
     pub volume: Volume,
     /// Nu per frame.
+    #[serde(deserialize_with = "or_infinite")]
     pub updates: f64,
     /// Nv per frame.
+    #[serde(deserialize_with = "or_infinite")]
     pub tests: f64,
     /// Tests that hit, per frame.
+    #[serde(deserialize_with = "or_infinite")]
     pub hits: f64,
     /// Bodies that have a hit, per frame, as expected from the counts.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_infinite")]
     pub rows: f64,
     /// Slabs after the first on which tests are compared, per frame, as expected from the counts.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_infinite")]
     pub further: f64,
-    /// Bodies that a world queries, per frame; these terms are those of its first volume.
-    #[serde(default)]
-    pub queried: f64,
-    /// Those among them that it didn't query in the frame before.
-    #[serde(default)]
-    pub thawed: f64,
-    /// Bodies that it keeps.
-    #[serde(default)]
-    pub kept: f64,
     /// Co: its part of the construction, in seconds, once.
+    #[serde(deserialize_with = "or_infinite")]
     pub construct: f64,
     /// Nu·Cu.
+    #[serde(deserialize_with = "or_infinite")]
     pub update: f64,
     /// F: pair finding.
+    #[serde(deserialize_with = "or_infinite")]
     pub finding: f64,
     /// Nv·Cv.
-    pub test: f64,
-}
-
-/// Half-widths of the intervals of one volume's [`Terms`] over passes, in the same units; infinite
-/// for one pass.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TermWidths {
-    /// The volume.
-    #[serde(rename = "name")]
-    pub volume: Volume,
-    /// Half-width of Nu per frame.
-    #[serde(deserialize_with = "or_infinite")]
-    pub updates: f64,
-    /// Half-width of Nv per frame.
-    #[serde(deserialize_with = "or_infinite")]
-    pub tests: f64,
-    /// Half-width of the hits per frame.
-    #[serde(deserialize_with = "or_infinite")]
-    pub hits: f64,
-    /// Half-width of Co.
-    #[serde(deserialize_with = "or_infinite")]
-    pub construct: f64,
-    /// Half-width of Nu·Cu.
-    #[serde(deserialize_with = "or_infinite")]
-    pub update: f64,
-    /// Half-width of F.
-    #[serde(deserialize_with = "or_infinite")]
-    pub finding: f64,
-    /// Half-width of Nv·Cv.
     #[serde(deserialize_with = "or_infinite")]
     pub test: f64,
 }
 
-impl TermWidths {
-    /// The half-widths of one volume's terms, given pass by pass in the order of time. `None`
-    /// without passes.
-    #[must_use]
-    pub fn of(passes: &[Terms]) -> Option<Self> {
-        let volume = passes.first()?.volume;
-        let over = |term: fn(&Terms) -> f64| {
-            let values: Vec<f64> = passes.iter().map(term).collect();
-            Estimate::in_order(&values).half_width
-        };
-        Some(Self {
-            volume,
-            updates: over(|t| t.updates),
-            tests: over(|t| t.tests),
-            hits: over(|t| t.hits),
-            construct: over(|t| t.construct),
-            update: over(|t| t.update),
-            finding: over(|t| t.finding),
-            test: over(|t| t.test),
-        })
-    }
+/// One number of some terms.
+type Number = fn(&mut Terms) -> &mut f64;
 
-    /// Adds the half-widths of another, independent cause.
-    #[must_use]
-    pub fn joined(&self, other: &Self) -> Self {
-        let both = |width: fn(&Self) -> f64| width(self).hypot(width(other));
-        Self {
-            volume: self.volume,
-            updates: both(|w| w.updates),
-            tests: both(|w| w.tests),
-            hits: both(|w| w.hits),
-            construct: both(|w| w.construct),
-            update: both(|w| w.update),
-            finding: both(|w| w.finding),
-            test: both(|w| w.test),
-        }
-    }
-}
+/// All of them.
+const NUMBERS: [Number; 9] = [
+    |t| &mut t.updates,
+    |t| &mut t.tests,
+    |t| &mut t.hits,
+    |t| &mut t.rows,
+    |t| &mut t.further,
+    |t| &mut t.construct,
+    |t| &mut t.update,
+    |t| &mut t.finding,
+    |t| &mut t.test,
+];
 
 impl Terms {
     /// The part that recurs each frame: all but the construction.
@@ -128,24 +73,33 @@ impl Terms {
     /// The mean of one volume's terms over passes. `None` without passes.
     #[must_use]
     pub fn mean(passes: &[Self]) -> Option<Self> {
-        let volume = passes.first()?.volume;
-        let over =
-            |term: fn(&Self) -> f64| passes.iter().map(term).sum::<f64>() / passes.len() as f64;
-        Some(Self {
-            volume,
-            updates: over(|t| t.updates),
-            tests: over(|t| t.tests),
-            hits: over(|t| t.hits),
-            rows: over(|t| t.rows),
-            further: over(|t| t.further),
-            queried: over(|t| t.queried),
-            thawed: over(|t| t.thawed),
-            kept: over(|t| t.kept),
-            construct: over(|t| t.construct),
-            update: over(|t| t.update),
-            finding: over(|t| t.finding),
-            test: over(|t| t.test),
-        })
+        Self::over(passes, |values| values.iter().sum::<f64>() / values.len() as f64)
+    }
+
+    /// The half-widths of one volume's terms, given pass by pass in the order of time; infinite for
+    /// one pass. `None` without passes.
+    #[must_use]
+    pub fn widths(passes: &[Self]) -> Option<Self> {
+        Self::over(passes, |values| Estimate::in_order(values).half_width)
+    }
+
+    fn over(passes: &[Self], statistic: fn(&[f64]) -> f64) -> Option<Self> {
+        let mut result = *passes.first()?;
+        for number in NUMBERS {
+            let values: Vec<f64> = passes.iter().map(|pass| *number(&mut { *pass })).collect();
+            *number(&mut result) = statistic(&values);
+        }
+        Some(result)
+    }
+
+    /// These half-widths with those of another, independent cause.
+    #[must_use]
+    pub fn joined(mut self, mut other: Self) -> Self {
+        for number in NUMBERS {
+            let own = number(&mut self);
+            *own = own.hypot(*number(&mut other));
+        }
+        self
     }
 }
 
@@ -163,9 +117,6 @@ mod tests {
             hits: 1.0,
             rows: 0.0,
             further: 0.0,
-            queried: 0.0,
-            thawed: 0.0,
-            kept: 0.0,
             construct: 9.0,
             update,
             finding: 0.0,
@@ -173,13 +124,13 @@ mod tests {
         };
         // Student's quantile for one degree of freedom is 12.706; the standard error of 1 and 3 is
         // 1.
-        let widths = TermWidths::of(&[pass(1.0), pass(3.0)]).map(|w| [w.update, w.test]);
+        let widths = Terms::widths(&[pass(1.0), pass(3.0)]).map(|w| [w.update, w.test]);
         let [update, test] = widths.unwrap_or_default();
         assert!((update - 12.706).abs() < 1e-3 && test == 0.0, "{widths:?}");
-        assert!(TermWidths::of(&[]).is_none());
+        assert!(Terms::widths(&[]).is_none());
         // JSON has no infinity: one pass reads back.
-        let one = TermWidths::of(&[pass(1.0)]);
+        let one = Terms::widths(&[pass(1.0)]);
         let text = serde_json::to_string(&one).unwrap_or_default();
-        assert_eq!(serde_json::from_str::<Option<TermWidths>>(&text).ok(), Some(one));
+        assert_eq!(serde_json::from_str::<Option<Terms>>(&text).ok(), Some(one));
     }
 }

@@ -5,6 +5,7 @@ pub mod counts;
 pub mod culling;
 pub mod estimate;
 pub mod machine;
+pub mod row;
 mod scene_world;
 pub mod turns;
 pub mod variant;

@@ -3,16 +3,25 @@
 //!
 //! Our culler is timed from outside, around its call. A program's time is what it reports as `ns`
 //! (*self-reported*), because a time measured from outside would include its pipes and its parser.
+//! If it also reports `nu` and `nv`, its counts get terms of the formula by
+//! [our prices](OwnPrices).
 
 use std::time::Instant;
 
 use serde::Serialize;
 
+use crate::cost::calibrate::{Calibration, Effort};
+use crate::cost::pass::{SceneFrames, pass};
+use crate::cost::table;
 use crate::effects::EffectError;
+use crate::measure::turns::Regime;
+use crate::measure::variant::Variant;
 use crate::scene::Scene;
+use crate::simulate::SimulationError;
 use sdop::bodies::contract::ContractError;
 use sdop::culler::{CullError, Culler};
 use sdop::settings::Strategy;
+use sdop::simd::Tier;
 use sdop_judge::answer::{Answer, StopReason};
 use sdop_judge::case::{Case, Frame};
 use sdop_judge::claim::Claim;
@@ -52,6 +61,45 @@ pub struct ContestantTiming {
     /// Median over all frames and rounds but the first frame of each, in nanoseconds; none for
     /// answers without a time, and unless all of them passed.
     pub median_ns: Option<u64>,
+    /// Nu and Nv, means per frame; none if an answer has no counts.
+    pub counts: Option<[f64; 2]>,
+}
+
+/// What one update, one test and pair finding cost us in frames of a scene, in seconds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct OwnPrices {
+    /// Cu, the mean of our volumes.
+    pub update: f64,
+    /// Cv, the mean of our tests, hits and misses.
+    pub test: f64,
+    /// F per frame.
+    pub finding: f64,
+}
+
+impl OwnPrices {
+    /// The prices of a strategy, calibrated for a scene and weighed as in its first frames.
+    ///
+    /// # Errors
+    /// Settings that the scene can't have; a body that leaves the contract.
+    pub fn of(
+        scene: &Scene,
+        strategy: Strategy,
+        frames: u32,
+    ) -> Result<Option<Self>, SimulationError> {
+        let effort = Effort { turns: 1, builds: 1 };
+        let (tier, variants) = (Tier::detect(), [Variant::strategy(&scene.cull, strategy)]);
+        let round = Calibration::new(scene, &variants, tier, effort)?.round()?;
+        let mut run = SceneFrames::new(scene, frames)?;
+        let pass = pass(scene, &variants, tier, &mut run, Some(round), &mut ())?;
+        let passes = (&[&pass][..], &[&pass][..]);
+        let of = (scene.name.as_str(), scene.bodies.len());
+        let cost = table::cost(of, (0, &variants[0]), passes, Regime::Warm);
+        Ok(cost.map(|cost| Self {
+            update: cost.sum(|t| t.update) / cost.sum(|t| t.updates),
+            test: cost.sum(|t| t.test) / cost.sum(|t| t.tests),
+            finding: cost.sum(|t| t.finding),
+        }))
+    }
 }
 
 /// The frames of a scene as a case of a claim.
@@ -96,12 +144,19 @@ pub(crate) fn ours(strategy: Strategy, case: &Case) -> Result<Vec<Answer>, CullE
         return Ok(Vec::new());
     };
     let mut culler = Culler::builder().strategy(strategy).build(&case.shapes, &first.bodies)?;
-    let mut answers = Vec::new();
+    let counts = |culler: &Culler| {
+        let volumes = || strategy.scheme().volumes().map(|volume| *culler.counters().of(volume));
+        [volumes().map(|v| v.updates).sum::<u64>(), volumes().map(|v| v.tests).sum::<u64>()]
+    };
+    let (mut answers, mut before) = (Vec::new(), [0, 0]);
     for frame in &case.frames {
         let start = Instant::now();
         culler.cull(&frame.bodies)?;
         let ns = start.elapsed().as_nanos() as u64;
-        answers.push(Answer { pairs: culler.pairs().sorted(), ns: Some(ns) });
+        let now = counts(&culler);
+        let [nu, nv] = [0, 1].map(|at| Some(now[at] - before[at]));
+        answers.push(Answer { pairs: culler.pairs().sorted(), ns: Some(ns), nu, nv });
+        before = now;
     }
     Ok(answers)
 }
@@ -137,12 +192,13 @@ struct TimedContestant {
     clock: &'static str,
     outcome: Outcome,
     reported: u64,
+    counts: Option<[f64; 2]>,
     times: Vec<u64>,
 }
 
 impl TimedContestant {
     fn new(name: String, clock: &'static str) -> Self {
-        Self { name, clock, outcome: Outcome::Pass, reported: 0, times: Vec::new() }
+        Self { name, clock, outcome: Outcome::Pass, reported: 0, counts: None, times: Vec::new() }
     }
 
     fn add(
@@ -166,6 +222,10 @@ impl TimedContestant {
             self.outcome = judge_answers(case, &answers)?.outcome;
         }
         self.reported = answers.iter().map(|answer| answer.pairs.len() as u64).sum();
+        let sum =
+            |count: fn(&Answer) -> Option<u64>| answers.iter().map(count).sum::<Option<u64>>();
+        let per_frame = |sum: u64| sum as f64 / answers.len().max(1) as f64;
+        self.counts = sum(|a| a.nu).zip(sum(|a| a.nv)).map(|(nu, nv)| [nu, nv].map(per_frame));
         // The first frame builds what later ones keep.
         self.times.extend(answers.iter().skip(1).filter_map(|answer| answer.ns));
         Ok(())
@@ -179,6 +239,7 @@ impl TimedContestant {
             name: self.name,
             outcome: self.outcome,
             reported: self.reported,
+            counts: self.counts,
             clock: self.clock,
         }
     }

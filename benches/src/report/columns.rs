@@ -25,8 +25,8 @@ const NAMING_NUMBERS: [&str; 17] = [
     "elsewhere",
 ];
 
-/// Text that differs between machines and versions without naming another row.
-const IGNORED_TEXT: [&str; 4] = ["version", "rustc", "cpu", "os"];
+/// What differs between machines, versions and numbers of seeds without naming another row.
+const IGNORED_TEXT: [&str; 5] = ["version", "rustc", "cpu", "os", "n"];
 
 /// Columns that follow from others, or are better when larger; they are not compared as times.
 const DERIVED: [&str; 9] = [

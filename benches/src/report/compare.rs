@@ -7,10 +7,12 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::columns::{ColumnKind, interval, kinds};
-use super::manifest::{Manifest, ManifestError};
+use super::manifest::{Manifest, ManifestError, sha256};
+use super::provenance::CodeVersion;
 use super::table::{Table, TableError};
 use crate::measure::conditions::Conditions;
 use crate::measure::estimate::Estimate;
+use crate::measure::machine::Machine;
 use sdop::settings::Strategy;
 
 /// A count, or a whole file, that two records don't share.
@@ -54,6 +56,9 @@ pub struct MeasuredChange {
 pub struct RecordComparison {
     /// Identifiers of both.
     pub ids: [String; 2],
+    /// Settings, machines and code in which they differ. Where settings do, only rows with equal
+    /// names have equal counts, and means are compared by their intervals.
+    pub settings: Vec<String>,
     /// Files that are equal to the bit.
     pub equal: Vec<String>,
     /// What must be equal and isn't.
@@ -103,6 +108,7 @@ pub fn compare(first: &Path, second: &Path) -> Result<RecordComparison, CompareE
     }
     let mut comparison = RecordComparison {
         ids: [a.id().to_owned(), b.id().to_owned()],
+        settings: settings(a, b),
         equal: Vec::new(),
         differences: Vec::new(),
         changes: Vec::new(),
@@ -115,10 +121,10 @@ pub fn compare(first: &Path, second: &Path) -> Result<RecordComparison, CompareE
             Some(other) if other == digest => comparison.equal.push(name.clone()),
             Some(_) if name.ends_with(".csv") && paths.iter().all(|path| path.is_file()) => {
                 let [ours, theirs] = paths.map(|path| Table::read(&path));
-                let strict = a.deterministic.contains(name);
+                let strict = a.deterministic.contains(name) && flags(a) == flags(b);
                 comparison.tables(name, &ours?, &theirs?, strict);
             }
-            Some(_) if a.deterministic.contains(name) => {
+            Some(_) if a.deterministic.contains(name) && flags(a) == flags(b) => {
                 comparison.differ(name, "", None, digest, &b.files[name]);
             }
             Some(_) if name.ends_with(".csv") => {
@@ -133,6 +139,49 @@ pub fn compare(first: &Path, second: &Path) -> Result<RecordComparison, CompareE
     }
     comparison.rank();
     Ok(comparison)
+}
+
+/// The flags that decide what was measured: those of a record's command but where it wrote to.
+fn flags(manifest: &Manifest) -> Vec<&str> {
+    const OUTPUT: [&str; 3] = ["--out", "--paper", "--name"];
+    let given = manifest.command.rsplit_once(" -- ").map_or("", |(_, given)| given);
+    let mut words = given.split(' ').skip_while(|word| !word.starts_with("--"));
+    let mut flags = Vec::new();
+    while let Some(word) = words.next() {
+        if OUTPUT.contains(&word) {
+            words.next();
+        } else {
+            flags.push(word);
+        }
+    }
+    flags
+}
+
+/// In what two records differ apart from their numbers.
+fn settings(a: &Manifest, b: &Manifest) -> Vec<String> {
+    let or_none = |text: String| if text.is_empty() { "none".to_owned() } else { text };
+    let machine = |manifest: &Manifest| {
+        let name = |m: &Machine| format!("{}, {}", m.cpu, m.simd);
+        manifest.machine.as_ref().map(name).unwrap_or_default()
+    };
+    let code = |manifest: &Manifest| {
+        let commit = |code: &CodeVersion| code.commit.get(..7).unwrap_or_default().to_owned();
+        manifest.code.as_ref().map(commit).unwrap_or_default()
+    };
+    let inputs = |manifest: &Manifest| {
+        let text = serde_json::to_string(&manifest.inputs).unwrap_or_default();
+        if manifest.inputs.is_empty() { text } else { sha256(text.as_bytes())[..12].to_owned() }
+    };
+    let kinds: [(&str, [String; 2]); 4] = [
+        ("flags", [a, b].map(|manifest| flags(manifest).join(" "))),
+        ("machine", [a, b].map(machine)),
+        ("code", [a, b].map(code)),
+        ("scenes and meshes", [a, b].map(inputs)),
+    ];
+    let differing = kinds.into_iter().filter(|(_, [a, b])| a != b);
+    let line =
+        |(what, [a, b]): (&str, [String; 2])| format!("{what}: {} and {}", or_none(a), or_none(b));
+    differing.map(line).collect()
 }
 
 /// The warning about a record whose machine had other load.
@@ -303,6 +352,11 @@ fn change(
     column: &str,
     cells: [&Map<String, Value>; 2],
 ) -> Option<MeasuredChange> {
+    // What follows from other rows says nothing of its own.
+    let metric = cells[0].get("metric").and_then(Value::as_str).unwrap_or_default();
+    if metric.contains("residual") || metric.contains("predicted") {
+        return None;
+    }
     let [first, second] = cells.map(|cells| cells[column].as_f64().filter(|x| *x > 0.0));
     let (first, second) = (first?, second?);
     let [before, after] = cells.map(|cells| interval(cells, column));

@@ -68,8 +68,8 @@ impl std::fmt::Display for Quantity {
 }
 
 /// Writes a number with this many significant digits, without an exponent.
-#[cfg_attr(not(feature = "maintain"), allow(dead_code, reason = "pages alone need it"))]
-pub(super) fn significant(x: f64, digits: usize) -> String {
+#[must_use]
+pub fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();
     }

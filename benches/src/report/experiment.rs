@@ -1,11 +1,97 @@
-//! The experiments that can be recorded: their steps, and which files must be the same on every
-//! machine.
+//! The experiments that can be recorded, as `data/experiments.toml` lists them.
 
-use super::costs;
-use super::engines::{BULLET, RAPIER_CONTACTS, RAPIER_TIMES};
-use super::peers::PEERS;
-use super::step::ExperimentStep::{Bench, Estimates, Script, Sdop, SdopPrints};
-use super::step::{Experiment, PAPER_500};
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+
+use super::manifest::inputs;
+
+/// An experiment.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Experiment {
+    /// Its name, which is its directory below the machine's.
+    pub name: String,
+    /// What it measures, in a line.
+    pub about: String,
+    /// How long it takes where no record says so.
+    pub takes: String,
+    /// Programs and packages beyond this program.
+    #[serde(default)]
+    pub needs: String,
+    /// What runs, in order.
+    pub steps: Vec<ExperimentStep>,
+    /// Files that every machine must find alike.
+    #[serde(default)]
+    pub deterministic: Vec<String>,
+    /// Names of the scenes that it reads.
+    #[serde(default)]
+    pub scenes: Vec<String>,
+}
+
+/// One program that runs for an experiment.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(from = "String")]
+pub struct ExperimentStep {
+    /// The file that its output becomes; `None` if it writes files itself.
+    pub file: Option<String>,
+    /// The program: `sdop`, one of `benches/engines`, `bench`, `estimates`, or a file of the
+    /// repository.
+    pub program: String,
+    /// Its arguments.
+    pub arguments: Vec<String>,
+}
+
+impl From<String> for ExperimentStep {
+    /// Reads `FILE = PROGRAM ARGUMENTS`, without `FILE =` if it writes files itself. Quotes join
+    /// words.
+    fn from(line: String) -> Self {
+        let (file, line) = match line.split_once(" = ") {
+            Some((file, line)) => (Some(file.to_owned()), line),
+            None => (None, &*line),
+        };
+        let mut words = Vec::new();
+        for (at, part) in line.split('\'').enumerate() {
+            match at % 2 {
+                0 => words.extend(part.split_whitespace().map(str::to_owned)),
+                _ => words.push(part.to_owned()),
+            }
+        }
+        let mut words = words.into_iter();
+        Self { file, program: words.next().unwrap_or_default(), arguments: words.collect() }
+    }
+}
+
+impl ExperimentStep {
+    /// Whether this program runs.
+    #[must_use]
+    pub fn is_sdop(&self) -> bool {
+        self.program == "sdop"
+    }
+
+    /// A file of the repository without which it can't run.
+    fn needed(&self) -> Option<&str> {
+        match self.program.as_str() {
+            "sdop" => None,
+            "peers" | "rapier" | "bullet" | "bench" | "estimates" => Some("Cargo.toml"),
+            file => Some(file),
+        }
+    }
+}
+
+/// Every experiment.
+pub fn experiments() -> impl Iterator<Item = &'static Experiment> {
+    #[derive(Deserialize)]
+    struct Listed {
+        experiment: Vec<Experiment>,
+    }
+    static ALL: LazyLock<Vec<Experiment>> = LazyLock::new(|| {
+        let listed = toml::from_str(sdop_data::EXPERIMENTS).map(|all: Listed| all.experiment);
+        listed.unwrap_or_default() // a test reads it
+    });
+    ALL.iter()
+}
 
 impl Experiment {
     /// The experiment of a name.
@@ -13,127 +99,45 @@ impl Experiment {
     pub fn named(name: &str) -> Option<&'static Self> {
         experiments().find(|experiment| experiment.name == name)
     }
-}
 
-const PAPER: &[&str] = &[
-    "data/scenes/paper-50.toml",
-    "data/scenes/paper-150.toml",
-    "data/scenes/paper-300.toml",
-    "data/scenes/paper-350.toml",
-    "data/scenes/paper-500.toml",
-    "data/scenes/crowded-500.toml",
-    "data/scenes/sparse-500.toml",
-];
-
-const CROWDED: &[&str] = &["data/scenes/crowded-500.toml"];
-
-/// The scenes whose instructions are counted.
-const COUNTED: &[&str] = &[
-    "data/scenes/paper-500.toml",
-    "data/scenes/crowded-500.toml",
-    "data/scenes/uniform-10k.toml",
-    "data/scenes/uniform-100k.toml",
-];
-
-const VERIFY: &[&str] =
-    &["verify", "--seeds", "128", "--frames", "100", PAPER_500[0], "--format", "json"];
-
-/// Every experiment.
-pub fn experiments() -> impl Iterator<Item = &'static Experiment> {
-    [OWN_EXPERIMENTS, PEERS].into_iter().flatten()
-}
-
-/// A line for an experiment's name and what it measures, and one for its scenes and steps, after
-/// the experiments that have files which every machine must find alike.
-macro_rules! experiments {
-    ({ $($first:expr),+ $(,)? } $($name:literal, $about:literal; $scenes:expr, $steps:expr;)+) => {
-        /// Those of the culler and of its filters in physics engines.
-        const OWN_EXPERIMENTS: &[Experiment] =
-            &[$($first,)+ $(Experiment::new($name, $about, $steps, $scenes)),+];
-    };
-}
-
-experiments! {
-    {
-        Experiment {
-            name: "reproduce",
-            about: "the paper's experiments",
-            steps: &[Sdop(&["reproduce"])],
-            deterministic: &["counts.csv", "table_1.csv", "survival.csv"],
-            scenes: PAPER,
-        },
-        Experiment {
-            name: "tradeoff",
-            about: "precision against time on the paper's 500 bodies",
-            steps: &[Sdop(&["tradeoff", "data/scenes/paper-500.toml"])],
-            deterministic: &["tradeoff-seeds.csv"],
-            scenes: PAPER_500,
-        },
+    /// The first file of the repository that it reads or runs and that isn't below `root`.
+    #[must_use]
+    pub fn missing(&self, root: &Path) -> Option<PathBuf> {
+        let programs = self.steps.iter().filter_map(ExperimentStep::needed).map(PathBuf::from);
+        let mut files = programs.chain(inputs(&self.scenes));
+        files.find(|file| !root.join(file).is_file())
     }
-    "cost/quiet", "the formula predicted against measured, every strategy and scene";
-        PAPER, costs::QUIET;
-    "cost/loaded", "the same while all processors do other work";
-        PAPER, costs::LOADED;
-    "cost/bench", "the formula by criterion in one run";
-        PAPER_500, &[Bench("total_cost.md", "total_cost")];
-    "verify", "the culler judged by the exact reference";
-        PAPER_500, &[SdopPrints("verify.json", VERIFY)];
-    "kernels/tests", "ns per or-DOP test";
-        PAPER_500, &[Estimates("tests.csv", &["ordop"])];
-    "kernels/stages", "ns per update and per construction";
-        PAPER_500, &[Estimates("stages.csv", &["update", "construct"])];
-    "kernels/finders", "ns per body and per first test, by finder";
-        PAPER_500, &[Estimates("finders.csv", &["pair_finding"])];
-    "kernels/tiers", "full S-DOP on 500 bodies in every tier";
-        PAPER_500, &[Estimates("tiers.csv", &["tiers"])];
-    "kernels/radii",
-    "the cost per reported pair with one size of bodies, with radii 1 : 16 and 1 : 1000";
-        PAPER_500, &[Bench("radii.md", "radii")];
-    "kernels/motion",
-    "the finders that auto chooses between, by motion: p50, p99 and the worst frame";
-        PAPER_500, &[Bench("motion.md", "motion")];
-    "kernels/far", "pairs and time by distance from the origin: f32, f64 and many places";
-        PAPER_500, &[Bench("far.csv", "far")];
-    "kernels/roofline", "each kernel compared with the CPU's limits";
-        PAPER_500, &[Bench("roofline.md", "roofline")];
-    "kernels/safety", "the same frames with margins and without";
-        PAPER_500, &[Bench("safety.md", "safety")];
-    "kernels/oracle", "the exact reference by stage";
-        PAPER_500, &[Bench("oracle.md", "oracle")];
-    "instructions", "instructions of a frame's culling, by callgrind";
-        COUNTED, &[Script("instructions.csv", &[".ci/instructions"])];
-    "ranks", "one world on many ranks of this machine, and what a model makes of clusters";
-        &[], &[Script("ranks.json", &[".ci/many_ranks"])];
-    "bounds", "the long search for the worst rounding error of every bound";
-        &[], &[Bench("bounds.md", "worst_case")];
-    "borders", "the long search for a pair lost on a border between a finder's cells";
-        &[], &[Bench("borders.md", "finder_borders")];
-    "memory", "the address sanitizer in our crates in every tier, memcheck where it knows the tier";
-        &[], &[Script("memory.txt", &[".ci/full", "memory"])];
-    "mutants", "planted mutants: which the tests catch by room, and why others survive";
-        &[], &[
-            Script("mutants.csv", &[".ci/mutants/run"]),
-            Script("survivors.csv", &[".ci/mutants/run", "--print", "reasons"]),
-        ];
-    "rapier/contacts",
-    "the filter in a physics engine: contacts with it and without, step by step";
-        &[], RAPIER_CONTACTS;
-    "rapier/times", "the filter in a physics engine: steps timed in turns";
-        &[], RAPIER_TIMES;
-    "bullet", "the filter in Bullet: every verdict judged by its contacts, steps timed in turns";
-        &[], BULLET;
-    "python", "calls from Python beyond Rust; pairs of boxes and balls by Python's libraries";
-        &[], &[Script("python.json", &["python/bench/run"])];
-    "adapters/verdicts", "other libraries judged: which of their claims hold";
-        &[], &[Script("installed.txt", &["benches/adapters/install"]), Sdop(&["board"])];
-    "adapters/times",
-    "other libraries timed by their own clocks, and ours, on the same frames";
-        CROWDED, &[
-            Script("installed.txt", &["benches/adapters/install"]),
-            Sdop(&["board", "--timed", "data/scenes/crowded-500.toml"]),
-        ];
-    "effects", "what an effect costs that isn't listed";
-        PAPER_500, &[
-            Script("effects.csv", &[".ci/effect_price", "data/scenes/paper-500.toml", "41"]),
-        ];
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+
+    /// A checkout has every file that an experiment needs, and an empty directory none.
+    #[test]
+    fn needs_are_found_in_a_checkout() {
+        let checkout = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+        let empty = tempfile::tempdir().unwrap();
+        let mut names: Vec<&str> = Vec::new();
+        for experiment in experiments() {
+            assert_eq!(experiment.missing(checkout), None, "{}", experiment.name);
+            assert!(experiment.missing(empty.path()).is_some());
+            assert!(!experiment.steps.is_empty() && !experiment.takes.is_empty());
+            assert!(!names.contains(&&*experiment.name), "{} twice", experiment.name);
+            names.push(&experiment.name);
+        }
+        assert!(names.len() > 40);
+        let reproduce = Experiment::named("reproduce").unwrap();
+        assert_eq!(reproduce.missing(empty.path()), Some("data/scenes/paper-50.toml".into()));
+    }
+
+    #[test]
+    fn steps_are_read() {
+        let step =
+            ExperimentStep::from("a.csv = peers --peers 'sdop,parry3d refit' --x".to_owned());
+        assert_eq!((step.file.as_deref(), &*step.program), (Some("a.csv"), "peers"));
+        assert_eq!(step.arguments, ["--peers", "sdop,parry3d refit", "--x"]);
+        assert!(ExperimentStep::from("sdop board".to_owned()).is_sdop());
+    }
 }

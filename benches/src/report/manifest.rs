@@ -123,10 +123,10 @@ impl Manifest {
         directory: &Path,
         experiment: &str,
         command: String,
-        deterministic: &[&str],
+        deterministic: &[String],
     ) -> Result<Self, ManifestError> {
         let files = digests(directory)?;
-        let known = |name: &&&str| files.contains_key(**name);
+        let known = |name: &&String| files.contains_key(*name);
         Ok(Self {
             format: "sdop-measurement".to_owned(),
             version: VERSION,
@@ -140,21 +140,17 @@ impl Manifest {
             seconds: None,
             note: None,
             inputs: BTreeMap::new(),
-            deterministic: deterministic
-                .iter()
-                .filter(known)
-                .map(|&name| name.to_owned())
-                .collect(),
+            deterministic: deterministic.iter().filter(known).cloned().collect(),
             files,
             digest: String::new(),
         })
     }
 
-    /// Adds the digests of some scenes and of the meshes next to them, by their paths below `root`.
+    /// Adds the digests of the scenes of some names and of the meshes, by paths below `root`.
     ///
     /// # Errors
     /// A file that can't be read.
-    pub fn add_inputs(&mut self, root: &Path, scenes: &[&str]) -> Result<(), ManifestError> {
+    pub fn add_inputs(&mut self, root: &Path, scenes: &[String]) -> Result<(), ManifestError> {
         for input in inputs(scenes) {
             let path = root.join(&input);
             let bytes =
@@ -229,10 +225,11 @@ impl Manifest {
 }
 
 /// Some scenes and the meshes that they use, by their paths in the repository.
-pub(super) fn inputs(scenes: &[&str]) -> Vec<PathBuf> {
+pub(super) fn inputs(scenes: &[String]) -> Vec<PathBuf> {
+    let scenes = scenes.iter().map(|scene| format!("data/scenes/{scene}.toml"));
     let meshes = ["spot", "teapot", "bunny-4k", "bunny"];
-    let meshes = meshes.map(|mesh| Path::new("data/meshes").join(mesh).with_extension("tri"));
-    scenes.iter().map(PathBuf::from).chain(meshes).collect()
+    let meshes = meshes.iter().map(|mesh| format!("data/meshes/{mesh}.tri"));
+    scenes.chain(meshes).map(PathBuf::from).collect()
 }
 
 /// SHA-256 in hexadecimal.
@@ -279,8 +276,12 @@ mod tests {
     fn record() -> (tempfile::TempDir, Manifest) {
         let directory = tempfile::tempdir().unwrap();
         std::fs::write(directory.path().join("counts.csv"), "a,b\n1,2\n").unwrap();
-        let manifest =
-            Manifest::describe(directory.path(), "test", "sdop test".to_owned(), &["counts.csv"]);
+        let manifest = Manifest::describe(
+            directory.path(),
+            "test",
+            "sdop test".to_owned(),
+            &["counts.csv".to_owned()],
+        );
         let manifest = manifest.unwrap();
         std::fs::write(directory.path().join(FILE), manifest.text()).unwrap();
         (directory, manifest)

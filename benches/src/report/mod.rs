@@ -8,27 +8,21 @@
 mod clock;
 mod columns;
 mod compare;
-mod costs;
 pub mod digits;
-mod engines;
 mod experiment;
 #[cfg(feature = "maintain")]
 mod fill;
 mod manifest;
 #[cfg(feature = "maintain")]
 pub mod pages;
-mod peers;
 mod provenance;
-mod requirements;
-mod step;
 mod store;
 mod table;
 
-pub use compare::{MeasuredChange, RecordComparison, compare};
+pub use compare::{CountDifference, MeasuredChange, RecordComparison, compare};
 pub use digits::{Quantities, Quantity};
-pub use experiment::experiments;
+pub use experiment::{Experiment, ExperimentStep, experiments};
 pub use manifest::{FILE, Manifest, ManifestError};
 pub use provenance::{CodeVersion, Load, caches};
-pub use step::{Experiment, ExperimentStep};
 pub use store::{Store, StoreError};
 pub use table::{Table, TableError};

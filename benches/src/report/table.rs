@@ -38,7 +38,30 @@ impl Table {
             let cells = columns.iter().cloned().zip(record.iter().map(value));
             rows.push(cells.collect());
         }
-        Ok(Self { columns, rows })
+        Ok(Self { columns, rows }.with_metrics())
+    }
+
+    /// A table of numbers by `strategy`, `volume` and `term`, as earlier versions wrote them, with
+    /// `variant` and `metric` instead.
+    fn with_metrics(mut self) -> Self {
+        let has = |name: &str| self.columns.iter().any(|column| column == name);
+        if !(has("strategy") && has("volume") && has("term")) {
+            return self;
+        }
+        self.columns.retain(|column| column != "volume");
+        for (from, to) in [("strategy", "variant"), ("term", "metric")] {
+            self.columns.iter_mut().filter(|column| *column == from).for_each(|c| *c = to.into());
+        }
+        for row in &mut self.rows {
+            let mut take = |name| row.remove(name).unwrap_or_default();
+            let [variant, volume, term] = ["strategy", "volume", "term"].map(&mut take);
+            let metric = match (term.as_str(), volume.as_str()) {
+                (Some(term), Some(volume)) => format!("{term} ({volume})").into(),
+                _ => term,
+            };
+            row.extend([("variant".to_owned(), variant), ("metric".to_owned(), metric)]);
+        }
+        self
     }
 }
 

@@ -4,8 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::immediate::HandingTimes;
 use super::plan::{ExperimentPlan, PaperScene};
-use super::sensitivity::Interpretation;
-use super::survival::Survival;
 use crate::cost::calibrate::CalibrationRound;
 use crate::cost::pass::{Observer, Pass, SceneFrames, VariantRun, pass};
 use crate::cost::table::{self, Cost};
@@ -67,11 +65,7 @@ pub struct Results {
     pub immediacies: Vec<HandingTimes>,
     /// The strategies as variants, scene by scene.
     pub variants: Vec<(PaperScene, Vec<Variant>)>,
-    /// One an or-DOP and test.
-    pub survival: Vec<Survival>,
-    /// Interpretations of what the paper doesn't state; empty unless requested.
-    pub interpretations: Vec<Interpretation>,
-    /// Hash of the calibrated scene's volumes.
+    /// Hash of paper-500's volumes.
     pub volumes_sha256: String,
 }
 

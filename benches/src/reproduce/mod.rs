@@ -17,15 +17,13 @@ pub mod paper;
 mod plan;
 pub mod rates;
 pub mod readings;
-pub mod sensitivity;
+pub mod rows;
 pub mod study;
-mod survival;
 pub mod units;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
 pub use experiment::{Results, StrategyRun, run_scene};
 pub use plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES};
-pub use survival::Survival;
 
 use sdop::settings::Strategy;
 

@@ -50,9 +50,6 @@ impl PaperScene {
     }
 }
 
-/// The scene whose or-DOPs are compared by k.
-pub(super) const SURVIVAL_SCENE: PaperScene = PaperScene::Paper500;
-
 /// What to run.
 #[derive(Clone, Debug)]
 pub struct ExperimentPlan {
@@ -100,6 +97,6 @@ impl ExperimentPlan {
     /// How many times [`ExperimentPlan::run`] reports progress.
     #[must_use]
     pub fn steps(&self) -> usize {
-        (self.names.len() + 1) * self.seeds.len()
+        self.names.len() * self.seeds.len()
     }
 }

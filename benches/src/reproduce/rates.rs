@@ -76,14 +76,3 @@ pub fn ratio(results: &Results, scene: &str, of: [Strategy; 2], elsewhere: f64) 
         .collect();
     Estimate::of(&ratios)
 }
-
-/// The F at which the frame rate of the first strategy becomes `share` of the second's:
-/// (F + t₂)/(F + t₁) = share. Above it everything else hides the difference. `None` where it is so
-/// without anything else.
-#[must_use]
-pub fn hides(results: &Results, scene: &str, of: [Strategy; 2], share: f64) -> Option<Estimate> {
-    let [one, other] = of.map(|strategy| results.by_seed(scene, strategy, |run| run.seconds.total));
-    let f = |(one, other): (&f64, &f64)| (share * one - other) / (1.0 - share);
-    let f = Estimate::in_order(&one.iter().zip(&other).map(f).collect::<Vec<_>>());
-    (f.mean > 0.0).then_some(f)
-}

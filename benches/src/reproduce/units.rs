@@ -1,6 +1,5 @@
-//! The experiments divided into units: a scene with one seed, the survivors of one seed, or one
-//! interpretation of what the paper leaves open. Joined in their order, they give the results of
-//! one process: the same counts to the bit, and the times as they were measured.
+//! The experiments divided into units, each a scene with one seed. Joined in their order, they give
+//! the results of one process: the same counts to the bit, and the times as they were measured.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -10,9 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::experiment::{Results, StrategyRun, run_pass, variants};
 use super::immediate::{self, HandingTimes};
-use super::plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES, SURVIVAL_SCENE};
-use super::sensitivity::{self, TestCounts};
-use super::survival::Survival;
+use super::plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES};
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::Pass;
 use crate::hash::volumes_sha256;
@@ -35,7 +32,6 @@ pub struct ExperimentSettings {
     seeds: Vec<u64>,
     frames: u32,
     effort: Effort,
-    interpretations: bool,
     /// The machine.
     pub machine: Machine,
 }
@@ -43,8 +39,6 @@ pub struct ExperimentSettings {
 /// The experiments, ready to run.
 pub struct Experiments {
     plan: ExperimentPlan,
-    interpretations: bool,
-    compared: SceneFile,
     prepared: Vec<PreparedScene>,
     inputs: BTreeMap<String, String>,
     /// The calibration of each scene, made with its first unit in this process.
@@ -60,52 +54,33 @@ struct PreparedScene {
     variants: Vec<Variant>,
 }
 
-/// One unit.
-enum ReproduceUnit {
-    /// A scene, by its number, with a seed.
-    Scene(usize, u64),
-    /// The survivors of a seed.
-    Survival(u64),
-    /// A way to read the paper, by its number.
-    Reading(usize),
-}
-
-/// What a unit found.
+/// The result of a unit: a scene with one seed.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub enum UnitResult {
-    /// A scene with one seed.
-    Scene {
-        /// Which.
-        name: PaperScene,
-        /// A run a strategy.
-        runs: Vec<StrategyRun>,
-        /// What they were taken from.
-        pass: Pass,
-        /// The strategies as variants.
-        variants: Vec<Variant>,
-        /// The paper's algorithm to the letter.
-        immediacy: Option<HandingTimes>,
-    },
-    /// A share an or-DOP and test.
-    Survival(Vec<f64>),
-    /// What is counted under a reading, by its number.
-    Reading(usize, Vec<TestCounts>),
+pub struct UnitResult {
+    /// The scene.
+    pub name: PaperScene,
+    /// One run per strategy.
+    pub runs: Vec<StrategyRun>,
+    /// The pass that they were taken from.
+    pub pass: Pass,
+    /// The strategies as variants.
+    pub variants: Vec<Variant>,
+    /// The paper's algorithm to the letter, in scenes with the most bodies.
+    pub immediacy: Option<HandingTimes>,
 }
 
 impl Experiments {
-    /// Reads and builds the plan's scenes. With `interpretations`, what the paper doesn't state is
-    /// swept too.
+    /// Reads and builds the plan's scenes.
     ///
     /// # Errors
     /// Scene files that can't be read or built.
-    pub fn new(plan: &ExperimentPlan, interpretations: bool) -> Result<Self, ReproduceError> {
+    pub fn new(plan: &ExperimentPlan) -> Result<Self, ReproduceError> {
         let load = |scene: PaperScene| {
             SceneFile::read(&plan.scenes.join(scene.name()).with_extension("toml"))
         };
-        let compared = load(SURVIVAL_SCENE)?;
         let mut inputs = BTreeMap::new();
-        let volumes = volumes_sha256(&compared.build()?.shapes);
+        let volumes = volumes_sha256(&load(PaperScene::Paper500)?.build()?.shapes);
         inputs.insert(VOLUMES.to_owned(), volumes);
         let mut scenes = Vec::new();
         for &name in &plan.names {
@@ -123,8 +98,6 @@ impl Experiments {
         });
         Ok(Self {
             plan: plan.clone(),
-            interpretations,
-            compared,
             prepared: prepared.collect(),
             inputs,
             calibrations: Mutex::default(),
@@ -144,7 +117,6 @@ impl Experiments {
             seeds: self.plan.seeds.clone(),
             frames: self.plan.frames,
             effort: self.plan.effort,
-            interpretations: self.interpretations,
             machine: Machine::here(self.plan.tier),
         }
     }
@@ -152,19 +124,13 @@ impl Experiments {
     /// How many units there are.
     #[must_use]
     pub fn units(&self) -> usize {
-        let readings = if self.interpretations { sensitivity::ways().len() } else { 0 };
-        self.plan.steps() + readings
+        self.plan.steps()
     }
 
-    fn unit(&self, unit: usize) -> ReproduceUnit {
-        let of_seed = self.prepared.len() + 1;
-        match self.plan.seeds.get(unit / of_seed) {
-            Some(&seed) if unit % of_seed < self.prepared.len() => {
-                ReproduceUnit::Scene(unit % of_seed, seed)
-            }
-            Some(&seed) => ReproduceUnit::Survival(seed),
-            None => ReproduceUnit::Reading(unit - self.plan.steps()),
-        }
+    /// The scene and the seed of a unit.
+    fn unit(&self, unit: usize) -> (&PreparedScene, u64) {
+        let scenes = self.prepared.len();
+        (&self.prepared[unit % scenes], self.plan.seeds[unit / scenes])
     }
 
     /// Runs a unit.
@@ -172,23 +138,7 @@ impl Experiments {
     /// # Errors
     /// Scenes that can't be built with the seed or don't suit the strategies.
     pub fn find(&self, unit: usize) -> Result<UnitResult, ReproduceError> {
-        match self.unit(unit) {
-            ReproduceUnit::Scene(number, seed) => self.scene(&self.prepared[number], seed),
-            ReproduceUnit::Survival(seed) => {
-                let scene = with_seed(&self.compared, seed)?;
-                let share = |row: Survival| row.share(&scene, self.plan.tier);
-                let shares = Survival::every().into_iter().map(share);
-                Ok(UnitResult::Survival(shares.collect::<Result<_, _>>()?))
-            }
-            ReproduceUnit::Reading(number) => {
-                let counted = sensitivity::counted(&self.plan, sensitivity::ways()[number])?;
-                Ok(UnitResult::Reading(number, counted))
-            }
-        }
-    }
-
-    fn scene(&self, prepared: &PreparedScene, seed: u64) -> Result<UnitResult, ReproduceError> {
-        let PreparedScene { name, file, largest, variants } = prepared;
+        let (PreparedScene { name, file, largest, variants }, seed) = self.unit(unit);
         let ExperimentPlan { frames, tier, effort, .. } = self.plan;
         let held = self.calibrations.lock();
         let mut held = held.unwrap_or_else(PoisonError::into_inner);
@@ -196,11 +146,13 @@ impl Experiments {
             Some(calibration) => calibration,
             None => Calibration::new(&file.build()?, variants, tier, effort)?,
         };
-        let scene = with_seed(file, seed)?;
+        let mut file = file.clone();
+        file.spec.seed = seed;
+        let scene = file.build()?;
         let (runs, pass) = run_pass(&scene, variants, frames, tier, Some(calibration.round()?))?;
         held.insert(*name, calibration);
         let immediacy = largest.then(|| immediate::measure(&scene, *name, tier));
-        Ok(UnitResult::Scene {
+        Ok(UnitResult {
             name: *name,
             runs,
             pass,
@@ -210,12 +162,6 @@ impl Experiments {
     }
 }
 
-fn with_seed(file: &SceneFile, seed: u64) -> Result<Scene, ReproduceError> {
-    let mut file = file.clone();
-    file.spec.seed = seed;
-    Ok(file.build()?)
-}
-
 impl Sweep for Experiments {
     fn header(&self) -> miette::Result<Header> {
         let inputs = self.inputs.clone();
@@ -223,16 +169,8 @@ impl Sweep for Experiments {
     }
 
     fn name(&self, unit: usize) -> String {
-        match self.unit(unit) {
-            ReproduceUnit::Scene(number, seed) => {
-                format!("{}, seed {seed}", self.prepared[number].name)
-            }
-            ReproduceUnit::Survival(seed) => format!("survivors of seed {seed}"),
-            ReproduceUnit::Reading(number) => {
-                let (start, bounce) = sensitivity::ways()[number];
-                format!("Table 1 with start: {start}, bounce: {bounce}")
-            }
-        }
+        let (scene, seed) = self.unit(unit);
+        format!("{}, seed {seed}", scene.name)
     }
 
     fn run(&self, unit: usize) -> miette::Result<String> {
@@ -245,13 +183,13 @@ impl Sweep for Experiments {
 }
 
 impl ExperimentPlan {
-    /// Runs everything except the interpretations, in this process. `done` is called as often as
+    /// Runs everything in this process. `done` is called as often as
     /// [`ExperimentPlan::steps`] says.
     ///
     /// # Errors
     /// Scene files that can't be read or don't suit the strategies.
     pub fn run(&self, mut done: impl FnMut()) -> Result<Results, ReproduceError> {
-        let experiments = Experiments::new(self, false)?;
+        let experiments = Experiments::new(self)?;
         let mut results = experiments.nothing_yet();
         for unit in 0..experiments.units() {
             results.add(experiments.find(unit)?);
@@ -288,8 +226,6 @@ impl Results {
             passes: Vec::new(),
             immediacies: Vec::new(),
             variants: Vec::new(),
-            survival: Survival::every(),
-            interpretations: Vec::new(),
             volumes_sha256,
         }
     }
@@ -305,27 +241,12 @@ impl Results {
 
     /// The same of what a unit found.
     pub(super) fn add(&mut self, found: UnitResult) {
-        match found {
-            UnitResult::Scene { name, runs, pass, variants, immediacy } => {
-                self.runs.extend(runs);
-                self.passes.push((name, pass));
-                self.immediacies.extend(immediacy);
-                if self.variants.iter().all(|(known, _)| *known != name) {
-                    self.variants.push((name, variants));
-                }
-            }
-            UnitResult::Survival(shares) => {
-                for (row, share) in self.survival.iter_mut().zip(shares) {
-                    row.shares.push(share);
-                }
-            }
-            UnitResult::Reading(number, counted) => {
-                if let Some(&way) = sensitivity::ways().get(number) {
-                    let found = sensitivity::interpretations(&self.plan, way, &counted);
-                    self.interpretations.extend(found);
-                    sensitivity::sort(&mut self.interpretations);
-                }
-            }
+        let UnitResult { name, runs, pass, variants, immediacy } = found;
+        self.runs.extend(runs);
+        self.passes.push((name, pass));
+        self.immediacies.extend(immediacy);
+        if self.variants.iter().all(|(known, _)| *known != name) {
+            self.variants.push((name, variants));
         }
     }
 }

@@ -58,6 +58,19 @@ pub struct SceneSpec {
     pub cull: CullSettings,
 }
 
+impl SceneSpec {
+    /// A warning if bodies have speeds and nothing moves them.
+    #[must_use]
+    pub fn idle_speed(&self) -> Option<&'static str> {
+        let is_fast = |group: &Spanned<GroupSpec>| {
+            let group = group.get_ref();
+            group.speed.is_some() || group.velocities.is_some()
+        };
+        let is_idle = self.effects.motion.is_none() && self.bodies.iter().any(is_fast);
+        is_idle.then_some("bodies have speeds, but don't move: add `motion = true` to [effects]")
+    }
+}
+
 /// The cube that holds the scene: its side or the density that sets it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -8,9 +8,8 @@
 use serde::Serialize;
 
 use super::TradeoffError;
-use super::decide::{Choice, choose_measured};
 use super::density::{lines, lines_of_a_run};
-use super::pays::{CheapestRange, Line, envelope};
+use super::pays::{CheapestRange, Choice, Line, choose, envelope};
 use super::variant::{Variant, s_dops};
 use super::worlds::{self, WorldTimes};
 use crate::measure::conditions::Conditions;
@@ -109,7 +108,7 @@ pub fn advise(
     scene.cull.pairs = finder;
     let variants = variants(&scene.cull, tried.axes);
     let lines = lines(&scene, &variants, tier, SAMPLES)?;
-    let Some(choice) = choose_measured(&lines, check) else {
+    let Some(choice) = choose(&lines, check) else {
         return Ok(None);
     };
     let Some(best) = lines.iter().position(|line| line.name == choice.best) else {
@@ -170,7 +169,7 @@ fn finders(scene: &Scene, only: Option<Finder>) -> Vec<Variant> {
 
 /// The fastest finder, or `auto` if it is tied with it, and the other tied ones.
 fn chosen_finder(lines: &[Line]) -> Option<(Finder, Vec<String>)> {
-    let Choice { best, mut tied, .. } = choose_measured(lines, 0.0)?;
+    let Choice { best, mut tied, .. } = choose(lines, 0.0)?;
     let auto = Finder::Auto.name();
     let chosen = match tied.iter().position(|name| name == auto) {
         Some(at) => {
@@ -201,7 +200,7 @@ fn candidates(lines: &[Line], best: &Line, check: f64) -> Vec<Candidate> {
         time: Estimate::in_order(&line.times),
         pairs: line.pairs,
         total: line.time() + check * line.pairs,
-        beyond: line.beyond(best, check, [line.pairs, best.pairs]),
+        beyond: line.beyond(best, check),
     };
     let mut candidates: Vec<Candidate> = lines.iter().map(candidate).collect();
     candidates.sort_by(|a, b| a.total.total_cmp(&b.total));

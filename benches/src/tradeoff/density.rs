@@ -73,7 +73,7 @@ pub fn at(
 ///
 /// # Errors
 /// Any other problem: files can't be read, or bodies are outside of the contract.
-pub(super) fn built_if_possible(file: &SceneFile) -> Result<Option<Scene>, SceneError> {
+fn built_if_possible(file: &SceneFile) -> Result<Option<Scene>, SceneError> {
     match file.build() {
         Ok(scene) => Ok(Some(scene)),
         Err(SceneError::Text(_)) => Ok(None),

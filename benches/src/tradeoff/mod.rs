@@ -1,8 +1,8 @@
 //! What accuracy costs in time: compares every volume and strategy on one scene, judged by the
 //! exact truth.
 //!
-//! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`],
-//! > [`decide`] (when does it pay?)
+//! > [`truth`] → [`counts`] (precision, recall) → [`timing`] (T, nanoseconds) → [`pays`] (when does
+//! > it pay?)
 //!
 //! The work is divided into [`units`]. Counts come first and are reproducible to the bit; time is
 //! measured afterwards and never decides a count. Every variant must report every true pair: a
@@ -11,24 +11,22 @@
 pub mod advise;
 pub mod budget;
 pub mod counts;
-pub mod decide;
 pub mod density;
+mod findings;
 pub mod interest;
 pub mod pays;
 mod result;
-pub mod safety;
-pub mod shapes;
+mod rows;
 mod study;
 pub mod timing;
 pub mod truth;
 pub mod units;
 pub mod variant;
-pub mod vary;
 pub mod worlds;
 
 pub use crate::measure::estimate::{CONFIDENCE, Estimate};
+pub use findings::Findings;
 pub use result::{Tradeoff, VariantResult};
-pub use study::Findings;
 pub use units::TradeoffPlan;
 
 use std::path::PathBuf;
@@ -58,14 +56,6 @@ pub enum TradeoffError {
     /// The exact reference rejects a number.
     #[error("the exact reference refuses the scene: {0}")]
     Refused(#[from] sdop_reference::InvalidInput),
-    /// A shape can't be made.
-    #[error("{}", .0.problem())]
-    #[diagnostic(help("{}", .0.help()))]
-    Form(sdop::mesh::shapes::ShapeError),
-    /// A shape can't be bounded.
-    #[error("{}", .0.problem())]
-    #[diagnostic(help("{}", .0.help()))]
-    Volume(sdop::volume::VolumeError),
     /// The truth can't be stored.
     #[error("cannot write {}", file.display())]
     #[diagnostic(help("choose a writable directory with --cache"))]
@@ -77,9 +67,4 @@ pub enum TradeoffError {
     },
 }
 
-crate::remedy::held_with_remedy!(
-    TradeoffError,
-    Cull(CullError),
-    Form(sdop::mesh::shapes::ShapeError),
-    Volume(sdop::volume::VolumeError)
-);
+crate::remedy::held_with_remedy!(TradeoffError, Cull(CullError));

@@ -63,14 +63,43 @@ impl Line {
     }
 
     /// The difference of both costs per frame, pass by pass so that common disturbances cancel, if
-    /// a narrow-phase check takes `cp` seconds and each has `pairs` pairs checked.
+    /// a narrow-phase check takes `cp` seconds.
     #[must_use]
-    pub fn beyond(&self, other: &Self, cp: f64, pairs: [f64; 2]) -> Estimate {
-        let checks = cp * (pairs[0] - pairs[1]);
+    pub fn beyond(&self, other: &Self, cp: f64) -> Estimate {
+        let checks = cp * (self.pairs - other.pairs);
         let passes = self.times.iter().zip(&other.times);
         let differences = passes.map(|(own, other)| own - other + checks);
         Estimate::in_order(&differences.collect::<Vec<_>>())
     }
+}
+
+/// Prices of a narrow-phase check, in seconds, for which variants are chosen.
+pub const CHECKS: [f64; 4] = [10e-9, 100e-9, 1e-6, 10e-6];
+
+/// The cheapest of some variants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// Its name.
+    pub best: String,
+    /// T + Np·Cp, seconds per frame.
+    pub total: f64,
+    /// The names of the variants tied with it: the interval of the difference contains zero.
+    pub tied: Vec<String>,
+}
+
+/// Chooses the variant with the cheapest total if a check takes `check` seconds. `None` without
+/// variants.
+#[must_use]
+pub fn choose(lines: &[Line], check: f64) -> Option<Choice> {
+    let total = |line: &Line| line.time() + check * line.pairs;
+    let best = lines.iter().min_by(|a, b| total(a).total_cmp(&total(b)))?;
+    let is_tied =
+        |line: &&Line| line.name != best.name && line.beyond(best, check).interval()[0] <= 0.0;
+    Some(Choice {
+        best: best.name.clone(),
+        total: total(best),
+        tied: lines.iter().filter(is_tied).map(|line| line.name.clone()).collect(),
+    })
 }
 
 /// A range of Cp in which one variant is the cheapest.
@@ -193,6 +222,24 @@ mod tests {
             pairs,
             construct: 0.0,
         }
+    }
+
+    /// The cheapest total wins, and variants within its interval are tied.
+    #[test]
+    fn cheapest_total_wins() {
+        let timed = |name: &str, times: [f64; 3], pairs| Line {
+            times: times.to_vec(),
+            ..line(name, 0.0, pairs)
+        };
+        let lines = [
+            timed("coarse", [1.0, 1.1, 0.9], 10.0),
+            timed("same", [1.1, 1.0, 1.0], 10.0),
+            timed("fine", [5.0, 5.1, 4.9], 2.0),
+        ];
+        let at = |check| choose(&lines, check).map(|c| (c.best, c.tied));
+        assert_eq!(at(0.1), Some(("coarse".into(), vec!["same".into()])));
+        assert_eq!(at(1.0), Some(("fine".into(), vec![])));
+        assert!(choose(&[], 1.0).is_none());
     }
 
     /// The envelope is the cheapest at every price.

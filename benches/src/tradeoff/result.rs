@@ -4,14 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Estimate;
 use super::budget::{BudgetRow, ClockRow};
-use super::decide::Decision;
 use super::density::Density;
 use super::interest::InterestRow;
 use super::pays::{CheapestRange, Standing};
-use super::safety::SafetyRow;
-use super::shapes::ShapeSurvival;
 use super::truth::NarrowPhase;
-use super::vary::Variation;
 use super::worlds::WorldTimes;
 use crate::cost::table::{Cost, PriceRow};
 use crate::measure::conditions::Conditions;
@@ -94,8 +90,6 @@ pub struct Tradeoff {
     pub cheapest: Vec<CheapestRange>,
     /// The scene at other densities.
     pub densities: Vec<Density>,
-    /// The scene with other numbers of bodies, triangles, motion and shapes.
-    pub variations: Vec<Variation>,
     /// Time-critical culling by tests.
     pub budgets: Vec<BudgetRow>,
     /// Time-critical culling by the clock.
@@ -105,14 +99,8 @@ pub struct Tradeoff {
     /// Worlds, if bodies of the scene fall asleep.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub worlds: Vec<WorldTimes>,
-    /// The scene's shapes and some with known answers, each against itself.
-    pub shapes: Vec<ShapeSurvival>,
-    /// Margins, arithmetic and tiers.
-    pub safety: Vec<SafetyRow>,
     /// Prices of every variant's volumes, warm and cold.
     pub prices: Vec<PriceRow>,
-    /// The recommended variant by density, class of shapes and price of a check.
-    pub decisions: Vec<Decision>,
     /// Other load of the machine.
     pub conditions: Conditions,
     /// The advice.

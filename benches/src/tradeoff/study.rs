@@ -1,80 +1,27 @@
 //! Joins the results of the units of a comparison.
 
-use miette::IntoDiagnostic as _;
-
 use super::Estimate;
-use super::budget::{BudgetRow, ClockRow};
 use super::counts::{Tally, share};
-use super::decide;
-use super::density::Density;
+use super::findings::{ComparedVariants, Findings, SeedCounts};
 use super::interest;
 use super::pays::{self, Line, Point, Standing};
 use super::result::{Tradeoff, VariantResult};
-use super::safety::SafetyRow;
-use super::shapes::ShapeSurvival;
-use super::truth::NarrowPhase;
-use super::units::{ComparedVariants, SeedCounts, Settings, StudyPart};
+use super::units::Settings;
 use super::variant::Variant;
-use super::vary::Variation;
-use super::worlds::WorldTimes;
 use crate::cost::pass::Pass;
 use crate::cost::table;
 use crate::measure::conditions::Conditions;
 use crate::measure::counts::Volume;
 use crate::measure::turns::Regime;
 
-/// The results of units so far.
-#[derive(Debug, Default)]
-pub struct Findings {
-    compared: Option<ComparedVariants>,
-    seeds: Vec<SeedCounts>,
-    budgets: Vec<BudgetRow>,
-    shapes: Vec<ShapeSurvival>,
-    passes: Vec<Pass>,
-    narrow_phase: NarrowPhase,
-    clock: Vec<ClockRow>,
-    interest: Vec<[Estimate; 2]>,
-    worlds: Vec<WorldTimes>,
-    densities: Vec<Density>,
-    variations: Vec<Variation>,
-    safety: Vec<SafetyRow>,
-}
-
 impl Findings {
-    /// Adds the results of a unit; units come in their order.
-    fn add(&mut self, found: StudyPart) {
-        match found {
-            StudyPart::Compared(compared) => self.compared = Some(compared),
-            StudyPart::Seed(counts) => self.seeds.push(counts),
-            StudyPart::Budgets(rows) => self.budgets = rows,
-            StudyPart::Shape(shape) => self.shapes.push(shape),
-            StudyPart::Pass(pass) => self.passes.push(pass),
-            StudyPart::NarrowPhase(seconds) => self.narrow_phase = seconds,
-            StudyPart::Clock(rows) => self.clock = rows,
-            StudyPart::Interest(times) => self.interest = times,
-            StudyPart::Worlds(times) => self.worlds = times,
-            StudyPart::Density(density) => self.densities.extend(density),
-            StudyPart::Variation(variation) => self.variations.extend(variation),
-            StudyPart::Safety(rows) => self.safety = rows,
-        }
-    }
-
-    /// Reads a unit's result; units come in their order.
-    ///
-    /// # Errors
-    /// The text is not the result of a unit.
-    pub fn take(&mut self, result: &str) -> miette::Result<()> {
-        self.add(serde_json::from_str(result).into_diagnostic()?);
-        Ok(())
-    }
-
     /// The comparison. `None` if units are missing or belong to another one. `before` are the
     /// machine's conditions at the start.
     #[must_use]
     pub fn finish(self, settings: &Settings, before: Conditions) -> Option<Tradeoff> {
         let ComparedVariants { hits, variants, volumes } = self.compared?;
         let of_all = |tallies: &[Tally]| tallies.len() == variants.len();
-        let first = self.seeds.first()?;
+        let (first, narrow_phase) = (self.seeds.first()?, self.narrow_phase.unwrap_or_default());
         let samples = first.tallies.first()?.frames as usize;
         let fits = self.seeds.iter().all(|seed| of_all(&seed.tallies))
             && self.passes.iter().all(|pass| pass.culled.len() == variants.len())
@@ -92,7 +39,6 @@ impl Findings {
         let prices = prices.flat_map(|&regime| table::prices(&measured.passes, regime));
         let cheapest = pays::envelope(&rows.iter().map(line).collect::<Vec<Line>>());
         Some(Tradeoff {
-            decisions: decide::table(&self.densities, &self.shapes),
             prices: prices.collect(),
             conditions: before.after(rows.iter().map(VariantResult::seconds)),
             scene: settings.scene.clone(),
@@ -103,18 +49,15 @@ impl Findings {
             simd: settings.machine.simd.clone(),
             truth: measured.true_pairs(),
             partners: 2.0 * hits / settings.bodies as f64,
-            advice: pays::advice(&cheapest, &self.narrow_phase),
-            narrow_phase: self.narrow_phase,
+            advice: pays::advice(&cheapest, &narrow_phase),
+            narrow_phase,
             interest: interest::rows(&first.interest, &self.interest),
             worlds: self.worlds,
             rows,
             cheapest,
             densities: self.densities,
-            variations: self.variations,
             budgets: self.budgets,
             clock: self.clock,
-            shapes: self.shapes,
-            safety: self.safety,
         })
     }
 }

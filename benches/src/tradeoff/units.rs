@@ -10,18 +10,16 @@ use std::sync::{Mutex, PoisonError};
 use miette::IntoDiagnostic as _;
 use serde::{Deserialize, Serialize};
 
-use super::budget::{self, BudgetRow, ClockRow, Window};
+use super::TradeoffError;
+use super::budget::{self, BudgetRow, Window};
 use super::counts::Tally;
-use super::density::{self, Density};
+use super::density;
+use super::findings::{ComparedVariants, Findings, SeedCounts};
 use super::interest;
-use super::safety::{self, SafetyRow};
-use super::shapes::{self, ShapeSurvival};
 use super::timing::{PASSES, Windows};
-use super::truth::{ExactJudge, NarrowPhase, Sample, samples};
+use super::truth::{ExactJudge, Sample, samples};
 use super::variant::{self, Variant};
-use super::vary::{self, SceneChange, Variation};
-use super::worlds::{self, WorldTimes};
-use super::{Estimate, TradeoffError};
+use super::worlds;
 use crate::cost::calibrate::{Calibration, Effort};
 use crate::cost::pass::{Pass, pass};
 use crate::measure::machine::Machine;
@@ -29,7 +27,6 @@ use crate::measure::turns::FEWEST_TIMED_FRAMES;
 use crate::scene::{Scene, SceneFile};
 use crate::sweep::{Header, Sweep, digest};
 use sdop::simd::Tier;
-use sdop::volume::Shape;
 
 /// The name in its files.
 pub const NAME: &str = "tradeoff";
@@ -48,8 +45,6 @@ pub struct TradeoffPlan {
     pub seeds: u64,
     /// Judged frames per run.
     pub samples: u32,
-    /// Random pairs per shape.
-    pub pairs: u32,
     /// Consecutive frames for time-critical culling.
     pub window: u32,
     /// One in this number of them is judged.
@@ -74,7 +69,6 @@ pub struct Settings {
     /// The runs' seeds.
     pub seeds: Vec<u64>,
     samples: u32,
-    pairs: u32,
     window: u32,
     stride: usize,
     /// The machine.
@@ -90,8 +84,6 @@ pub struct Comparison {
     /// Mean sphere hits per frame.
     hits: f64,
     variants: Vec<Variant>,
-    /// The scene's shapes, and some with known answers.
-    shapes: Vec<Shape>,
     units: Vec<TradeoffUnit>,
     /// `None` before the first pass in this process.
     calibration: Mutex<Option<Calibration>>,
@@ -106,8 +98,6 @@ enum TradeoffUnit {
     Seed(u64),
     /// Time-critical culling by tests.
     Budgets,
-    /// A shape against itself, by its number.
-    Shape(usize),
     /// Every variant timed once, on the run of a seed.
     Pass(u64),
     /// The price of the exact narrow phase.
@@ -120,50 +110,6 @@ enum TradeoffUnit {
     Worlds,
     /// The scene at a multiple of its density.
     Density(f32),
-    /// The scene with one change.
-    Variation(SceneChange),
-    /// Margins, arithmetic and tiers.
-    Safety,
-}
-
-/// The result of a unit.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) enum StudyPart {
-    Compared(ComparedVariants),
-    Seed(SeedCounts),
-    Budgets(Vec<BudgetRow>),
-    Shape(ShapeSurvival),
-    Pass(Pass),
-    NarrowPhase(NarrowPhase),
-    Clock(Vec<ClockRow>),
-    /// Eager and lazy.
-    Interest(Vec<[Estimate; 2]>),
-    Worlds(Vec<WorldTimes>),
-    Density(Option<Density>),
-    Variation(Option<Variation>),
-    Safety(Vec<SafetyRow>),
-}
-
-/// The compared variants.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ComparedVariants {
-    /// Mean sphere hits per frame.
-    pub(super) hits: f64,
-    pub(super) variants: Vec<Variant>,
-    /// Volume / hull volume of each variant.
-    pub(super) volumes: Vec<Option<f64>>,
-}
-
-/// Counts of one seed.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SeedCounts {
-    /// The counts of each variant.
-    pub(super) tallies: Vec<Tally>,
-    /// Counts of interest sets, only with the first seed.
-    pub(super) interest: Vec<interest::InterestCounts>,
 }
 
 impl Comparison {
@@ -178,15 +124,13 @@ impl Comparison {
         let spheres = Variant::spheres(&scene.cull);
         let samples = samples(&scene, plan.samples)?;
         let hits = Tally::unjudged(&scene, &spheres, plan.tier, &samples)?.reported_a_frame();
-        let shapes: Vec<Shape> = distinct(&scene).cloned().chain(shapes::builtin()?).collect();
         Ok(Self {
             plan: plan.clone(),
-            variants: variant::all(&scene, hits.round() as u64),
-            units: units(&seeds(&file, plan), shapes.len(), scene.effects.rest.is_some()),
+            variants: variant::all(&scene.cull, hits.round() as u64),
+            units: units(&seeds(&file, plan), scene.effects.rest.is_some()),
             file,
             scene,
             hits,
-            shapes,
             calibration: Mutex::default(),
         })
     }
@@ -194,60 +138,47 @@ impl Comparison {
     /// The settings, of this machine.
     #[must_use]
     pub fn settings(&self) -> Settings {
-        let TradeoffPlan { samples, pairs, window, stride, tier, .. } = self.plan;
+        let TradeoffPlan { samples, window, stride, tier, .. } = self.plan;
         Settings {
             scene: self.scene.name.clone(),
             bodies: self.scene.bodies.len(),
             frames: self.scene.frames,
             seeds: seeds(&self.file, &self.plan),
             samples,
-            pairs,
             window,
             stride,
             machine: Machine::here(tier),
         }
     }
 
-    fn find(&self, unit: TradeoffUnit) -> Result<StudyPart, TradeoffError> {
+    /// What a unit finds: findings with one part.
+    fn find(&self, unit: TradeoffUnit) -> Result<Findings, TradeoffError> {
         let (file, scene, tier) = (&self.file, &self.scene, self.plan.tier);
-        Ok(match unit {
-            TradeoffUnit::Compared => StudyPart::Compared(self.compared()),
-            TradeoffUnit::Seed(seed) => StudyPart::Seed(self.counts(seed)?),
-            TradeoffUnit::Budgets => StudyPart::Budgets(self.budgets()?),
-            TradeoffUnit::Shape(number) => {
-                let shape = &self.shapes[number];
-                StudyPart::Shape(shapes::survival(shape, self.plan.pairs, tier)?)
-            }
-            TradeoffUnit::Pass(seed) => StudyPart::Pass(self.pass(seed)?),
+        let mut found = Findings::default();
+        match unit {
+            TradeoffUnit::Compared => found.compared = Some(self.compared()),
+            TradeoffUnit::Seed(seed) => found.seeds.push(self.counts(seed)?),
+            TradeoffUnit::Budgets => found.budgets = self.budgets()?,
+            TradeoffUnit::Pass(seed) => found.passes.push(self.pass(seed)?),
             TradeoffUnit::NarrowPhase => {
                 let judge = ExactJudge::new(&scene.shapes)?;
-                StudyPart::NarrowPhase(judge.price_of_spheres(
-                    scene,
-                    &scene.bodies,
-                    tier,
-                    CHECKED_PAIRS,
-                )?)
+                let price = judge.price_of_spheres(scene, &scene.bodies, tier, CHECKED_PAIRS)?;
+                found.narrow_phase = Some(price);
             }
             TradeoffUnit::Clock => {
                 let frames = self.plan.window.min(scene.frames);
-                StudyPart::Clock(budget::by_clock(scene, tier, frames)?)
+                found.clock = budget::by_clock(scene, tier, frames)?;
             }
             TradeoffUnit::Interest => {
-                StudyPart::Interest(interest::times(scene, tier, self.plan.samples)?)
+                found.interest = interest::times(scene, tier, self.plan.samples)?;
             }
-            TradeoffUnit::Worlds => StudyPart::Worlds(worlds::times(scene, &self.variants, tier)?),
+            TradeoffUnit::Worlds => found.worlds = worlds::times(scene, &self.variants, tier)?,
             TradeoffUnit::Density(factor) => {
-                StudyPart::Density(density::at(file, factor, tier, self.samples_of_changed())?)
+                let samples = self.plan.samples.min(CHANGED_SAMPLES);
+                found.densities.extend(density::at(file, factor, tier, samples)?);
             }
-            TradeoffUnit::Variation(change) => {
-                StudyPart::Variation(vary::varied(file, change, tier, self.samples_of_changed())?)
-            }
-            TradeoffUnit::Safety => StudyPart::Safety(safety::compare(scene, self.plan.samples)?),
-        })
-    }
-
-    fn samples_of_changed(&self) -> u32 {
-        self.plan.samples.min(CHANGED_SAMPLES)
+        }
+        Ok(found)
     }
 
     fn compared(&self) -> ComparedVariants {
@@ -301,20 +232,17 @@ impl Comparison {
 }
 
 /// All units: first counts, then times.
-fn units(seeds: &[u64], shapes: usize, has_rest: bool) -> Vec<TradeoffUnit> {
+fn units(seeds: &[u64], has_rest: bool) -> Vec<TradeoffUnit> {
     // One pass per seed, and not too few.
     let passes = seeds.iter().cycle().take(seeds.len().max(PASSES));
     let once = [TradeoffUnit::NarrowPhase, TradeoffUnit::Clock, TradeoffUnit::Interest];
     let mut units = vec![TradeoffUnit::Compared];
     units.extend(seeds.iter().copied().map(TradeoffUnit::Seed));
     units.push(TradeoffUnit::Budgets);
-    units.extend((0..shapes).map(TradeoffUnit::Shape));
     units.extend(passes.copied().map(TradeoffUnit::Pass));
     units.extend(once);
     units.extend(has_rest.then_some(TradeoffUnit::Worlds));
     units.extend(density::FACTORS.map(TradeoffUnit::Density));
-    units.extend(vary::changes().into_iter().map(TradeoffUnit::Variation));
-    units.push(TradeoffUnit::Safety);
     units
 }
 
@@ -336,17 +264,6 @@ fn first_frames(scene: &Scene, count: u32) -> Result<Vec<Sample>, TradeoffError>
     Ok(samples(&scene, count)?)
 }
 
-/// One shape per mesh name: the shares don't depend on the size of a mesh.
-fn distinct(scene: &Scene) -> impl Iterator<Item = &Shape> {
-    let shapes = &scene.shapes;
-    let first = |name: &str| shapes.iter().position(|shape| shape.name == name);
-    shapes
-        .iter()
-        .enumerate()
-        .filter(move |(at, shape)| first(&shape.name) == Some(*at))
-        .map(|(_, shape)| shape)
-}
-
 impl Sweep for Comparison {
     fn header(&self) -> miette::Result<Header> {
         let scene = ("scene".to_owned(), digest(&(&self.file.spec, &self.scene)));
@@ -359,15 +276,12 @@ impl Sweep for Comparison {
             TradeoffUnit::Compared => "what is compared".to_owned(),
             TradeoffUnit::Seed(seed) => format!("truth and counts of seed {seed}"),
             TradeoffUnit::Budgets => "budgets of tests".to_owned(),
-            TradeoffUnit::Shape(number) => format!("shape {}", self.shapes[number].name),
             TradeoffUnit::Pass(seed) => format!("times on seed {seed}"),
             TradeoffUnit::NarrowPhase => "times of the narrow phase".to_owned(),
             TradeoffUnit::Clock => "budgets of time".to_owned(),
             TradeoffUnit::Interest => "times of interest sets".to_owned(),
             TradeoffUnit::Worlds => "times of worlds".to_owned(),
             TradeoffUnit::Density(factor) => format!("{factor} times the density"),
-            TradeoffUnit::Variation(change) => change.to_string(),
-            TradeoffUnit::Safety => "the price of safety".to_owned(),
         }
     }
 
@@ -376,19 +290,9 @@ impl Sweep for Comparison {
     }
 
     fn timed(&self, unit: usize) -> bool {
-        match self.units[unit] {
-            TradeoffUnit::Compared
-            | TradeoffUnit::Seed(_)
-            | TradeoffUnit::Budgets
-            | TradeoffUnit::Shape(_) => false,
-            TradeoffUnit::Pass(_)
-            | TradeoffUnit::NarrowPhase
-            | TradeoffUnit::Clock
-            | TradeoffUnit::Interest
-            | TradeoffUnit::Worlds
-            | TradeoffUnit::Density(_)
-            | TradeoffUnit::Variation(_)
-            | TradeoffUnit::Safety => true,
-        }
+        let counts = |unit| {
+            matches!(unit, TradeoffUnit::Compared | TradeoffUnit::Seed(_) | TradeoffUnit::Budgets)
+        };
+        !counts(self.units[unit])
     }
 }

@@ -44,11 +44,10 @@ fn shape_tightness(variant: &Variant, shape: &Shape) -> Option<f64> {
     (inner > 0.0).then_some(volume / inner)
 }
 
-/// Every variant for a scene, with the scene's settings for everything else. `hits` is the mean
-/// number of sphere hits per frame; half of it is the budget of time-critical culling.
+/// Every variant, with a scene's settings for everything else. `hits` is the mean number of sphere
+/// hits per frame; half of it is the budget of time-critical culling.
 #[must_use]
-pub fn all(scene: &Scene, hits: u64) -> Vec<Variant> {
-    let own = &scene.cull;
+pub fn all(own: &CullSettings, hits: u64) -> Vec<Variant> {
     let with = |strategy| CullSettings { strategy, ..own.clone() };
     let mut list = vec![
         Variant::spheres(own),
@@ -64,9 +63,32 @@ pub fn all(scene: &Scene, hits: u64) -> Vec<Variant> {
         list.push(Variant::of(format!("or-{k}, {}", own.overlap), set));
     }
     list.extend(s_dops(own));
-    list.extend(strategies(scene, hits));
+    list.extend(strategies(own, hits));
     list.push(Variant::hulls(own));
     list
+}
+
+/// The variant of a name: a strategy's, or one that tables show, such as `s-dop 26, model,
+/// two-sided`. What the name leaves out is as in `own`. `None` of another name.
+#[must_use]
+pub fn named(own: &CullSettings, name: &str) -> Option<Variant> {
+    if let Ok(strategy) = name.parse() {
+        return Some(Variant::strategy(own, strategy));
+    }
+    let parts: Vec<&str> = name.split(',').map(str::trim).collect();
+    let tests = parts.iter().find_map(|part| part.strip_suffix(" tests")?.parse().ok());
+    let overlap = parts.iter().find_map(|part| part.parse().ok()).unwrap_or(own.overlap);
+    let own = CullSettings { overlap, ..own.clone() };
+    let has_parts = |variant: &Variant| {
+        let its: Vec<&str> = variant.name.split(", ").collect();
+        its[0] == parts[0] && parts.iter().all(|part| its.contains(part))
+    };
+    let differs = |variant: &Variant| {
+        let CullSettings { axes, overlap, .. } = variant.settings;
+        (axes != own.axes, overlap != own.overlap)
+    };
+    let fitting = all(&own, 2 * tests.unwrap_or(0)).into_iter().filter(has_parts);
+    fitting.min_by_key(differs)
 }
 
 /// S-DOP over k × axes × overlap.
@@ -92,8 +114,7 @@ pub fn s_dops(own: &CullSettings) -> Vec<Variant> {
 }
 
 /// The other strategies, with the scene's or-DOPs.
-fn strategies(scene: &Scene, hits: u64) -> Vec<Variant> {
-    let own = &scene.cull;
+fn strategies(own: &CullSettings, hits: u64) -> Vec<Variant> {
     let with = |strategy, updates| CullSettings { strategy, updates, ..own.clone() };
     let interest = own.interest.clone().unwrap_or(Interest::Bodies(vec![0]));
     let budget = hits.div_ceil(2);
@@ -117,4 +138,25 @@ fn strategies(scene: &Scene, hits: u64) -> Vec<Variant> {
             },
         ),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every name of a table is found again, and a short one is as the settings have it.
+    #[test]
+    fn names_of_tables_are_found() {
+        let own = CullSettings::default();
+        for variant in all(&own, 10) {
+            assert_eq!(named(&own, &variant.name), Some(variant.clone()), "{}", variant.name);
+        }
+        let found = |name| named(&own, name).map(|variant| variant.name);
+        assert_eq!(found("s-dop 26").as_deref(), Some("s-dop 26, principal, two-sided"));
+        assert_eq!(found("s-dop 26, model").as_deref(), Some("s-dop 26, model, two-sided"));
+        assert_eq!(found("or-14, full").as_deref(), Some("or-14, full"));
+        assert_eq!(found("s-dop"), None);
+        let batch = named(&own, "s-dop-batch").map(|variant| variant.settings.strategy);
+        assert_eq!(batch, Some(Strategy::SDopBatch));
+    }
 }

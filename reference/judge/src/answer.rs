@@ -9,6 +9,10 @@ pub struct Answer {
     pub pairs: Vec<[u32; 2]>,
     /// The culler's own time, in nanoseconds.
     pub ns: Option<u64>,
+    /// Volumes that it updated for this frame: Nu of the cost formula.
+    pub nu: Option<u64>,
+    /// Pairs that it tested: Nv.
+    pub nv: Option<u64>,
 }
 
 /// Why a case ended without an answer to judge. None of these is a pass.

@@ -86,7 +86,7 @@ where
                 culler.boxes(&frame.boxes);
                 culler.frame(&frame.bodies);
                 culler.settle();
-                answers.push(Answer { pairs: culler.pairs(), ns: None });
+                answers.push(Answer { pairs: culler.pairs(), ..Answer::default() });
                 why = (frame.save && !culler.save()).then_some("its state can't be saved");
             }
             if let Some(why) = why {
@@ -132,9 +132,10 @@ where
     fn answer(&self, case: &Case) -> Result<Vec<Answer>, StopReason> {
         guarded(|answers| {
             answers.extend(
-                case.frames
-                    .iter()
-                    .map(|frame| Answer { pairs: (self.0)(&case.shapes, frame), ns: None }),
+                case.frames.iter().map(|frame| Answer {
+                    pairs: (self.0)(&case.shapes, frame),
+                    ..Answer::default()
+                }),
             );
             Ok(())
         })

@@ -3,12 +3,11 @@
 use std::ops::Range;
 
 use miette::miette;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use sdop_bench::report::Table;
 use serde_json::{Map, Value};
 
-use crate::commands::curves::{self, Chart, Curves, DrawResult, Stroke};
+use crate::commands::style::{Area, Chart, Curves, DrawResult, Stroke, draw_curves, page};
 
 /// Where the axis of distances, which is logarithmic, has the origin.
 const ORIGIN: f64 = 100.0;
@@ -34,7 +33,7 @@ pub fn draw(table: &Table) -> miette::Result<String> {
         let all = curves.values().flatten();
         1.1 * all.map(|point| point.1).fold(f64::MIN_POSITIVE, f64::max)
     };
-    curves::page((960, 720), |area| {
+    page((960, 720), |area| {
         let (upper, lower) = area.split_vertically(360);
         let y = "pairs lost or gained, % (log)";
         // A share of nothing at all is drawn at the lower end.
@@ -56,12 +55,7 @@ fn point(row: &Map<String, Value>) -> Option<(&str, f64, [f64; 2])> {
 }
 
 /// One quantity against distance, one curve per series.
-fn panel<Y>(
-    area: &DrawingArea<SVGBackend<'_>, Shift>,
-    curves: &Curves,
-    title: &str,
-    values: Y,
-) -> DrawResult
+fn panel<Y>(area: &Area<'_>, curves: &Curves, title: &str, values: Y) -> DrawResult
 where
     Y: plotters::coord::ranged1d::AsRangedCoord<Value = f64>,
     Y::CoordDescType: plotters::coord::ranged1d::ValueFormatter<f64>,
@@ -81,5 +75,5 @@ where
         ticks: &distance,
         legend: SeriesLabelPosition::UpperLeft,
     };
-    curves::draw(area, curves, |place, _| Stroke::plain(place), chart)
+    draw_curves(area, curves, |place, _| Stroke::plain(place), chart)
 }

@@ -58,7 +58,7 @@ pub struct Args {
     scenes: PathBuf,
     #[command(flatten)]
     machine: MachineArgs,
-    /// Output format: the main numbers, all results as JSON, or Table 1 as CSV
+    /// Output format: the main numbers, what pages are made from, or every number as CSV
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -79,7 +79,7 @@ const FULL: RunSize = RunSize { seeds: 64, frames: 400, effort: Effort { turns: 
 /// Scenes that can't be read, a shard that doesn't exist, results that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     sweep::enter(&args.sweep)?;
-    let experiments = Experiments::new(&plan(args)?, !args.quick)?;
+    let experiments = Experiments::new(&plan(args)?)?;
     let before = Conditions::before();
     let mut results = Results::of_header(&experiments.header()?)?;
     let mut take = |_, result: &str| results.take(result);
@@ -124,11 +124,11 @@ struct OutputPlace<'a> {
 impl OutputPlace<'_> {
     fn write(&self, tables: &Tables, format: Format, why: Option<&str>) -> miette::Result<()> {
         write_tables(self.numbers, tables)?;
-        for (name, svg) in figures::draw_all(&tables.drawings())? {
+        for (name, svg) in figures::draw_all(&tables.drawn)? {
             write(&self.paper.join("figures").join(name), &svg)?;
         }
         match format {
-            Format::Csv => emit(Format::Csv, &tables.table_1, |_| String::new()),
+            Format::Csv => emit(Format::Csv, &tables.rows, |_| String::new()),
             format => emit_with_reason(format, tables, why, |tables| {
                 terminal::brief(tables, self.seconds, &self.numbers.display().to_string())
             }),

@@ -1,21 +1,20 @@
-//! The result files. Each CSV file is one table, and `results.json` holds all tables but the two of
-//! single runs.
-//!
-//! Of these two, `counts` has the numbers that are the same on every machine, and the summary has
-//! its hash; `times` has the others.
+//! The result files: `counts.csv` has what is the same on every machine, seed by seed, and the
+//! summary has its hash; `claims.csv` has the claims and their numbers, and `reproduce.csv` every
+//! other number. `results.json` has what pages and figures are made from.
 
 use miette::IntoDiagnostic as _;
 use sdop::settings::Strategy;
-use sdop_bench::cost::table::{self, Cost, PriceRow};
+use sdop_bench::cost::table::{Cost, PriceRow};
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::measure::machine::Machine;
+use sdop_bench::measure::row::Row;
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::check::{PaperClaim, Verdict};
 use sdop_bench::reproduce::closed_form::{probability, relative_reach};
 use sdop_bench::reproduce::rates::{self, Rate};
 use sdop_bench::reproduce::readings::{self, Table1Cell};
-use sdop_bench::reproduce::sensitivity::Interpretation;
-use sdop_bench::reproduce::{Estimate, PaperScene, Results, StrategyRun, claims, study};
+use sdop_bench::reproduce::rows::{rows, scene_prices};
+use sdop_bench::reproduce::{PaperScene, Results, StrategyRun, claims, study};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -31,29 +30,22 @@ pub struct Tables {
     pub frames: u32,
     pub volumes_sha256: String,
     pub counts_sha256: String,
-    pub boxes: Vec<BoxRow>,
     pub conditions: Conditions,
     pub prices: Vec<ScenePrice>,
-    pub table_1: Vec<Table1Cell>,
-    pub rates: Vec<Rate>,
-    pub hidden: Vec<HiddenRow>,
-    /// Warm frames.
-    pub costs: Vec<Cost>,
+    #[serde(flatten)]
+    pub drawn: Drawings,
     /// Cold frames.
     pub cold_costs: Vec<Cost>,
-    pub survival: Vec<SurvivalRow>,
     pub claims: Vec<PaperClaim>,
     pub study: Vec<PaperClaim>,
-    /// Interpretations of what the paper doesn't state; empty with `--quick`.
-    pub interpretations: Vec<Interpretation>,
     #[serde(skip)]
     pub counts: Vec<CountRow>,
     #[serde(skip)]
-    pub times: Vec<TimeRow>,
+    pub rows: Vec<Row>,
 }
 
 /// What the figures are drawn from: a part of `results.json`.
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 pub struct Drawings {
     pub boxes: Vec<BoxRow>,
     pub table_1: Vec<Table1Cell>,
@@ -128,40 +120,6 @@ pub struct CountRow {
     pairs_sha256: Option<String>,
 }
 
-/// What it took, in seconds: medians over warm frames and over cold ones, the mean, the
-/// simulation's step, and Co once.
-#[derive(Serialize)]
-pub struct TimeRow {
-    scene: String,
-    seed: u64,
-    strategy: &'static str,
-    construct: f64,
-    update: f64,
-    pair_finding: f64,
-    ordop: f64,
-    total: f64,
-    total_cold: f64,
-    mean: f64,
-    simulation_step: f64,
-}
-
-/// The F from which on two strategies' frame rates are within five percent; none where they are
-/// without any F.
-#[derive(Serialize)]
-pub struct HiddenRow {
-    pub scene: &'static str,
-    pub of: [Strategy; 2],
-    pub from: Option<Estimate>,
-}
-
-/// or-DOP hits among sphere hits.
-#[derive(Serialize)]
-pub struct SurvivalRow {
-    pub k: usize,
-    pub overlap: &'static str,
-    pub percent: Estimate,
-}
-
 /// One number that supports or contradicts a claim.
 #[derive(Serialize)]
 struct CheckRow<'a> {
@@ -179,12 +137,11 @@ impl Tables {
     /// All tables of the results.
     pub fn new(results: &Results, machine: &Machine, command: String, before: Conditions) -> Self {
         let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
-        let survival = |row: &sdop_bench::reproduce::Survival| SurvivalRow {
-            k: row.k.k(),
-            overlap: row.overlap.name(),
-            percent: Estimate::of(&row.shares).scaled(100.0),
-        };
         let costs = results.costs(Regime::Warm);
+        let scene_prices = |&scene: &PaperScene| {
+            let prices = scene_prices(results, scene).into_iter();
+            prices.map(move |price| ScenePrice { scene: scene.name(), price })
+        };
         Self {
             command,
             machine: machine.clone(),
@@ -192,60 +149,35 @@ impl Tables {
             frames: results.plan.frames,
             volumes_sha256: results.volumes_sha256.clone(),
             counts_sha256: hash(&counts).unwrap_or_default(),
-            boxes: results
-                .plan
-                .names
-                .iter()
-                .filter_map(|&scene| results.example(scene.name()).map(|run| box_row(scene, run)))
-                .collect(),
             conditions: before.after(costs.iter().map(|cost| cost.frame.measured)),
-            prices: prices(results),
-            table_1: readings::table(results),
-            rates: rates::table(results),
-            hidden: hidden(results),
-            costs,
+            prices: results.plan.names.iter().flat_map(scene_prices).collect(),
+            drawn: Drawings {
+                boxes: results
+                    .plan
+                    .names
+                    .iter()
+                    .filter_map(|&name| box_row(results, name))
+                    .collect(),
+                table_1: readings::table(results),
+                rates: rates::table(results),
+                costs,
+            },
             cold_costs: results.costs(Regime::Cold),
-            survival: results.survival.iter().map(survival).collect(),
             claims: claims::all(results),
             study: study::all(results),
-            interpretations: results.interpretations.clone(),
             counts,
-            times: results.runs.iter().map(time_row).collect(),
+            rows: rows(results),
         }
     }
 
     /// The CSV files: name without extension, rows.
     pub fn files(&self) -> miette::Result<Vec<(&'static str, Value)>> {
         let value = |rows: serde_json::Result<Value>| rows.into_diagnostic();
-        let mut files = vec![
+        Ok(vec![
             ("counts", value(serde_json::to_value(&self.counts))?),
-            ("times", value(serde_json::to_value(&self.times))?),
-            ("table_1", value(serde_json::to_value(&self.table_1))?),
-            ("frame_rates", value(serde_json::to_value(&self.rates))?),
-            ("costs", value(serde_json::to_value(self.both_costs()))?),
-            ("prices", value(serde_json::to_value(&self.prices))?),
-            ("survival", value(serde_json::to_value(&self.survival))?),
             ("claims", value(serde_json::to_value(self.checks()))?),
-        ];
-        if !self.interpretations.is_empty() {
-            let rows = value(serde_json::to_value(&self.interpretations))?;
-            files.push(("interpretations", rows));
-        }
-        Ok(files)
-    }
-
-    fn both_costs(&self) -> Vec<&Cost> {
-        self.costs.iter().chain(&self.cold_costs).collect()
-    }
-
-    /// What the figures are drawn from.
-    pub fn drawings(&self) -> Drawings {
-        Drawings {
-            boxes: self.boxes.clone(),
-            table_1: self.table_1.clone(),
-            rates: self.rates.clone(),
-            costs: self.costs.clone(),
-        }
+            ("reproduce", value(serde_json::to_value(&self.rows))?),
+        ])
     }
 
     fn checks(&self) -> Vec<CheckRow<'_>> {
@@ -284,8 +216,9 @@ fn hash(counts: &[CountRow]) -> miette::Result<String> {
     Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-fn box_row(scene: PaperScene, run: &StrategyRun) -> BoxRow {
-    BoxRow {
+fn box_row(results: &Results, scene: PaperScene) -> Option<BoxRow> {
+    let run = results.example(scene.name())?;
+    Some(BoxRow {
         scene: run.scene.clone(),
         crowded: scene.crowded(),
         bodies: run.bodies,
@@ -293,43 +226,7 @@ fn box_row(scene: PaperScene, run: &StrategyRun) -> BoxRow {
         side: run.side,
         radius: run.radius,
         percent: 100.0 * probability(relative_reach(run.side, run.radius)),
-    }
-}
-
-/// The pairs of strategies that the paper compares, in the scenes of 500 objects.
-fn hidden(results: &Results) -> Vec<HiddenRow> {
-    use Strategy::{None as Control, SDopBatch, SDopObjectOfInterest, SDopSequential, Sphere};
-    let compared = [
-        [SDopObjectOfInterest, Control],
-        [SDopObjectOfInterest, Sphere],
-        [SDopSequential, Sphere],
-        [SDopBatch, Sphere],
-        [Strategy::OrDop, SDopBatch],
-    ];
-    let mut rows = Vec::new();
-    for &scene in &results.plan.names {
-        if results.example(scene.name()).is_some_and(|run| run.bodies == 500) {
-            rows.extend(compared.map(|of| HiddenRow {
-                scene: scene.name(),
-                of,
-                from: rates::hides(results, scene.name(), of, 0.95),
-            }));
-        }
-    }
-    rows
-}
-
-/// Prices for warm and for cold frames, scene by scene.
-fn prices(results: &Results) -> Vec<ScenePrice> {
-    let mut prices = Vec::new();
-    for &scene in &results.plan.names {
-        let passes = results.priced_as(scene);
-        for &regime in Regime::ALL {
-            let rows = table::prices(&passes, regime).into_iter();
-            prices.extend(rows.map(|price| ScenePrice { scene: scene.name(), price }));
-        }
-    }
-    prices
+    })
 }
 
 fn count_row(run: &StrategyRun) -> CountRow {
@@ -349,21 +246,5 @@ fn count_row(run: &StrategyRun) -> CountRow {
         ordop_hits: counters.ordop.hits,
         reported: counters.reported,
         pairs_sha256: run.pairs_sha256.clone(),
-    }
-}
-
-fn time_row(run: &StrategyRun) -> TimeRow {
-    TimeRow {
-        scene: run.scene.clone(),
-        seed: run.seed,
-        strategy: run.strategy.name(),
-        construct: run.seconds.construct,
-        update: run.seconds.update,
-        pair_finding: run.seconds.pair_finding,
-        ordop: run.seconds.ordop,
-        total: run.seconds.total,
-        total_cold: run.cold,
-        mean: run.mean,
-        simulation_step: run.step,
     }
 }

@@ -8,7 +8,7 @@ use sdop_bench::reproduce::paper_name;
 use sdop_bench::reproduce::readings::{Reading, TABLE_1_STRATEGIES, Table1Cell};
 
 use super::rows::{Tables, distinct};
-use crate::commands::output::table;
+use crate::commands::output::{paragraphs, table};
 
 /// Table 1, times and verdicts; `place` is where the rest was written.
 pub fn brief(tables: &Tables, seconds: f64, place: &str) -> String {
@@ -16,11 +16,11 @@ pub fn brief(tables: &Tables, seconds: f64, place: &str) -> String {
     // Writing to a String cannot fail.
     let _ = sections(&mut out, tables);
     let _ = writeln!(out, "\n{seconds:.1} s; written to {place}");
-    out
+    paragraphs(&out)
 }
 
 fn sections(out: &mut String, tables: &Tables) -> Result {
-    let scenes: Vec<&str> = tables.boxes.iter().map(|row| row.scene.as_str()).collect();
+    let scenes: Vec<&str> = tables.drawn.boxes.iter().map(|row| row.scene.as_str()).collect();
     let heads = [&["strategy"], &scenes[..]].concat();
     writeln!(
         out,
@@ -36,7 +36,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
             let paper = cell.paper.map_or(String::new(), |paper| format!(" ({paper:.2})"));
             format!("{}{paper}", interval(&cell.measured))
         };
-        let cells = tables.table_1.iter().filter(of).map(cell);
+        let cells = tables.drawn.table_1.iter().filter(of).map(cell);
         rows.add_row(std::iter::once(paper_name(strategy).to_owned()).chain(cells));
     }
     writeln!(
@@ -44,7 +44,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
         "{rows}\n\nCulling, µs per warm frame, and how far the formula's prediction is off"
     )?;
     let mut rows = table(&heads);
-    for strategy in distinct(tables.costs.iter().map(|cost| cost.strategy)) {
+    for strategy in distinct(tables.drawn.costs.iter().map(|cost| cost.strategy)) {
         let of = |cost: &&Cost| cost.strategy == strategy;
         let cell = |cost: &Cost| {
             format!(
@@ -53,7 +53,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
                 100.0 * cost.frame.residual.mean
             )
         };
-        let cells = tables.costs.iter().filter(of).map(cell);
+        let cells = tables.drawn.costs.iter().filter(of).map(cell);
         rows.add_row(std::iter::once(paper_name(strategy).to_owned()).chain(cells));
     }
     if let Some(warning) = tables.conditions.warning() {
@@ -62,7 +62,7 @@ fn sections(out: &mut String, tables: &Tables) -> Result {
         writeln!(out, "{rows}\n\nThe paper's claims")?;
     }
     for claim in &tables.claims {
-        writeln!(out, "  {:<12} {}", claim.verdict().name(), claim.claim)?;
+        writeln!(out, "{:<12} {}", claim.verdict().name(), claim.claim)?;
     }
     Ok(())
 }

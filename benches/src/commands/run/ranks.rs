@@ -38,7 +38,7 @@ fn share(args: &Args, network: &MpiNetwork) -> miette::Result<(u64, Scene)> {
             network.size()
         );
     }
-    let file = args.scene.read()?;
+    let file = args.scene.read_culled()?;
     let scene = file.build_share(network.rank(), network.size())?;
     let work = digest(&(code(), &file.spec, volumes_sha256(&scene.shapes)));
     let work = u64::from_str_radix(&work[..16], 16).into_diagnostic()?;

@@ -8,8 +8,9 @@ use sdop::settings::Overlap;
 use sdop_bench::tradeoff::pays::Standing;
 use sdop_bench::tradeoff::{Tradeoff, VariantResult};
 
-use crate::commands::curves::{self, Chart, Curves, FONT, Stroke, plain};
-use crate::commands::palette::{BY_K, GREY, LIGHT, PALE};
+use crate::commands::style::{
+    BY_K, Chart, Curves, GREY, LIGHT, Stroke, draw_curves, page, plain, quiet, text,
+};
 
 const SIZE: (u32, u32) = (960, 600);
 
@@ -31,22 +32,18 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
         _ => front.clone(),
     };
     let times = span(result.rows.iter().map(|row| at(row).0));
-    curves::page(SIZE, |area| {
+    page(SIZE, |area| {
         let mut chart = ChartBuilder::on(area)
-            .caption(format!("{}: what accuracy costs", result.scene), (FONT, 20))
+            .caption(format!("{}: what accuracy costs", result.scene), text(17))
             .margin(14)
             .x_label_area_size(46)
             .y_label_area_size(56)
             .build_cartesian_2d((times.start / 1.5..times.end * 3.0).log_scale(), 0.0..1.0)?;
-        chart
-            .configure_mesh()
+        quiet(&mut chart.configure_mesh())
             .x_desc("time per warm frame, µs (log)")
             .x_label_formatter(&plain)
             .y_desc("precision: true pairs / reported pairs")
             .y_label_formatter(&plain)
-            .label_style((FONT, 14))
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(PALE)
             .draw()?;
         for (standing, colour) in [(Standing::Beaten, LIGHT), (Standing::Tied, GREY)] {
             let rows = result.rows.iter().filter(|row| is_drawn_as(row, standing));
@@ -62,9 +59,12 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             .draw_series(LineSeries::new(steps, line))?
             .label("front")
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], line));
-        let points: Vec<(i32, i32)> =
-            labelled.iter().map(|row| chart.backend_coord(&at(row))).collect();
-        for (place, (row, offset)) in labelled.iter().zip(label_offsets(&points)).enumerate() {
+        let pixel = |row: &VariantResult| chart.backend_coord(&at(row));
+        let dots: Vec<(i32, i32)> = result.rows.iter().map(pixel).collect();
+        let names: Vec<(&str, (i32, i32))> =
+            labelled.iter().map(|row| (row.name.as_str(), pixel(row))).collect();
+        let offsets = label_offsets(&names, &dots);
+        for (place, (row, offset)) in labelled.iter().zip(offsets).enumerate() {
             let colour = if place < front.len() { BLACK } else { GREY };
             let (time, precision) = at(row);
             let seconds = row.seconds();
@@ -76,9 +76,8 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             }
             let mark = EmptyElement::at((time, precision))
                 + Circle::new((0, 0), 5, colour.filled())
-                + PathElement::new([(6, 0), (offset.0 - 3, offset.1 + 6)], GREY)
-                + Rectangle::new(plate(&row.name, offset), WHITE.mix(0.85).filled())
-                + Text::new(row.name.clone(), offset, (FONT, 13));
+                + PathElement::new([(0, 0), (offset.0 - 3, offset.1 + 6)], GREY)
+                + Text::new(row.name.clone(), offset, text(13));
             chart.draw_series([mark])?;
         }
         chart
@@ -86,15 +85,10 @@ pub fn precision(result: &Tradeoff) -> miette::Result<String> {
             .position(SeriesLabelPosition::LowerRight)
             .border_style(LIGHT)
             .background_style(WHITE)
-            .label_font((FONT, 14))
+            .label_font(text(13))
             .draw()?;
         Ok(())
     })
-}
-
-/// The background of a name, so that it can be read over a line.
-fn plate(name: &str, (x, y): (i32, i32)) -> [(i32, i32); 2] {
-    [(x - 1, y), (x + 7 * name.chars().count() as i32, y + 13)]
 }
 
 /// A variant's place: µs per warm frame, precision.
@@ -117,34 +111,42 @@ fn front(result: &Tradeoff) -> Vec<&VariantResult> {
     front
 }
 
-/// Where the names of points go, in pixels from each: to the right, the lowest point's first, each
-/// above the one below it where they would hide one another. Points are in pixels, down the page.
-fn label_offsets(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
+/// Where the names of points go, in pixels from each: to the right, as near as they can be without
+/// hiding a dot or another name. Dots are in pixels, down the page.
+fn label_offsets(names: &[(&str, (i32, i32))], dots: &[(i32, i32)]) -> Vec<(i32, i32)> {
     const HEIGHT: i32 = 15;
-    const WIDTH: i32 = 200;
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by_key(|&at| -points[at].1);
-    let mut tops = vec![0; points.len()];
-    for (rank, &own) in order.iter().enumerate() {
-        let mut top = points[own].1 + 3; // below the line, which rises
-        // Names further down first: one that is moved up may come to lie over the next.
-        for &other in &order[..rank] {
-            let near = (points[own].0 - points[other].0).abs() < WIDTH;
-            if near && (top - tops[other]).abs() < HEIGHT {
-                top = tops[other] - HEIGHT;
-            }
-        }
-        tops[own] = top;
+    /// Steps down and up, the nearest first; then further to the right.
+    const PLACES: [i32; 13] = [3, -17, 18, -32, 33, -47, 48, -62, 63, -77, 78, -92, 93];
+    let mut taken: Vec<[i32; 4]> =
+        dots.iter().map(|&(x, y)| [x - 6, y - 6, x + 6, y + 6]).collect();
+    let mut offsets = Vec::new();
+    for &(name, (x, y)) in names {
+        let width = 7 * name.chars().count() as i32;
+        let of =
+            |(right, down): (i32, i32)| [x + right, y + down, x + right + width, y + down + HEIGHT];
+        let is_free = |offset: &(i32, i32)| {
+            let own = of(*offset);
+            taken.iter().all(|other| {
+                own[2] <= other[0] || other[2] <= own[0] || own[3] <= other[1] || other[3] <= own[1]
+            })
+        };
+        let further = [14, 40, 70, 110].into_iter();
+        let mut places = further.flat_map(|right| PLACES.map(|down| (right, down)));
+        let offset = places.find(is_free).unwrap_or((14, PLACES[0]));
+        taken.push(of(offset));
+        offsets.push(offset);
     }
-    let offset = |(point, top): (&(i32, i32), &i32)| (24, top - point.1);
-    points.iter().zip(&tops).map(offset).collect()
+    offsets
 }
 
-/// For each S-DOP, the Cp above which it is cheaper than spheres alone, against density.
+/// For each S-DOP with a two-sided test, the Cp above which it is cheaper than spheres alone,
+/// against density.
 pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
     let mut curves = Curves::new();
+    let stroke_of = |name: &str| of_variant(result.rows.iter().find(|row| row.name == name)?);
     for density in &result.densities {
-        for even in density.break_even.iter().filter(|b| b.cp > 0.0) {
+        for even in density.break_even.iter().filter(|b| b.cp > 0.0 && stroke_of(&b.name).is_some())
+        {
             let point = (density.partners, 1e9 * even.cp);
             curves.entry(even.name.clone()).or_default().push(point);
         }
@@ -156,10 +158,7 @@ pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
         "exact narrow phase".into(),
         vec![(densities.start, reference), (densities.end, reference)],
     );
-    let stroke = |place, name: &str| {
-        let row = result.rows.iter().find(|row| row.name == name);
-        row.and_then(of_variant).unwrap_or(Stroke::plain(place))
-    };
+    let stroke = |place, name: &str| stroke_of(name).unwrap_or(Stroke::plain(place));
     let legend_room = 6.0;
     let chart = Chart {
         caption: &format!("{}: when an or-DOP pays", result.scene),
@@ -169,14 +168,14 @@ pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
         ticks: &plain,
         legend: SeriesLabelPosition::UpperRight,
     };
-    curves::page(SIZE, |area| curves::draw(area, &curves, stroke, chart))
+    page(SIZE, |area| draw_curves(area, &curves, stroke, chart))
 }
 
-/// An S-DOP's colour by its k; dashed with rings when its test is two-sided.
+/// The curve of an S-DOP with a two-sided test, coloured by its k.
 fn of_variant(row: &VariantResult) -> Option<Stroke> {
     let known = [6, 14, 18, 26].iter().position(|k| row.k == Some(*k))?;
-    let is_dashed = row.overlap? == Overlap::TwoSided;
-    Some(Stroke { colour: BY_K[known], is_dashed, has_rings: is_dashed })
+    let is_drawn = row.overlap? == Overlap::TwoSided;
+    is_drawn.then_some(Stroke { colour: BY_K[known], is_dashed: false, has_rings: false })
 }
 
 /// Precision against the budget of tests, a curve per order.
@@ -196,7 +195,7 @@ pub fn budget(result: &Tradeoff) -> miette::Result<String> {
         legend: SeriesLabelPosition::UpperRight,
     };
     let stroke = |place, _: &str| Stroke::plain(place);
-    curves::page(SIZE, |area| curves::draw(area, &curves, stroke, chart))
+    page(SIZE, |area| draw_curves(area, &curves, stroke, chart))
 }
 
 /// From the least to the greatest positive value; one decade about 1 when there is none.
@@ -233,9 +232,8 @@ mod tests {
         serde_json::from_value(serde_json::json!({
             "scene": "s", "bodies": 2, "frames": 1, "samples": 1, "seeds": [1], "simd": "scalar",
             "truth": estimate(1.0), "partners": 1.0, "narrow_phase": {"miss": 1e-6, "hit": 1e-6},
-            "rows": rows, "cheapest": [], "densities": [], "variations": [], "budgets": [],
-            "clock": [], "interest": [], "shapes": [], "safety": [], "prices": [],
-            "decisions": [], "conditions": Conditions::default(), "advice": "",
+            "rows": rows, "cheapest": [], "densities": [], "budgets": [],
+            "clock": [], "interest": [], "prices": [], "conditions": Conditions::default(), "advice": "",
         }))
         .unwrap()
     }
@@ -266,15 +264,28 @@ mod tests {
         assert_eq!(black.count(), 3, "a dot for each on the front");
     }
 
-    /// Names of near points lie above one another and far ones stay.
+    /// Names hide no dot and no other name.
     #[test]
-    fn near_labels_are_stacked() {
-        let points = [(100, 300), (110, 298), (105, 297), (600, 300)];
-        let tops: Vec<i32> = label_offsets(&points)
+    fn names_hide_nothing() {
+        let dots = [(100, 300), (110, 298), (105, 297), (130, 305), (600, 300)];
+        let names = dots.map(|dot| ("s-dop 18, one-sided", dot));
+        let offsets = label_offsets(&names, &dots);
+        let mut boxes: Vec<[i32; 4]> = names
             .iter()
-            .zip(points)
-            .map(|(offset, point)| offset.1 + point.1)
+            .zip(offsets)
+            .map(|((name, (x, y)), (right, down))| {
+                let width = 7 * name.len() as i32;
+                [x + right, y + down, x + right + width, y + down + 15]
+            })
             .collect();
-        assert_eq!(tops, [303, 288, 273, 303]);
+        boxes.extend(dots.map(|(x, y)| [x - 4, y - 4, x + 4, y + 4]));
+        for (at, own) in boxes.iter().enumerate() {
+            for other in &boxes[at + 1..] {
+                let apart = own[2] <= other[0] || other[2] <= own[0];
+                let apart = apart || own[3] <= other[1] || other[3] <= own[1];
+                // Dots may lie on one another.
+                assert!(apart || own[2] - own[0] == 8, "{own:?} {other:?}");
+            }
+        }
     }
 }

@@ -1,380 +1,155 @@
 //! The result as tables for a terminal.
 
-use comfy_table::Table;
-use sdop::settings::{Axes, Overlap};
-use sdop_bench::cost::table::CheckedPrediction;
-use sdop_bench::cost::terms::Terms;
-use sdop_bench::tradeoff::decide::{CHECKS, Decision};
-use sdop_bench::tradeoff::pays::{Line, Standing};
-use sdop_bench::tradeoff::shapes::ShapeSurvival;
-use sdop_bench::tradeoff::{Estimate, Tradeoff, VariantResult};
+use sdop_bench::measure::turns::Regime;
+use sdop_bench::report::digits::interval;
+use sdop_bench::tradeoff::pays::{CHECKS, Choice, Standing, choose};
+use sdop_bench::tradeoff::{Tradeoff, VariantResult};
 
-use crate::commands::output::{rows, table};
+use crate::commands::output::{Column, Listing, counted, paragraphs, pivot, rows, table};
 
-/// For people: the recommendation, then a short table.
-pub fn brief(result: &Tradeoff) -> String {
-    let front: Vec<VariantResult> = {
-        let shown = result.rows.iter().filter(|row| row.standing != Standing::Beaten);
-        let mut shown: Vec<VariantResult> = shown.cloned().collect();
-        shown.sort_by(|a, b| a.seconds().mean.total_cmp(&b.seconds().mean));
-        shown
-    };
+/// A title, and the quantities of the variants below it.
+type Part = (&'static str, &'static [Column<'static>]);
+
+/// The tables of `--all`, after the recommended variants. A line has those of its quantities that a
+/// variant has.
+const PARTS: [Part; 6] = [
+    (
+        "Every variant",
+        &[
+            ("reported", "reported", 1.0),
+            ("precision", "precision", 1.0),
+            ("reported / true", "reported / true", 1.0),
+            ("recall", "recall", 1.0),
+            ("volume / hull", "volume / hull", 1.0),
+        ],
+    ),
+    (
+        "The formula, µs per warm frame",
+        &[
+            ("Nu·Cu", "Nu*Cu", 1e6),
+            ("F", "F", 1e6),
+            ("Nv·Cv", "Nv*Cv", 1e6),
+            ("measured", "measured", 1e6),
+            ("residual, %", "residual", 100.0),
+            ("Co, ms", "Co measured", 1e3),
+        ],
+    ),
+    (
+        "Time-critical: precision against the budget of tests",
+        &[
+            ("refined", "refined", 1.0),
+            ("precision", "precision", 1.0),
+            ("recall", "recall", 1.0),
+            ("mean age", "mean age", 1.0),
+            ("oldest", "oldest", 1.0),
+        ],
+    ),
+    (
+        "Time-critical: the overrun of the clock, µs",
+        &[("refined", "refined", 1.0), ("p50", "overrun p50", 1e6), ("p99", "overrun p99", 1e6)],
+    ),
+    (
+        "Object of interest",
+        &[
+            ("or-DOP tests", "or-DOP tests", 1.0),
+            ("reported", "reported", 1.0),
+            ("precision", "precision", 1.0),
+            ("warm µs", "time", 1e6),
+            ("lazy, warm µs", "time, lazy", 1e6),
+        ],
+    ),
+    (
+        "Bodies fall asleep: a culler is given every pose, a world keeps the pairs of those that stay",
+        &[
+            ("reported", "reported of a run", 1.0),
+            ("culler, warm µs", "culler's time of a run", 1e6),
+            ("world, warm µs", "world's time of a run", 1e6),
+        ],
+    ),
+];
+
+/// For people: the recommendation, the variants that aren't beaten, and on request all tables.
+pub fn text(result: &Tradeoff, is_whole: bool) -> String {
+    let mut parts = vec![result.advice.clone()];
+    parts.extend(result.conditions.warning());
+    parts.extend([heading(result), unbeaten(result).to_string()]);
+    if is_whole {
+        let title = "The cheapest variant, by density and price of a check; * not alone";
+        parts.push(format!("{title}\n{}", decisions(result)));
+        let title = "The ns per check from which each is cheaper than spheres, by density";
+        parts.push(format!("{title}\n{}", break_even(result)));
+        let all = result.rows();
+        for (title, columns) in PARTS {
+            // The quantity that only the variants of this table have comes last.
+            let own = columns[columns.len() - 1].1;
+            let is_of =
+                |variant: &str| all.iter().any(|row| row.variant == variant && row.metric == own);
+            let rows: Vec<_> = all.iter().filter(|row| is_of(&row.variant)).cloned().collect();
+            if !rows.is_empty() {
+                parts.push(format!("{title}\n{}", pivot(&rows, Regime::Warm, false, columns)));
+            }
+        }
+    } else {
+        parts.push("--all prints the rest.".to_owned());
+    }
+    paragraphs(&parts.join("\n\n"))
+}
+
+/// The variants that no other one beats, the fastest first.
+fn unbeaten(result: &Tradeoff) -> Listing {
+    let mut shown: Vec<&VariantResult> =
+        result.rows.iter().filter(|row| row.standing != Standing::Beaten).collect();
+    shown.sort_by(|a, b| a.seconds().mean.total_cmp(&b.seconds().mean));
     let header = ["variant", "standing", "precision", "µs per warm frame", "false pairs"];
-    let short = rows(&header, &front, |row| {
+    rows(&header, &shown, |row| {
         vec![
             row.name.clone(),
             row.standing.to_string(),
-            plus_minus(&row.precision, 1.0, 3),
-            plus_minus(&row.seconds(), 1e6, 1),
+            interval(&row.precision),
+            interval(&row.seconds().scaled(1e6)),
             format!("{:.1}", row.reported.mean * (1.0 - row.precision.mean)),
         ]
-    });
-    let mut parts = vec![result.advice.clone()];
-    parts.extend(result.conditions.warning());
-    parts.extend([heading(result), short.to_string()]);
-    parts.extend(in_worlds(result));
-    parts.push("--all prints the rest.".to_owned());
-    parts.join("\n\n")
-}
-
-/// Everything, for people.
-pub fn text(result: &Tradeoff) -> String {
-    let mut parts = vec![result.advice.clone()];
-    parts.extend(result.conditions.warning());
-    parts.extend([
-        heading(result),
-        "Which variant, by density, class of shapes and price of a narrow-phase check".into(),
-        decisions(result).to_string(),
-        variants(result).to_string(),
-    ]);
-    parts.extend(in_worlds(result));
-    parts.extend([
-        "Time-critical: precision against the budget of tests".into(),
-        budgets(result).to_string(),
-        "Time-critical: the clock overrun, microseconds".into(),
-        clock(result).to_string(),
-        "Object of interest".into(),
-        interest(result).to_string(),
-        "Cp (ns) above which each pays, spheres alone before it, by density".into(),
-        break_even(result).to_string(),
-        "Which variant, when one thing about the scene is changed".into(),
-        variations(result).to_string(),
-        "Survivors per sphere hit (two bodies of one shape, principal axes)".into(),
-        shapes(result).to_string(),
-        "The price of safety".into(),
-        safety(result).to_string(),
-    ]);
-    parts.join("\n\n")
-}
-
-/// For a scene in which bodies fall asleep: each variant in a culler and in a world, the fastest
-/// world first.
-fn in_worlds(result: &Tradeoff) -> Option<String> {
-    let mut fastest = result.worlds.clone();
-    fastest.sort_by(|a, b| a.world.mean.total_cmp(&b.world.mean));
-    let header = ["variant", "reported", "culler, warm µs", "world, warm µs"];
-    let times = rows(&header, &fastest, |row| {
-        vec![
-            row.variant.clone(),
-            format!("{:.1}", row.reported),
-            plus_minus(&row.culler, 1e6, 1),
-            plus_minus(&row.world, 1e6, 1),
-        ]
-    });
-    let title = "Bodies fall asleep: a culler is given every pose, a world keeps the pairs of those that stay";
-    (!fastest.is_empty()).then(|| format!("{title}\n\n{times}"))
-}
-
-/// One row per density and class of shapes, one column per price of a check: what to use, and what
-/// is tied with it.
-pub fn decisions(result: &Tradeoff) -> Table {
-    let checks: Vec<String> = CHECKS.iter().map(|check| nanoseconds(*check)).collect();
-    let header = [
-        &["sphere overlaps per body", "shapes"],
-        &checks.iter().map(String::as_str).collect::<Vec<_>>()[..],
-    ]
-    .concat();
-    let mut rows = table(&header);
-    for decisions in
-        result.decisions.chunk_by(|a, b| (a.partners, a.class) == (b.partners, b.class))
-    {
-        let cell = |decision: &Decision| with_ties(&decision.best, &decision.tied);
-        let first = [format!("{:.2}", decisions[0].partners), decisions[0].class.to_string()];
-        rows.add_row(first.into_iter().chain(decisions.iter().map(cell)));
-    }
-    rows
-}
-
-fn with_ties(best: &str, tied: &[String]) -> String {
-    match tied {
-        [] => best.to_owned(),
-        [one] => format!("{best} (tied: {one})"),
-        [one, rest @ ..] => format!("{best} (tied: {one} and {} more)", rest.len()),
-    }
-}
-
-/// One row per change of the scene, one column per price of a check: what to use, and what is tied
-/// with it.
-pub fn variations(result: &Tradeoff) -> Table {
-    let checks = CHECKS.map(nanoseconds);
-    let header = [
-        "changed",
-        "bodies",
-        "triangles per mesh",
-        "radii per frame",
-        "sphere overlaps per body",
-        "Co of an or-DOP ms",
-        "exact check µs",
-        "spheres, warm µs",
-        "best at 1000 ns, warm µs",
-    ];
-    let header = [&header[..], &checks.each_ref().map(String::as_str)].concat();
-    rows(&header, &result.variations, |varied| {
-        let construct = |line: &Line| line.ordop.map(|_| line.construct);
-        let construct = varied.lines.iter().filter_map(construct).fold(0.0, f64::max);
-        let changed = match varied.mix {
-            Some(mix) => format!("{}: {mix}", varied.aspect),
-            None => varied.aspect.to_string(),
-        };
-        let mut cells = vec![
-            changed,
-            varied.bodies.to_string(),
-            format!("{:.0}", varied.triangles),
-            format!("{:.3}", varied.motion),
-            format!("{:.2}", varied.partners),
-            format!("{:.1}", 1e3 * construct),
-            format!("{:.1}", 1e6 * varied.narrow_phase.miss),
-        ];
-        let best = varied.best.iter().find(|best| best.check == 1e-6);
-        let best = best.and_then(|best| varied.lines.iter().find(|line| line.name == best.name));
-        for line in [varied.lines.first(), best] {
-            cells.push(
-                line.map_or("–".into(), |line| {
-                    plus_minus(&Estimate::in_order(&line.times), 1e6, 1)
-                }),
-            );
-        }
-        cells.extend(varied.best.iter().map(|best| with_ties(&best.name, &best.tied)));
-        cells
     })
-}
-
-fn nanoseconds(seconds: f64) -> String {
-    format!("{:.0} ns a check", 1e9 * seconds)
 }
 
 /// What was run.
-pub fn heading(result: &Tradeoff) -> String {
+fn heading(result: &Tradeoff) -> String {
+    let Tradeoff { scene, bodies, samples, frames, seeds, simd, partners, .. } = result;
     format!(
-        "{}: {} bodies, {} of {} frames judged, seeds {:?}, {}; {} true pairs a frame, {:.2} sphere overlaps a body",
-        result.scene,
-        result.bodies,
-        result.samples,
-        result.frames,
-        result.seeds,
-        result.simd,
-        plus_minus(&result.truth, 1.0, 1),
-        result.partners,
+        "{scene}: {bodies} bodies, {}, {samples} of {frames} frames of each judged, {simd}; {} true pairs per frame, \
+         {partners:.2} sphere overlaps per body",
+        counted(seeds.len(), "seed"),
+        interval(&result.truth),
     )
 }
 
-/// The mean and its interval, scaled.
-pub fn plus_minus(estimate: &Estimate, scale: f64, digits: usize) -> String {
-    let (mean, half) = (scale * estimate.mean, scale * estimate.half_width);
-    if half.is_finite() {
-        format!("{mean:.digits$} ± {half:.digits$}")
-    } else {
-        format!("{mean:.digits$}")
-    }
+/// One row per density, one column per price of a check: what to use.
+fn decisions(result: &Tradeoff) -> Listing {
+    let checks = CHECKS.map(|seconds| format!("{:.0} ns", 1e9 * seconds));
+    let header = [&["overlaps per body"][..], &checks.each_ref().map(String::as_str)].concat();
+    rows(&header, &result.densities, |density| {
+        let name = |Choice { best, tied, .. }: Choice| match tied.is_empty() {
+            true => best,
+            false => format!("{best} *"),
+        };
+        let cell = |check| choose(&density.lines, check).map_or("–".to_owned(), name);
+        std::iter::once(format!("{:.2}", density.partners)).chain(CHECKS.map(cell)).collect()
+    })
 }
 
-/// One row per variant, with its relation to the Pareto front.
-pub fn variants(result: &Tradeoff) -> Table {
-    let header = [
-        "variant",
-        "standing",
-        "precision",
-        "reported / true",
-        "recall",
-        "volume / hull",
-        "Nu",
-        "Nv",
-        "Nu·Cu µs",
-        "F µs",
-        "Nv·Cv µs",
-        "sum µs",
-        "warm µs",
-        "residual %",
-        "cold µs",
-        "residual %",
-        "Co ms",
-        "residual %",
-    ];
-    rows(&header, &result.rows, variant)
-}
-
-fn variant(row: &VariantResult) -> Vec<String> {
-    let terms = row.warm.as_ref().map_or(&[][..], |cost| &cost.terms);
-    let joined = |term: fn(&Terms) -> f64| {
-        let terms: Vec<String> = terms.iter().map(|t| format!("{:.0}", term(t))).collect();
-        terms.join(" + ")
-    };
-    let sum = |term: fn(&Terms) -> f64| format!("{:.1}", 1e6 * terms.iter().map(term).sum::<f64>());
-    let compared = |cost: Option<&CheckedPrediction>, scale: f64| {
-        let cells = cost.map(|cost| {
-            let residual = format!("{:+.1}", 100.0 * cost.residual.mean);
-            [plus_minus(&cost.measured, scale, 1), residual]
+/// One row per S-DOP, one column per density, which is in sphere overlaps per body.
+fn break_even(result: &Tradeoff) -> Listing {
+    let densities: Vec<String> =
+        result.densities.iter().map(|density| format!("{:.2}", density.partners)).collect();
+    let header: Vec<&str> =
+        std::iter::once("variant").chain(densities.iter().map(String::as_str)).collect();
+    let mut rows = table(&header);
+    for name in result.densities.first().iter().flat_map(|one| &one.break_even).map(|b| &b.name) {
+        let cells = result.densities.iter().map(|density| {
+            let found = density.break_even.iter().find(|even| even.name == *name);
+            found.map_or("–".to_owned(), |even| format!("{:.0}", 1e9 * even.cp))
         });
-        cells.unwrap_or_default()
-    };
-    let mut cells = vec![
-        row.name.clone(),
-        row.standing.to_string(),
-        plus_minus(&row.precision, 1.0, 3),
-        plus_minus(&row.per_true, 1.0, 2),
-        if row.recall == 1.0 { "1".into() } else { format!("{:.6}", row.recall) },
-        row.volume_over_hull.map_or("–".into(), |ratio| format!("{ratio:.2}")),
-        joined(|t| t.updates),
-        joined(|t| t.tests),
-        sum(|t| t.update),
-        sum(|t| t.finding),
-        sum(|t| t.test),
-        sum(Terms::recurring),
-    ];
-    cells.extend(compared(row.warm.as_ref().map(|cost| &cost.frame), 1e6));
-    cells.extend(compared(row.cold.as_ref().map(|cost| &cost.frame), 1e6));
-    cells.extend(compared(row.warm.as_ref().map(|cost| &cost.construct), 1e3));
-    cells
-}
-
-/// A line an order and budget.
-pub fn budgets(result: &Tradeoff) -> Table {
-    let header = ["order", "tests / frame", "refined", "precision", "recall", "mean age", "oldest"];
-    rows(&header, &result.budgets, |row| {
-        vec![
-            row.order.to_string(),
-            row.tests.to_string(),
-            format!("{:.3}", row.refined),
-            format!("{:.3}", row.precision),
-            format!("{}", row.recall),
-            format!("{:.1}", row.mean_age),
-            row.oldest.to_string(),
-        ]
-    })
-}
-
-/// A line a clock budget.
-pub fn clock(result: &Tradeoff) -> Table {
-    let header = ["budget µs", "refined", "overrun p50", "overrun p99"];
-    rows(&header, &result.clock, |row| {
-        vec![
-            row.microseconds.to_string(),
-            format!("{:.3}", row.refined),
-            format!("{:+.1}", row.p50),
-            format!("{:+.1}", row.p99),
-        ]
-    })
-}
-
-/// A line an interest set.
-pub fn interest(result: &Tradeoff) -> Table {
-    let header = [
-        "of interest",
-        "or-DOP tests",
-        "reported",
-        "precision",
-        "recall",
-        "warm µs",
-        "lazy, warm µs",
-    ];
-    rows(&header, &result.interest, |row| {
-        vec![
-            row.bodies.to_string(),
-            format!("{:.1}", row.tests),
-            format!("{:.1}", row.reported),
-            format!("{:.3}", row.quality.precision),
-            format!("{}", row.quality.recall),
-            plus_minus(&row.seconds, 1e6, 1),
-            plus_minus(&row.lazy_seconds, 1e6, 1),
-        ]
-    })
-}
-
-/// One line per density, one column per S-DOP.
-pub fn break_even(result: &Tradeoff) -> Table {
-    let names = result
-        .densities
-        .first()
-        .map_or(Vec::new(), |density| density.break_even.iter().map(|b| b.name.as_str()).collect());
-    let mut header = vec!["partners", "sphere hits"];
-    header.extend(&names);
-    let mut rows = table(&header);
-    for density in &result.densities {
-        let hits = density.lines.first().map_or(0.0, |line| line.pairs);
-        let mut cells = vec![format!("{:.3}", density.partners), format!("{hits:.1}")];
-        cells.extend(names.iter().map(|name| {
-            let found = density.break_even.iter().find(|b| b.name == *name);
-            found.map_or("–".into(), |b| format!("{:.0}", 1e9 * b.cp))
-        }));
-        rows.add_row(cells);
+        rows.add_row(std::iter::once(name.clone()).chain(cells));
     }
     rows
-}
-
-/// One row per shape: the shares of pairs that the two-sided test at each k, each other test, hulls
-/// and meshes don't separate.
-pub fn shapes(result: &Tradeoff) -> Table {
-    let mut header = vec!["shape".to_owned()];
-    for &overlap in Overlap::ALL {
-        header.extend([6, 14, 18, 26].map(|k| format!("{overlap} {k}")));
-    }
-    header.extend(["hull", "mesh", "outside"].map(str::to_owned));
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    let mut rows = table(&header);
-    for shape in &result.shapes {
-        let mut cells = vec![shape.shape.clone()];
-        for &overlap in Overlap::ALL {
-            let share = |k| survivors(shape, k, Axes::Principal, overlap);
-            cells.extend([6, 14, 18, 26].map(|k| share(k).map_or("–".into(), short)));
-        }
-        let outside = format!("{:.2} %", 100.0 * shape.outside);
-        cells.extend([short(&shape.hull), short(&shape.mesh), outside]);
-        rows.add_row(cells);
-    }
-    rows
-}
-
-/// Survivors per sphere hit of one kind of or-DOP.
-pub fn survivors(
-    shape: &ShapeSurvival,
-    k: usize,
-    axes: Axes,
-    overlap: Overlap,
-) -> Option<&Estimate> {
-    let fits = |s: &&sdop_bench::tradeoff::shapes::Survival| {
-        (s.k, s.axes, s.overlap) == (k, axes, overlap)
-    };
-    shape.ordops.iter().find(fits).map(|s| &s.share)
-}
-
-fn short(estimate: &Estimate) -> String {
-    plus_minus(estimate, 1.0, 3)
-}
-
-/// A line an arithmetic and tier.
-pub fn safety(result: &Tradeoff) -> Table {
-    let header =
-        ["strategy", "arithmetic", "simd", "reported", "extra", "lost", "warm µs", "quartiles"];
-    rows(&header, &result.safety, |row| {
-        vec![
-            row.strategy.to_string(),
-            row.arithmetic.to_string(),
-            row.simd.clone(),
-            row.reported.to_string(),
-            row.extra.to_string(),
-            row.lost.to_string(),
-            format!("{:.1}", 1e6 * row.seconds.median),
-            format!("{:.1} to {:.1}", 1e6 * row.seconds.low, 1e6 * row.seconds.high),
-        ]
-    })
 }

@@ -65,7 +65,7 @@ pub fn read(
             path.display()
         ));
     }
-    let scene = args.build()?;
+    let scene = args.read_culled()?.build()?;
     let bar = progress(scene.frames.into(), &scene.name);
     let show = ShownRun::scene(&scene, path, tier, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -110,7 +110,8 @@ fn judged((path, most): (&Path, u64), answers: Option<&Path>) -> miette::Result<
     let StoredCase { case, pairs, .. } = read_case(path, most)?;
     let given = match answers {
         None => {
-            let answer = |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ns: None });
+            let answer =
+                |pairs: Option<Vec<_>>| pairs.map(|pairs| Answer { pairs, ..Answer::default() });
             pairs.into_iter().map(answer).collect::<Option<Vec<_>>>()
         }
         Some(file) => Some(answered(&case, file, most)?),

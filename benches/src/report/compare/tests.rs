@@ -6,7 +6,8 @@ fn record(counts: &str, times: &str) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("counts.csv"), counts).unwrap();
     std::fs::write(directory.path().join("times.csv"), times).unwrap();
-    let manifest = Manifest::describe(directory.path(), "test", String::new(), &["counts.csv"]);
+    let manifest =
+        Manifest::describe(directory.path(), "test", String::new(), &["counts.csv".into()]);
     std::fs::write(directory.path().join(FILE), manifest.unwrap().text()).unwrap();
     directory
 }
@@ -46,6 +47,39 @@ fn raw_samples_compare_over_their_seeds() {
     assert_eq!(changes.len(), 1);
     assert_eq!(changes[0].row, "a, 5 seeds");
     assert!((changes[0].ratio - 2.0).abs() < 1e-12 && changes[0].same == Some(false));
+}
+
+/// Records with other flags say so, and their means are compared by intervals.
+#[test]
+fn other_flags_compare_means() {
+    let with = |command: &str, pairs: &str| {
+        let directory = record(&format!("scene,percent,half_width\na,{pairs},0.2\n"), TIMES);
+        let mut manifest = Manifest::read(directory.path()).unwrap();
+        manifest.command = command.to_owned();
+        std::fs::write(directory.path().join(FILE), manifest.text()).unwrap();
+        directory
+    };
+    let whole = with("sdop record test", "1.5");
+    let again = with("cargo run --release -- test --out DIR", "1.6");
+    let quick = with("sdop record test -- --quick", "1.6");
+    let found = |b: &tempfile::TempDir| compare(whole.path(), b.path()).unwrap();
+    assert_eq!((found(&again).settings.len(), found(&again).differences.len()), (0, 1));
+    let quick = found(&quick);
+    assert_eq!(quick.settings, ["flags: none and --quick"]);
+    assert!(quick.differences.is_empty(), "{:?}", quick.differences);
+}
+
+/// Numbers by strategy, volume and term are those by variant and metric.
+#[test]
+fn older_rows_compare_with_newer_ones() {
+    let older = "scene,strategy,regime,volume,term,unit,value,half_width\n\
+                 a,sphere,warm,sphere,Nu,1,2.5,0.1\na,sphere,warm,,sum,s,1.5,0.1\n";
+    let newer = "study,scene,variant,regime,metric,unit,value,half_width,n\n\
+                 cost,a,sphere,warm,Nu (sphere),1,5,0.1,3\ncost,a,sphere,warm,sum,s,1.5,0.1,3\n";
+    let comparison = compare(record(COUNTS, older).path(), record(COUNTS, newer).path()).unwrap();
+    let found: Vec<f64> = comparison.changes.iter().map(|change| change.ratio).collect();
+    assert_eq!(found, [2.0, 1.0]);
+    assert!(comparison.differences.is_empty(), "{:?}", comparison.differences);
 }
 
 /// Another set of columns or rows is noted where nothing is promised.
@@ -96,7 +130,7 @@ fn missing_rows_are_one_line() {
 fn older_records_lack_no_counts() {
     let older = record(COUNTS, TIMES);
     std::fs::remove_file(older.path().join("counts.csv")).unwrap();
-    let write = |deterministic: &[&str]| {
+    let write = |deterministic: &[String]| {
         let manifest = Manifest::describe(older.path(), "test", String::new(), deterministic);
         std::fs::write(older.path().join(FILE), manifest.unwrap().text()).unwrap();
     };
@@ -106,7 +140,7 @@ fn older_records_lack_no_counts() {
     assert!(comparison.differences.is_empty());
     assert_eq!(comparison.notes, ["counts.csv: no such file, the file"]);
     // One that counts other things does lack it.
-    write(&["times.csv"]);
+    write(&["times.csv".to_owned()]);
     for [a, b] in [[&older, &newer], [&newer, &older]] {
         let comparison = compare(a.path(), b.path()).unwrap();
         assert_eq!(comparison.differences[0].file, "counts.csv");

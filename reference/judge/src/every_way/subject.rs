@@ -138,7 +138,7 @@ fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, Sto
         let kept = ours.take().filter(|_| frame.was.is_none());
         let culled = kept.map_or_else(|| made(frame), Ok).and_then(|mut culler: Culler| {
             let pairs = culler.cull(&frame.bodies)?.sorted();
-            Ok((culler, Answer { pairs, ns: None }))
+            Ok((culler, Answer { pairs, ..Answer::default() }))
         });
         let (culler, answer) = culled.map_err(|error| AnswerError::Crashed {
             how: error.to_string(),
@@ -178,7 +178,7 @@ fn frames(case: &Case, cell: BoxCell, mode: Mode) -> Result<Vec<Answer>, StopRea
     for frame in &case.frames {
         let boxes: Vec<Aabb> = frame.boxes.iter().map(aabb).collect();
         let pairs = culler.cull(&boxes).map_err(crashed)?.sorted();
-        answers.push(Answer { pairs, ns: None });
+        answers.push(Answer { pairs, ..Answer::default() });
     }
     Ok(answers)
 }

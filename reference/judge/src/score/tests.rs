@@ -30,7 +30,7 @@ fn cubes(frames: &[[f32; 5]]) -> Case {
 }
 
 fn answers(pairs: &[&[[u32; 2]]]) -> Vec<Answer> {
-    let answer = |pairs: &&[[u32; 2]]| Answer { pairs: pairs.to_vec(), ns: None };
+    let answer = |pairs: &&[[u32; 2]]| Answer { pairs: pairs.to_vec(), ..Answer::default() };
     pairs.iter().map(answer).collect()
 }
 

@@ -66,7 +66,7 @@ pub fn book(answers: &mut Vec<Answer>, said: ProgramAnswer, line: &[u8]) -> Resu
         ProgramAnswer::Same => {
             let last = answers.last().cloned();
             let last = last.ok_or_else(|| malformed(0, line, "no frame comes before the first"))?;
-            answers.push(Answer { ns: None, ..last });
+            answers.push(Answer { pairs: last.pairs, ..Answer::default() });
         }
         ProgramAnswer::Skipped(why) => {
             let answered = std::mem::take(answers);

@@ -131,7 +131,8 @@ fn word(name: &str) -> String {
     if name.is_empty() { "_".to_owned() } else { name.chars().map(fill).collect() }
 }
 
-/// `frame N COUNT I J …`, with `ns TIME` at the end if it likes, or `skip REASON`.
+/// `frame N COUNT I J …`, with `ns TIME`, `nu UPDATES` and `nv TESTS` at the end if it likes, or
+/// `skip REASON`.
 pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, AnswerError> {
     let wrong = |why: String| malformed(expected, line, why);
     let text = str::from_utf8(line).map_err(|e| wrong(e.to_string()))?;
@@ -163,12 +164,17 @@ pub(super) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, Answ
         };
         pairs.push([body()?, body()?]);
     }
-    let ns = match words.next() {
-        None => None,
-        Some("ns") => words.next().and_then(|word| word.parse().ok()),
-        Some(word) => return Err(wrong(format!("`{word}` follows the {count} pairs"))),
-    };
-    Ok(ProgramAnswer::Answer(Answer { pairs, ns }))
+    let mut answer = Answer { pairs, ..Answer::default() };
+    while let Some(word) = words.next() {
+        let number = match word {
+            "ns" => &mut answer.ns,
+            "nu" => &mut answer.nu,
+            "nv" => &mut answer.nv,
+            _ => return Err(wrong(format!("`{word}` follows the {count} pairs"))),
+        };
+        *number = words.next().and_then(|word| word.parse().ok());
+    }
+    Ok(ProgramAnswer::Answer(answer))
 }
 
 #[cfg(test)]
@@ -180,10 +186,12 @@ mod tests {
     fn invalid_answers_are_refused() {
         let pairs = |line: &str| decode(3, line.as_bytes());
         let answer = |pairs: &[[u32; 2]], ns| {
-            Ok(ProgramAnswer::Answer(Answer { pairs: pairs.to_vec(), ns }))
+            Ok(ProgramAnswer::Answer(Answer { pairs: pairs.to_vec(), ns, ..Answer::default() }))
         };
         assert_eq!(pairs("frame 3 0"), answer(&[], None));
         assert_eq!(pairs("frame 3 2 0 1 4 5 ns 77\n"), answer(&[[0, 1], [4, 5]], Some(77)));
+        let counted = Answer { nu: Some(5), nv: Some(9), ..Answer::default() };
+        assert_eq!(pairs("frame 3 0 nv 9 nu 5"), Ok(ProgramAnswer::Answer(counted)));
         assert_eq!(
             [pairs("same 3"), pairs("same 2")],
             [Ok(ProgramAnswer::Same), Err(AnswerError::OutOfTurn { expected: 3, found: 2 })]

@@ -6,9 +6,11 @@ use plotters::style::text_anchor::{HPos, VPos};
 use sdop_bench::cost::table::Cost;
 use sdop_bench::reproduce::paper_name;
 
-use super::style::{CostPart, PARTS, anchored, ends, label, legend, quiet, text, titled};
-use super::{Area, DrawResult};
 use crate::commands::reproduce::rows::Drawings;
+use crate::commands::style::{
+    Area, CostPart, DrawError, DrawResult, PARTS, anchored, ends, label, legend, part_of, plain,
+    quiet, text, titled,
+};
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
@@ -64,10 +66,9 @@ fn apart<'a>(costs: &[&'a Cost]) -> (Vec<&'a Cost>, Vec<&'a Cost>) {
 }
 
 /// The legend of the terms that there are; returns what is left of the area.
-fn keys<'a>(area: &Area<'a>, costs: &[&Cost]) -> Result<Area<'a>, super::DrawError> {
-    let there = |part: &&CostPart| costs.iter().any(|cost| (part.of)(&cost.terms) > 0.0);
-    let parts: Vec<_> =
-        PARTS.iter().filter(there).map(|part| (part.name, part.colour, false)).collect();
+fn keys<'a>(area: &Area<'a>, costs: &[&Cost]) -> Result<Area<'a>, DrawError> {
+    let there = |part: &&CostPart| costs.iter().any(|cost| part_of(&cost.terms, part) > 0.0);
+    let parts: Vec<_> = PARTS.iter().filter(there).map(|part| (part.0, part.1, false)).collect();
     let rows: Vec<_> = parts.chunks(5).collect();
     let (keys, body) = area.split_vertically(10 + 20 * rows.len() as i32);
     for (row, parts) in rows.iter().enumerate() {
@@ -99,7 +100,7 @@ fn panel(
         .disable_x_mesh()
         .disable_x_axis()
         .y_labels(5)
-        .y_label_formatter(&|microseconds| format!("{microseconds}"))
+        .y_label_formatter(&plain)
         .draw()?;
     for (i, cost) in costs.iter().enumerate() {
         column(&mut chart, i as f64, cost, name(cost))?;
@@ -111,12 +112,12 @@ fn panel(
 fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost, name: String) -> DrawResult {
     let mut base = 0.0;
     for part in &PARTS {
-        let height = 1e6 * (part.of)(&cost.terms);
+        let height = 1e6 * part_of(&cost.terms, part);
         if height <= 0.0 {
             continue;
         }
         let corners = [(x + 0.15, base), (x + 0.85, base + height)];
-        chart.draw_series([Rectangle::new(corners, part.colour.filled())])?;
+        chart.draw_series([Rectangle::new(corners, part.1.filled())])?;
         base += height;
     }
     let (middle, mean) = (x + 0.5, 1e6 * cost.frame.measured.mean);
@@ -134,9 +135,8 @@ fn column(chart: &mut Chart<'_, '_>, x: f64, cost: &Cost, name: String) -> DrawR
 
 #[cfg(test)]
 mod tests {
-    use super::super::svg;
     use super::*;
-    use crate::commands::palette::{TESTS, UPDATES};
+    use crate::commands::style::{TESTS, UPDATES, page};
     use sdop::settings::Strategy;
     use sdop_bench::cost::table::CheckedPrediction;
     use sdop_bench::cost::terms::Terms;
@@ -161,9 +161,6 @@ mod tests {
                 hits: 1.0,
                 rows: 0.0,
                 further: 0.0,
-                queried: 0.0,
-                thawed: 0.0,
-                kept: 0.0,
                 construct: 0.0,
                 update: 0.5 * seconds,
                 finding: 0.25 * seconds,
@@ -203,7 +200,7 @@ mod tests {
         ];
         let costs = named.map(|(strategy, volume)| cost(strategy, volume, 50.0));
         let drawn =
-            svg((1060, 480), |area| draw_strategies(area, "s", &costs.iter().collect::<Vec<_>>()));
+            page((1060, 480), |area| draw_strategies(area, "s", &costs.iter().collect::<Vec<_>>()));
         let drawn = drawn.unwrap_or_default();
         let lines: Vec<&str> = drawn.lines().map(str::trim).collect();
         for (strategy, _) in named {
@@ -222,7 +219,7 @@ mod tests {
         let sphere = cost(Strategy::Sphere, Volume::Sphere, 40.0);
         let obb = cost(Strategy::Obb, Volume::Obb, 900.0);
         let draw = |costs: &[&Cost]| {
-            let drawn = svg((1060, 480), |area| draw_strategies(area, "s", costs));
+            let drawn = page((1060, 480), |area| draw_strategies(area, "s", costs));
             drawn.unwrap_or_default()
         };
         let both = draw(&[&sphere, &obb]);

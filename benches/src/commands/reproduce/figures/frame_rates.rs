@@ -8,9 +8,10 @@ use plotters::style::text_anchor::{HPos, VPos};
 use sdop_bench::reproduce::paper_name;
 use sdop_bench::reproduce::rates::{OTHER_FRAME_SECONDS, Rate};
 
-use super::style::{anchored, colour, ends, label, quiet, text, titled};
-use super::{Area, DrawResult};
 use crate::commands::reproduce::rows::{Drawings, distinct};
+use crate::commands::style::{
+    Area, DrawResult, anchored, colour, ends, label, quiet, text, titled,
+};
 
 /// One panel a scene and F.
 pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {

@@ -4,32 +4,22 @@ mod costs;
 mod frame_rates;
 mod percent;
 mod residuals;
-mod sphere;
-mod style;
-mod useful_tests;
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use miette::WrapErr as _;
 use sdop_bench::cost::table::Cost;
 
 use super::rows::Drawings;
-
-/// Where a figure is drawn.
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-/// Why nothing could be drawn.
-type DrawError = Box<dyn std::error::Error + Send + Sync>;
-/// How drawing ends.
-type DrawResult = Result<(), DrawError>;
+use crate::commands::style::{Area, DrawResult, page};
 
 /// A figure's file name, size, and what draws it.
 type Figure = (&'static str, (u32, u32), fn(&Area<'_>, &Drawings) -> DrawResult);
 
 const FIGURES: [Figure; 5] = [
     ("frame_rates", (1000, 620), frame_rates::draw),
-    ("useful_tests", (860, 560), useful_tests::draw),
+    ("useful_tests", (860, 560), percent::useful_tests),
     ("costs", (1060, 640), costs::draw),
     ("residuals", (900, 420), residuals::draw),
-    ("sphere", (760, 430), sphere::draw),
+    ("sphere", (760, 430), percent::sphere),
 ];
 
 /// Every figure, with its file's name.
@@ -38,8 +28,7 @@ const FIGURES: [Figure; 5] = [
 /// What can't be drawn.
 pub fn draw_all(drawings: &Drawings) -> miette::Result<Vec<(String, String)>> {
     let drawn = FIGURES.into_iter().map(|(name, size, draw)| {
-        let svg = svg(size, |area| draw(area, drawings))
-            .map_err(|error| miette::miette!("cannot draw {name}: {error}"))?;
+        let svg = page(size, |area| draw(area, drawings)).wrap_err(name)?;
         Ok((format!("{name}.svg"), svg))
     });
     drawn.collect()
@@ -50,17 +39,5 @@ pub fn draw_all(drawings: &Drawings) -> miette::Result<Vec<(String, String)>> {
 /// # Errors
 /// What can't be drawn.
 pub fn draw_costs(scene: &str, costs: &[&Cost]) -> miette::Result<String> {
-    svg((1060, 480), |area| costs::draw_strategies(area, scene, costs))
-        .map_err(|error| miette::miette!("cannot draw the costs: {error}"))
-}
-
-fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> DrawResult) -> Result<String, DrawError> {
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-        area.fill(&WHITE)?;
-        draw(&area)?;
-        area.present()?;
-    }
-    Ok(svg)
+    page((1060, 480), |area| costs::draw_strategies(area, scene, costs))
 }

@@ -6,10 +6,10 @@ use plotters::style::text_anchor::{HPos, VPos};
 use sdop_bench::cost::table::Cost;
 use sdop_bench::reproduce::paper_name;
 
-use super::style::{anchored, colour, ends, label, legend, quiet, titled};
-use super::{Area, DrawResult};
-use crate::commands::palette::GREY;
 use crate::commands::reproduce::rows::Drawings;
+use crate::commands::style::{
+    Area, DrawResult, GREY, anchored, colour, ends, label, legend, quiet, titled,
+};
 
 /// One group a scene, one mark a strategy.
 pub fn draw(area: &Area<'_>, tables: &Drawings) -> DrawResult {

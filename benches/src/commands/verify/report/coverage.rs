@@ -8,7 +8,7 @@ use sdop_judge::ours::histories::{ChangeKind, HistoryCell, HistoryLedger, WorldK
 use sdop_judge::ours::matrix::{Cell, Matrix, MatrixPart};
 use serde::Serialize;
 
-use crate::commands::output::table;
+use crate::commands::output::{Listing, table};
 
 /// How full the matrix is.
 #[derive(Default, Serialize)]
@@ -138,7 +138,7 @@ impl Coverage {
 }
 
 /// One table: filled cells of all, and the fewest lists in one.
-fn projection(rows: &[CoverageLine]) -> comfy_table::Table {
+fn projection(rows: &[CoverageLine]) -> Listing {
     let columns = rows.iter().take(1).flat_map(|row| &row.parts);
     let columns = columns.map(|part| part.name.as_str());
     let header: Vec<&str> = ["cells with lists"].into_iter().chain(columns).collect();

@@ -10,8 +10,9 @@ use crate::wire::{ProgramAnswer, malformed};
 struct AnswerLine {
     frame: u64,
     pairs: Vec<[u32; 2]>,
-    #[serde(default)]
     ns: Option<u64>,
+    nu: Option<u64>,
+    nv: Option<u64>,
 }
 
 /// An answer without pairs: those of the frame before.
@@ -24,8 +25,8 @@ struct SameLine {
 /// Reads the answer to a frame.
 pub(in crate::wire) fn decode(expected: usize, line: &[u8]) -> Result<ProgramAnswer, AnswerError> {
     match serde_json::from_slice::<AnswerLine>(line) {
-        Ok(AnswerLine { frame, pairs, ns }) if frame == expected as u64 => {
-            Ok(ProgramAnswer::Answer(Answer { pairs, ns }))
+        Ok(AnswerLine { frame, pairs, ns, nu, nv }) if frame == expected as u64 => {
+            Ok(ProgramAnswer::Answer(Answer { pairs, ns, nu, nv }))
         }
         Ok(AnswerLine { frame, .. }) => Err(AnswerError::OutOfTurn { expected, found: frame }),
         Err(error) => diagnose(expected, line, &error),
