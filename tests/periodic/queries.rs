@@ -119,7 +119,7 @@ fn balls_miss_nothing() {
     of_boxes.update(&boxes);
     of_cubes.update(&cubes);
     let (mut touching, mut all) = (0, 0);
-    for _ in 0..200 {
+    for _ in 0..240 {
         let centre = lengths.map(|length| random.below(2 * length as usize) as f64 - length);
         let radius = random.below(6) as f64;
         let ball = QueryVolume::Ball { centre, radius };
