@@ -2,6 +2,8 @@
 
 use miette::miette;
 use sdop::settings::{CullSettings, Strategy};
+use sdop_bench::measure::row::{Row, Rows};
+use sdop_bench::measure::turns::Regime;
 use sdop_bench::report::digits::interval;
 use sdop_bench::tradeoff::Estimate;
 use sdop_bench::tradeoff::advise::{Advice, Candidate, CandidateFilter, FRAMES, advise};
@@ -51,10 +53,23 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let advice = advise(&file, tried, 1e-9 * args.narrow_ns, args.machine.tier())?
         .ok_or_else(|| miette!("nothing could be timed"))?;
     match args.format {
-        Format::Csv => emit(Format::Csv, &advice.candidates, |_| String::new())?,
+        Format::Csv => emit(Format::Csv, &rows_of(&advice), |_| String::new())?,
         format => emit(format, &advice, |advice| text(advice, args.all))?,
     }
     Ok(Outcome::Passed)
+}
+
+/// The numbers of every candidate.
+fn rows_of(advice: &Advice) -> Vec<Row> {
+    let mut rows = Rows::new("advise", &advice.scene);
+    for Candidate { name, time, pairs, total, beyond } in &advice.candidates {
+        let of = (name.as_str(), Some(Regime::Warm));
+        rows.add(of, "time", "s per frame", *time);
+        rows.add(of, "reported", "pairs per frame", Estimate::alone(*pairs));
+        rows.add(of, "total", "s per frame", Estimate::alone(*total));
+        rows.add(of, "above the best", "s per frame", *beyond);
+    }
+    rows.finish()
 }
 
 fn text(advice: &Advice, is_whole: bool) -> String {

@@ -117,34 +117,37 @@ fn page(report: &BenchReport, args: &Args) -> String {
     let table = rows(&header, &report.contestants, line);
     let mut text = format!("claim {claim}, {frames} frames, {rounds} turns\n{table}");
     if let Some(prices) = report.prices {
-        text += &format!("\n\n{}", terms(&report.contestants, prices));
+        text += &format!("\n\n{}", terms(&report.contestants, prices, frames));
     }
     text
 }
 
 /// T of both by the formula, from their own counts and our prices.
-fn terms(contestants: &[ContestantTiming], prices: OwnPrices) -> String {
-    let header =
-        ["contestant", "Nu", "Nv", "Nu·Cu, µs", "F, µs", "Nv·Cv, µs", "T, µs", "measured, µs"];
-    let OwnPrices { update, test, finding } = prices;
+fn terms(contestants: &[ContestantTiming], prices: OwnPrices, frames: u32) -> String {
+    let us = |seconds: f64| number(1e6 * seconds);
+    let header = ["per frame, µs", "Nu", "Nv", "Nu·Cu", "F", "Nv·Cv", "T", "measured"];
     let line = |(place, row): &(usize, &ContestantTiming)| {
-        let us = |seconds: f64| number(1e6 * seconds);
-        let [nu, nv] = row.counts.unwrap_or([f64::NAN; 2]);
+        let counts = row.counts.unwrap_or([f64::NAN; 2]);
+        let reported = row.reported as f64 / f64::from(frames);
         // How a program finds its pairs isn't known.
-        let own_finding = if *place == 0 { finding } else { 0.0 };
-        let sum = nu * update + own_finding + nv * test;
+        let (update, finding, test) = match (*place, prices.of_counts(counts, reported)) {
+            (0, _) => (prices.terms[0], Some(prices.terms[1]), prices.terms[2]),
+            (_, [update, test]) => (update, None, test),
+        };
+        let sum = update + finding.unwrap_or_default() + test;
         let measured = row.median_ns.map_or("–".to_owned(), |ns| us(1e-9 * ns as f64));
-        let found = if *place == 0 { us(finding) } else { "–".to_owned() };
-        let mut cells = vec![row.name.clone(), number(nu), number(nv), us(nu * update)];
-        cells.extend([found, us(nv * test), us(sum), measured]);
-        cells
+        let finding = finding.map_or("–".to_owned(), us);
+        let [nu, nv] = counts.map(number);
+        vec![row.name.clone(), nu, nv, us(update), finding, us(test), us(sum), measured]
     };
     let all: Vec<(usize, &ContestantTiming)> = contestants.iter().enumerate().collect();
-    let table = rows(&header, &all, line);
+    let ns = |seconds: f64| number(1e9 * seconds);
     paragraphs(&format!(
-        "Counts per frame, and T = Nu·Cu + F + Nv·Cv at our prices: Cu = {} ns, Cv = {} ns\n{table}\nWhat a program \
+        "T = Nu·Cu + F + Nv·Cv at our prices: Cu = {} ns, Cv = {} ns for a hit and {} ns for a miss\n{}\nWhat a program \
          measures beyond T, it pays for dearer updates and tests than ours, and for finding pairs.",
-        number(1e9 * update),
-        number(1e9 * test)
+        ns(prices.update),
+        ns(prices.hit),
+        ns(prices.miss),
+        rows(&header, &all, line)
     ))
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use miette::{IntoDiagnostic as _, miette};
+use sdop_bench::cost::PRICES;
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::cost::design;
 use sdop_bench::cost::rows::of_report;
@@ -148,20 +149,6 @@ const VOLUME: [Column<'_>; 8] = [
     ("Nv·Cv, µs", "Nv*Cv", 1e6),
 ];
 
-/// The prices of a volume.
-const PRICES: [Column<'_>; 10] = [
-    ("Co, ms", "price Co", 1e3),
-    ("Co, ns per body", "price Co per body", 1e9),
-    ("Cu, ns", "price Cu", 1e9),
-    ("F, ns per frame", "price F per frame", 1e9),
-    ("F, ns per body", "price F per body", 1e9),
-    ("F, ns per body with hits", "price F per body with hits", 1e9),
-    ("F, ns per listed pair", "price F per listed pair", 1e9),
-    ("Cv hit, ns", "price Cv hit", 1e9),
-    ("Cv miss, ns", "price Cv miss", 1e9),
-    ("Cv further slab, ns", "price Cv further slab", 1e9),
-];
-
 /// Construction, and T with it.
 const TOTAL: [Column<'_>; 6] = [
     ("Co predicted", "Co predicted", 1e3),
@@ -187,16 +174,27 @@ fn text(report: &CostReport, is_whole: bool) -> String {
     let mut frames_of = |regime| {
         let failures = of(report, regime).filter_map(failure);
         let table = pivot(&rows, regime, false, &FRAME);
-        parts.push(format!("{} frames, µs\n{table}", title(regime)));
+        parts.push(format!("µs per {regime} frame\n{table}"));
         parts.extend(failures);
     };
     frames_of(warm);
     if is_whole {
         frames_of(cold);
+        // Co in ms, all others in ns.
+        let prices: Vec<(String, String, f64)> = PRICES
+            .iter()
+            .map(|kind| {
+                let (unit, factor) =
+                    if kind.key == "construct" { ("ms", 1e3) } else { ("ns", 1e9) };
+                (format!("{}, {unit}", kind.name), format!("price {}", kind.name), factor)
+            })
+            .collect();
+        let prices: Vec<Column<'_>> =
+            prices.iter().map(|(title, metric, factor)| (&**title, &**metric, *factor)).collect();
         for (title, regime, by_volume, columns) in [
             ("Counts and terms per warm frame", warm, true, &VOLUME[..]),
-            ("Prices for warm frames", warm, true, &PRICES),
-            ("Prices for cold frames", cold, true, &PRICES),
+            ("Prices for warm frames", warm, true, &prices),
+            ("Prices for cold frames", cold, true, &prices),
             ("With construction, warm: ms for all frames", warm, false, &TOTAL),
         ] {
             parts.push(format!("{title}\n{}", pivot(&rows, regime, by_volume, columns)));
@@ -224,11 +222,4 @@ fn failure(cost: &Cost) -> Option<String> {
         cost.variant,
         100.0 * MOST_RIGHT_RESIDUAL
     ))
-}
-
-fn title(regime: Regime) -> &'static str {
-    match regime {
-        Regime::Warm => "Warm",
-        Regime::Cold => "Cold",
-    }
 }

@@ -94,12 +94,13 @@ pub fn print(text: &str) -> miette::Result<()> {
     }
 }
 
-/// The width that output for people fits: the terminal's, or 80 columns where there is none.
-fn width() -> usize {
-    const USUAL: usize = 80;
+/// The width that output for people fits: the terminal's, or where there is none `COLUMNS`, or
+/// `usual`.
+fn width(usual: usize) -> usize {
+    let asked = || std::env::var("COLUMNS").ok()?.parse().ok();
     match terminal_size::terminal_size() {
         Some((width, _)) if std::io::stdout().is_terminal() => usize::from(width.0).max(40),
-        _ => USUAL,
+        _ => asked().unwrap_or(usual),
     }
 }
 
@@ -109,6 +110,9 @@ pub struct Listing {
     header: Vec<String>,
     rows: Vec<Vec<String>>,
 }
+
+/// The longest name in a first column that isn't broken over lines.
+const LONGEST_NAME: usize = 40;
 
 fn length(text: &str) -> usize {
     text.chars().count()
@@ -152,7 +156,8 @@ impl Listing {
     /// never broken.
     fn widths(&self, at: usize) -> [usize; 2] {
         let words = |text: &str| text.split(' ').map(length).max().unwrap_or(0);
-        let least = |row: &Vec<String>| match at == 0 || is_number(&row[at]) {
+        let is_name = |cell: &str| at == 0 && length(cell) <= LONGEST_NAME;
+        let least = |row: &Vec<String>| match is_name(&row[at]) || is_number(&row[at]) {
             true => length(&row[at]),
             false => words(&row[at]),
         };
@@ -163,6 +168,9 @@ impl Listing {
     }
 
     fn text(&self, width: usize) -> String {
+        if self.header.len() == 1 {
+            return self.rows.concat().join("\n"); // lines of any width, which can be copied
+        }
         let columns: Vec<[usize; 2]> = (0..self.header.len()).map(|at| self.widths(at)).collect();
         for gap in [3, 2] {
             let around = gap * (columns.len() - 1) + 2 * (gap - 2);
@@ -218,7 +226,7 @@ impl Listing {
         let room = titles.max().unwrap_or(0);
         let mut out = String::new();
         for row in &self.rows {
-            out += &format!("{}\n", row[0]);
+            out += &format!("{}\n", wrapped(&row[0], width, 2));
             for (title, cell) in self.header.iter().zip(row).skip(1) {
                 let gap = " ".repeat(room - length(title));
                 let line = format!("  {title}{gap}  {cell}");
@@ -232,7 +240,7 @@ impl Listing {
 
 impl Display for Listing {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.text(width()))
+        f.write_str(&self.text(width(120)))
     }
 }
 
@@ -259,7 +267,7 @@ pub fn counted(number: usize, noun: &str) -> String {
 /// A text for people within the terminal's width. Indented lines, such as code to copy, and tables
 /// stay as they are.
 pub fn paragraphs(text: &str) -> String {
-    let width = width();
+    let width = width(80);
     let fit = |line: &str| match line.starts_with([' ', '─', '═']) {
         true => line.to_owned(),
         false => wrapped(line, width, 0),

@@ -11,7 +11,7 @@ use sdop_bench::report::{CodeVersion, Experiment, FILE, Manifest, experiments};
 
 use super::Outcome;
 use super::files::write;
-use super::output::{print, rows};
+use super::output::{paragraphs, print, rows};
 use super::scene_args::MachineArgs;
 use super::sweep::SweepArgs;
 
@@ -70,9 +70,9 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
                 experiment.needs.clone(),
             ]
         });
-        print(&format!(
+        print(&paragraphs(&format!(
             "{list}\nAll need a checkout of the repository and run in its root. \"takes\" is from the latest record that says so."
-        ))?;
+        )))?;
         return Ok(Outcome::Passed);
     }
     if let [digits] = &args.experiments[..]
@@ -125,15 +125,13 @@ fn duration(records: &Path, experiment: &Experiment) -> String {
     let measured = machines.filter_map(|machine| {
         let manifest = Manifest::read(&machine.path().join(&experiment.name)).ok()?;
         let seconds = manifest.seconds?;
-        Some((manifest.date, machine.file_name(), seconds))
+        Some((manifest.date, seconds))
     });
-    match measured.max_by(|a, b| a.0.cmp(&b.0)) {
-        None => experiment.takes.clone(),
-        Some((_, machine, seconds)) => {
-            let time = humantime::format_duration(Duration::from_secs(seconds.ceil() as u64));
-            format!("{time} ({})", machine.to_string_lossy())
-        }
-    }
+    let latest = measured.max_by(|a, b| a.0.cmp(&b.0));
+    latest.map_or(experiment.takes.clone(), |(_, seconds)| {
+        let whole = Duration::from_secs(seconds.ceil() as u64);
+        humantime::format_duration(whole).to_string()
+    })
 }
 
 fn place(args: &Args, experiment: &str) -> PathBuf {

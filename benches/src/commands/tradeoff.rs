@@ -14,6 +14,7 @@ pub use sdop_bench::tradeoff::units::NAME;
 use sdop_bench::tradeoff::units::{Comparison, Settings};
 use sdop_bench::tradeoff::{Findings, Tradeoff, TradeoffPlan};
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::Outcome;
 use super::files::{self, command, write};
@@ -198,7 +199,7 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miett
     let result = &recorded.result;
     let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
     let csv = csv_text(serde_json::to_value(result.rows()).into_diagnostic()?)?;
-    let seeds = csv_text(serde_json::to_value(seeds(result)).into_diagnostic()?)?;
+    let seeds = csv_text(seeds(result).into())?;
     write(&numbers.join("tradeoff.json"), &json)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
     write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;
@@ -208,25 +209,18 @@ fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miett
     Ok(())
 }
 
-/// What a variant reported with one seed.
-#[derive(Serialize)]
-struct SeedLine<'a> {
-    variant: &'a str,
-    seed: u64,
-    precision: f64,
-    pairs_sha256: &'a str,
-}
-
 /// What every variant reported, seed by seed: equal on every machine.
-fn seeds(result: &Tradeoff) -> Vec<SeedLine<'_>> {
+fn seeds(result: &Tradeoff) -> Vec<Value> {
     let mut lines = Vec::new();
     for row in &result.rows {
         let found = result.seeds.iter().zip(&row.precisions).zip(&row.pairs_sha256);
-        lines.extend(found.map(|((&seed, &precision), pairs_sha256)| SeedLine {
-            variant: &row.name,
-            seed,
-            precision,
-            pairs_sha256,
+        lines.extend(found.map(|((seed, precision), pairs_sha256)| {
+            json!({
+                "variant": row.name,
+                "seed": seed,
+                "precision": precision,
+                "pairs_sha256": pairs_sha256,
+            })
         }));
     }
     lines

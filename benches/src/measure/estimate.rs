@@ -24,6 +24,12 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// A value without an interval.
+    #[must_use]
+    pub const fn alone(mean: f64) -> Self {
+        Self { mean, half_width: f64::INFINITY, seeds: 0 }
+    }
+
     /// The estimate from one value per seed.
     #[must_use]
     pub fn of(values: &[f64]) -> Self {

@@ -20,7 +20,7 @@ use crate::scene::Scene;
 use crate::simulate::SimulationError;
 use sdop::bodies::contract::ContractError;
 use sdop::culler::{CullError, Culler};
-use sdop::settings::Strategy;
+use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
 use sdop_judge::answer::{Answer, StopReason};
 use sdop_judge::case::{Case, Frame};
@@ -65,19 +65,22 @@ pub struct ContestantTiming {
     pub counts: Option<[f64; 2]>,
 }
 
-/// What one update, one test and pair finding cost us in frames of a scene, in seconds.
+/// What frames of a scene cost us by the formula, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OwnPrices {
-    /// Cu, the mean of our volumes.
+    /// Cu, summed over our volumes.
     pub update: f64,
-    /// Cv, the mean of our tests, hits and misses.
-    pub test: f64,
-    /// F per frame.
-    pub finding: f64,
+    /// Cv of a hit, of the volume that decides.
+    pub hit: f64,
+    /// Cv of a miss.
+    pub miss: f64,
+    /// Nu·Cu, F and Nv·Cv of a frame.
+    pub terms: [f64; 3],
 }
 
 impl OwnPrices {
-    /// The prices of a strategy, calibrated for a scene and weighed as in its first frames.
+    /// The prices of a strategy, calibrated for a scene, and its terms in the scene's first frames.
+    /// `None` if they can't be timed.
     ///
     /// # Errors
     /// Settings that the scene can't have; a body that leaves the contract.
@@ -87,18 +90,30 @@ impl OwnPrices {
         frames: u32,
     ) -> Result<Option<Self>, SimulationError> {
         let effort = Effort { turns: 1, builds: 1 };
-        let (tier, variants) = (Tier::detect(), [Variant::strategy(&scene.cull, strategy)]);
+        let settings = CullSettings { pairs: Finder::Auto, ..scene.cull.clone() };
+        let (tier, variants) = (Tier::detect(), [Variant::strategy(&settings, strategy)]);
         let round = Calibration::new(scene, &variants, tier, effort)?.round()?;
+        let volumes = round.prices[Regime::Warm as usize].first().map(|it| it.volumes.clone());
         let mut run = SceneFrames::new(scene, frames)?;
         let pass = pass(scene, &variants, tier, &mut run, Some(round), &mut ())?;
         let passes = (&[&pass][..], &[&pass][..]);
         let of = (scene.name.as_str(), scene.bodies.len());
         let cost = table::cost(of, (0, &variants[0]), passes, Regime::Warm);
-        Ok(cost.map(|cost| Self {
-            update: cost.sum(|t| t.update) / cost.sum(|t| t.updates),
-            test: cost.sum(|t| t.test) / cost.sum(|t| t.tests),
-            finding: cost.sum(|t| t.finding),
+        Ok(volumes.zip(cost).and_then(|(volumes, cost)| {
+            let deciding = volumes.last()?.costs;
+            Some(Self {
+                update: volumes.iter().map(|volume| volume.costs.update).sum(),
+                hit: deciding.hit,
+                miss: deciding.miss,
+                terms: [cost.sum(|t| t.update), cost.sum(|t| t.finding), cost.sum(|t| t.test)],
+            })
         }))
+    }
+
+    /// Nu·Cu and Nv·Cv of another culler's counts and reported pairs per frame.
+    #[must_use]
+    pub fn of_counts(&self, [nu, nv]: [f64; 2], reported: f64) -> [f64; 2] {
+        [nu * self.update, reported * self.hit + (nv - reported).max(0.0) * self.miss]
     }
 }
 

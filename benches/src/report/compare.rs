@@ -170,7 +170,11 @@ fn settings(a: &Manifest, b: &Manifest) -> Vec<String> {
     };
     let inputs = |manifest: &Manifest| {
         let text = serde_json::to_string(&manifest.inputs).unwrap_or_default();
-        if manifest.inputs.is_empty() { text } else { sha256(text.as_bytes())[..12].to_owned() }
+        if manifest.inputs.is_empty() {
+            String::new()
+        } else {
+            sha256(text.as_bytes())[..12].into()
+        }
     };
     let kinds: [(&str, [String; 2]); 4] = [
         ("flags", [a, b].map(|manifest| flags(manifest).join(" "))),
@@ -352,9 +356,10 @@ fn change(
     column: &str,
     cells: [&Map<String, Value>; 2],
 ) -> Option<MeasuredChange> {
-    // What follows from other rows says nothing of its own.
+    // What follows from other rows says nothing of its own: a claim's number, a residual.
     let metric = cells[0].get("metric").and_then(Value::as_str).unwrap_or_default();
-    if metric.contains("residual") || metric.contains("predicted") {
+    let is_derived = metric.contains("residual") || metric.contains("predicted");
+    if is_derived || cells[0].contains_key("claim") {
         return None;
     }
     let [first, second] = cells.map(|cells| cells[column].as_f64().filter(|x| *x > 0.0));

@@ -42,8 +42,8 @@ fn add_cell(rows: &mut Rows, cell: &Table1Cell) {
     let of = (cell.strategy.name(), None);
     rows.add(of, cell.reading.name(), "%", cell.measured);
     if let Some(mean) = cell.paper {
-        let paper = Estimate { mean, half_width: f64::INFINITY, seeds: 0 };
-        rows.add(of, format!("{}, the paper's", cell.reading), "%", paper);
+        let metric = format!("{}, the paper's", cell.reading);
+        rows.add(of, metric, "%", Estimate::alone(mean));
     }
 }
 

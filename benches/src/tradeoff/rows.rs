@@ -6,11 +6,6 @@ use crate::cost::rows::{add_cost, add_price};
 use crate::measure::row::{Row, Rows};
 use crate::measure::turns::Regime;
 
-/// A number without an interval.
-fn exact(mean: f64) -> Estimate {
-    Estimate { mean, half_width: f64::INFINITY, seeds: 0 }
-}
-
 impl Tradeoff {
     /// Every number of the comparison.
     #[must_use]
@@ -25,10 +20,10 @@ impl Tradeoff {
             let mut add = |regime, metric: &str, unit, value| {
                 rows.add((&name, regime), metric, unit, value);
             };
-            add(None, "or-DOP tests", "per frame", exact(row.tests));
-            add(None, "reported", "pairs per frame", exact(row.reported));
-            add(None, "precision", "1", exact(row.quality.precision));
-            add(None, "recall", "1", exact(row.quality.recall));
+            add(None, "or-DOP tests", "per frame", Estimate::alone(row.tests));
+            add(None, "reported", "pairs per frame", Estimate::alone(row.reported));
+            add(None, "precision", "1", Estimate::alone(row.quality.precision));
+            add(None, "recall", "1", Estimate::alone(row.quality.recall));
             add(Some(Regime::Warm), "time", "s per frame", row.seconds);
             add(Some(Regime::Warm), "time, lazy", "s per frame", row.lazy_seconds);
         }
@@ -36,7 +31,7 @@ impl Tradeoff {
             let mut add = |metric: &str, unit, value| {
                 rows.add((&row.variant, Some(Regime::Warm)), metric, unit, value);
             };
-            add("reported of a run", "pairs per frame", exact(row.reported));
+            add("reported of a run", "pairs per frame", Estimate::alone(row.reported));
             add("culler's time of a run", "s per frame", row.culler);
             add("world's time of a run", "s per frame", row.world);
         }
@@ -50,13 +45,18 @@ impl Tradeoff {
             let at = format!("at {} times the density", density.factor);
             for line in &density.lines {
                 let of = (line.name.as_str(), Some(Regime::Warm));
-                rows.add(of, format!("reported {at}"), "pairs per frame", exact(line.pairs));
+                rows.add(
+                    of,
+                    format!("reported {at}"),
+                    "pairs per frame",
+                    Estimate::alone(line.pairs),
+                );
                 let time = Estimate::in_order(&line.times);
                 rows.add(of, format!("time {at}"), "s per frame", time);
             }
             for even in &density.break_even {
                 let metric = format!("break-even {at}");
-                rows.add((&even.name, None), metric, "s per check", exact(even.cp));
+                rows.add((&even.name, None), metric, "s per check", Estimate::alone(even.cp));
             }
         }
     }
@@ -72,7 +72,7 @@ impl Tradeoff {
                 ("mean age", "frames", row.mean_age),
                 ("oldest", "frames", row.oldest.into()),
             ] {
-                rows.add((&name, None), metric, unit, exact(value));
+                rows.add((&name, None), metric, unit, Estimate::alone(value));
             }
         }
         for row in &self.clock {
@@ -82,7 +82,7 @@ impl Tradeoff {
                 ("overrun p50", "s per frame", 1e-6 * row.p50),
                 ("overrun p99", "s per frame", 1e-6 * row.p99),
             ] {
-                rows.add((&name, Some(Regime::Warm)), metric, unit, exact(value));
+                rows.add((&name, Some(Regime::Warm)), metric, unit, Estimate::alone(value));
             }
         }
     }
@@ -93,12 +93,12 @@ fn add_variant(rows: &mut Rows, row: &VariantResult) {
     let mut add = |metric: &str, unit, value| rows.add((&row.name, None), metric, unit, value);
     let false_pairs = row.reported.mean * (1.0 - row.precision.mean);
     add("reported", "pairs per frame", row.reported);
-    add("false pairs", "per frame", exact(false_pairs));
+    add("false pairs", "per frame", Estimate::alone(false_pairs));
     add("precision", "1", row.precision);
     add("reported / true", "1", row.per_true);
-    add("recall", "1", exact(row.recall));
+    add("recall", "1", Estimate::alone(row.recall));
     if let Some(ratio) = row.volume_over_hull {
-        add("volume / hull", "1", exact(ratio));
+        add("volume / hull", "1", Estimate::alone(ratio));
     }
     rows.add((&row.name, Some(Regime::Warm)), "time", "s per frame", row.seconds());
     let costs = [&row.warm, &row.cold].into_iter().flatten();

@@ -243,6 +243,7 @@ impl Mirror {
                 InteractionTestMode::Or => Groups::ALL,
             },
             margin,
+            ..Body::default() // what rounding the rotation moves is in the margin
         });
         let id = match (old.and_then(|old| old.id), now) {
             (Some(id), Some(now)) if world.set(id, now).is_ok() => Some(id),

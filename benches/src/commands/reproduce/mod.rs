@@ -89,10 +89,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     let machine = experiments.settings().machine;
     let paper = args.paper.as_ref().unwrap_or(&args.out);
     let tables = Tables::new(&results, &machine, command(), before);
-    let written = OutputPlace { numbers: &args.out, paper, seconds };
-    let why = disagreement(&results);
-    written.write(&tables, args.format, why.as_deref())?;
-    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
+    OutputPlace { numbers: &args.out, paper, seconds }.write(&results, &tables, args.format)
 }
 
 /// What merged shards give.
@@ -105,13 +102,10 @@ pub fn merged(merged: &MergedUnits, out: &Path, format: Format) -> miette::Resul
     for result in merged.done.values() {
         results.take(result)?;
     }
-    let unknown = Conditions::default();
-    let line = merged.header.line.clone();
+    let (line, unknown) = (merged.header.line.clone(), Conditions::default());
     let tables = Tables::new(&results, &settings.machine, line, unknown);
-    let written = OutputPlace { numbers: out, paper: out, seconds: merged.seconds };
-    let why = disagreement(&results);
-    written.write(&tables, format, why.as_deref())?;
-    Ok(why.map_or(Outcome::Passed, Outcome::Failed))
+    let seconds = merged.seconds;
+    OutputPlace { numbers: out, paper: out, seconds }.write(&results, &tables, format)
 }
 
 /// Where results go, and how long they took.
@@ -122,17 +116,23 @@ struct OutputPlace<'a> {
 }
 
 impl OutputPlace<'_> {
-    fn write(&self, tables: &Tables, format: Format, why: Option<&str>) -> miette::Result<()> {
-        write_tables(self.numbers, tables)?;
+    fn write(&self, results: &Results, tables: &Tables, format: Format) -> miette::Result<Outcome> {
+        let why = disagreement(results);
+        let json = serde_json::to_string_pretty(tables).into_diagnostic()?;
+        write(&self.numbers.join("results.json"), &(json + "\n"))?;
+        for (name, rows) in tables.files()? {
+            write(&self.numbers.join(name).with_extension("csv"), &csv_text(rows)?)?;
+        }
         for (name, svg) in figures::draw_all(&tables.drawn)? {
             write(&self.paper.join("figures").join(name), &svg)?;
         }
         match format {
-            Format::Csv => emit(Format::Csv, &tables.rows, |_| String::new()),
-            format => emit_with_reason(format, tables, why, |tables| {
+            Format::Csv => emit(Format::Csv, &tables.rows, |_| String::new())?,
+            format => emit_with_reason(format, tables, why.as_deref(), |tables| {
                 terminal::brief(tables, self.seconds, &self.numbers.display().to_string())
-            }),
+            })?,
         }
+        Ok(why.map_or(Outcome::Passed, Outcome::Failed))
     }
 }
 
@@ -168,13 +168,4 @@ fn disagreement(results: &Results) -> Option<String> {
 #[cfg_attr(not(feature = "maintain"), allow(dead_code, reason = "pages alone need it"))]
 pub fn figures_of(results: &str) -> miette::Result<Vec<(String, String)>> {
     figures::draw_all(&rows::Drawings::read(results)?)
-}
-
-fn write_tables(directory: &Path, tables: &Tables) -> miette::Result<()> {
-    let json = serde_json::to_string_pretty(tables).into_diagnostic()?;
-    write(&directory.join("results.json"), &(json + "\n"))?;
-    for (name, rows) in tables.files()? {
-        write(&directory.join(name).with_extension("csv"), &csv_text(rows)?)?;
-    }
-    Ok(())
 }

@@ -9,14 +9,14 @@ use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::measure::row::Row;
 use sdop_bench::measure::turns::Regime;
-use sdop_bench::reproduce::check::{PaperClaim, Verdict};
+use sdop_bench::reproduce::check::PaperClaim;
 use sdop_bench::reproduce::closed_form::{probability, relative_reach};
 use sdop_bench::reproduce::rates::{self, Rate};
 use sdop_bench::reproduce::readings::{self, Table1Cell};
 use sdop_bench::reproduce::rows::{rows, scene_prices};
 use sdop_bench::reproduce::{PaperScene, Results, StrategyRun, claims, study};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use crate::commands::output::csv_text;
@@ -39,7 +39,7 @@ pub struct Tables {
     pub claims: Vec<PaperClaim>,
     pub study: Vec<PaperClaim>,
     #[serde(skip)]
-    pub counts: Vec<CountRow>,
+    counts: Vec<Value>,
     #[serde(skip)]
     pub rows: Vec<Row>,
 }
@@ -101,42 +101,10 @@ pub struct BoxRow {
     pub percent: f64,
 }
 
-/// What one strategy did in one run.
-#[derive(Serialize)]
-pub struct CountRow {
-    scene: String,
-    bodies: usize,
-    statics: usize,
-    seed: u64,
-    frames: u32,
-    strategy: &'static str,
-    sphere_updates: u64,
-    ordop_updates: u64,
-    sphere_tests: u64,
-    sphere_hits: u64,
-    ordop_tests: u64,
-    ordop_hits: u64,
-    reported: u64,
-    pairs_sha256: Option<String>,
-}
-
-/// One number that supports or contradicts a claim.
-#[derive(Serialize)]
-struct CheckRow<'a> {
-    source: &'a str,
-    claim: &'a str,
-    claim_verdict: Verdict,
-    quantity: &'a str,
-    value: f64,
-    half_width: f64,
-    expected: &'a str,
-    verdict: Verdict,
-}
-
 impl Tables {
     /// All tables of the results.
     pub fn new(results: &Results, machine: &Machine, command: String, before: Conditions) -> Self {
-        let counts: Vec<CountRow> = results.runs.iter().map(count_row).collect();
+        let counts: Vec<Value> = results.runs.iter().map(count_row).collect();
         let costs = results.costs(Regime::Warm);
         let scene_prices = |&scene: &PaperScene| {
             let prices = scene_prices(results, scene).into_iter();
@@ -171,27 +139,30 @@ impl Tables {
     }
 
     /// The CSV files: name without extension, rows.
-    pub fn files(&self) -> miette::Result<Vec<(&'static str, Value)>> {
-        let value = |rows: serde_json::Result<Value>| rows.into_diagnostic();
-        Ok(vec![
-            ("counts", value(serde_json::to_value(&self.counts))?),
-            ("claims", value(serde_json::to_value(self.checks()))?),
-            ("reproduce", value(serde_json::to_value(&self.rows))?),
+    pub fn files(&self) -> miette::Result<[(&'static str, Value); 3]> {
+        let rows = serde_json::to_value(&self.rows).into_diagnostic()?;
+        Ok([
+            ("counts", self.counts.clone().into()),
+            ("claims", self.checks().into()),
+            ("reproduce", rows),
         ])
     }
 
-    fn checks(&self) -> Vec<CheckRow<'_>> {
+    /// Each number that supports or contradicts a claim.
+    fn checks(&self) -> Vec<Value> {
         let mut rows = Vec::new();
         for claim in self.claims.iter().chain(&self.study) {
-            rows.extend(claim.checks.iter().map(|check| CheckRow {
-                source: claim.source,
-                claim: claim.claim,
-                claim_verdict: claim.verdict(),
-                quantity: &check.quantity,
-                value: check.value,
-                half_width: check.half_width,
-                expected: &check.expected,
-                verdict: check.verdict,
+            rows.extend(claim.checks.iter().map(|check| {
+                json!({
+                    "source": claim.source,
+                    "claim": claim.claim,
+                    "claim_verdict": claim.verdict(),
+                    "quantity": check.quantity,
+                    "value": check.value,
+                    "half_width": check.half_width,
+                    "expected": check.expected,
+                    "verdict": check.verdict,
+                })
             }));
         }
         rows
@@ -210,7 +181,7 @@ pub fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
 }
 
 /// SHA-256 of the counts as their CSV file has them.
-fn hash(counts: &[CountRow]) -> miette::Result<String> {
+fn hash(counts: &[Value]) -> miette::Result<String> {
     let text = csv_text(serde_json::to_value(counts).into_diagnostic()?)?;
     let digest = Sha256::digest(text);
     Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
@@ -229,22 +200,23 @@ fn box_row(results: &Results, scene: PaperScene) -> Option<BoxRow> {
     })
 }
 
-fn count_row(run: &StrategyRun) -> CountRow {
-    let counters = &run.counters;
-    CountRow {
-        scene: run.scene.clone(),
-        bodies: run.bodies,
-        statics: run.statics,
-        seed: run.seed,
-        frames: run.frames,
-        strategy: run.strategy.name(),
-        sphere_updates: counters.sphere.updates,
-        ordop_updates: counters.ordop.updates,
-        sphere_tests: counters.sphere.tests,
-        sphere_hits: counters.sphere.hits,
-        ordop_tests: counters.ordop.tests,
-        ordop_hits: counters.ordop.hits,
-        reported: counters.reported,
-        pairs_sha256: run.pairs_sha256.clone(),
-    }
+/// What one strategy did in one run.
+fn count_row(run: &StrategyRun) -> Value {
+    let [sphere, ordop] = [run.counters.sphere, run.counters.ordop];
+    json!({
+        "scene": run.scene,
+        "bodies": run.bodies,
+        "statics": run.statics,
+        "seed": run.seed,
+        "frames": run.frames,
+        "strategy": run.strategy.name(),
+        "sphere_updates": sphere.updates,
+        "ordop_updates": ordop.updates,
+        "sphere_tests": sphere.tests,
+        "sphere_hits": sphere.hits,
+        "ordop_tests": ordop.tests,
+        "ordop_hits": ordop.hits,
+        "reported": run.counters.reported,
+        "pairs_sha256": run.pairs_sha256,
+    })
 }

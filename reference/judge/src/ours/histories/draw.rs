@@ -186,7 +186,8 @@ pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> Histo
                 (number, PlacedShape { shape, rotation, translation })
             }
             None => {
-                let translation = [(); 3].map(|()| below(64) as f32 / 8.0);
+                let eighths = if below(8) == 0 { 256.0 } else { 1.0 };
+                let translation = [(); 3].map(|()| eighths * below(64) as f32 / 8.0);
                 let number = regions.0 + below(regions.1 as u32) as usize;
                 (number, PlacedShape { translation, ..spec.start(shape, &mut rng) })
             }
