@@ -15,7 +15,6 @@ use sdop_bench::cost::calibrate::{Calibration, Effort};
 use sdop_bench::cost::pass::{Pass, SceneFrames, pass};
 use sdop_bench::cost::study::possible;
 use sdop_bench::cost::table::{Cost, PriceRow, cost, prices};
-use sdop_bench::measure::estimate::Estimate;
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::measure::variant::Variant;
 use sdop_bench::scene::SceneFile;
@@ -94,24 +93,15 @@ fn another_pass(file: &SceneFile, variants: &[Variant], calibration: &mut Calibr
 }
 
 fn price_line(price: &PriceRow) -> String {
-    let number = |estimate: &Estimate, unit: f64| {
-        let of = estimate.scaled(unit);
-        format!("{:.2} ± {:.2}", of.mean, of.half_width)
+    let number = |key: &str, unit: f64| {
+        let of = price.prices.get(key).map(|estimate| estimate.scaled(unit));
+        of.map_or_else(String::new, |of| format!("{:.2} ± {:.2}", of.mean, of.half_width))
     };
     let level = price.level.map_or("", |level| level.name());
-    let ns = [
-        &price.update,
-        &price.frame,
-        &price.body,
-        &price.row,
-        &price.handle,
-        &price.hit,
-        &price.miss,
-        &price.further,
-    ]
-    .map(|estimate| number(estimate, 1e9));
+    let keys = ["update", "frame", "body", "row", "handle", "hit", "miss", "further"];
+    let ns = keys.map(|key| number(key, 1e9));
     let (variant, volume) = (&price.variant, price.volume);
-    let construct = number(&price.construct, 1e3);
+    let construct = number("construct", 1e3);
     format!("| {variant} | {volume} | {level} | {construct} | {} |", ns.join(" | "))
 }
 

@@ -84,7 +84,7 @@ pub fn boxes(kind: Kind, count: usize, random: &mut Random) -> Vec<Aabb> {
                 around(centre, half)
             }
             Kind::Nested => {
-                let half = 10.0_f32.powi(random.below(7) as i32) * 1e-3;
+                let half = 10.0_f32.powi(random.below(7)) * 1e-3;
                 about(random, 2.0 * half + 1.0, [half; 3])
             }
             Kind::Crowd if n % 16 < 13 => around([0.5, 7.0, -3.0], [1.0, 2.0, 3.0]),

@@ -40,7 +40,7 @@ pub fn ends(kind: Ends, period: f64, random: &mut Random) -> [f64; 2] {
             [lo + way, hi + way]
         }
         Ends::Ulps => [lo, hi].map(|end| moved_by_ulps(end, random)),
-        Ends::Wide => [lo, lo + period * (0.5 - 0.5_f64.powi(2 + random.below(48) as i32))],
+        Ends::Wide => [lo, lo + period * (0.5 - 0.5_f64.powi(2 + random.below(48)))],
         Ends::Anywhere => {
             let lo = period * (4.0 * unit(random) - 2.0);
             [lo, lo + 0.4 * period * unit(random)]

@@ -1,12 +1,10 @@
 //! An index that has followed a world answers like a newly built one.
 
-use sdop::boxes::BoxBody;
 use sdop::query::QuerySource;
-use sdop::volume::DirectionSet;
-use sdop::{Aabb, Body, BodyId, BoxWorld, Line, Motion, QueryIndex, QueryVolume, World};
+use sdop::{Aabb, Body, BodyId, BoxWorld, Line, QueryIndex, QueryVolume, World};
 
 use crate::histories::{HistoryKind, live};
-use crate::queries::{UNTURNED, cube, shapes};
+use crate::queries::{UNTURNED, cube};
 use sdop_judge::ours::random::Random;
 
 fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random) {

@@ -14,7 +14,8 @@ pub fn live(kind: HistoryKind, seeds: Range<u64>) {
     let rotation = Rotation::new(&[Tier::available(), vec![Tier::SCALAR_FLUSH]].concat());
     for seed in seeds {
         for (number, variant) in variants().enumerate() {
-            let judged = history(kind, seed, number, variant, &rotation).unwrap();
+            let judged = history(kind, seed, number, variant, &rotation);
+            let judged = judged.unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(judged.failure, None, "seed {seed}, or-DOP {number}");
             assert!(judged.required > judged.lists, "bodies are near each other");
         }

@@ -41,7 +41,7 @@ fn rounding(body: &Body) -> f64 {
 fn drawn(random: &mut Random) -> Body {
     let margin = match random.below(3) {
         0 => 0.0,
-        _ => 0.01 * 1.6_f32.powi(random.below(12) as i32) * (1.0 + 0.05 * random.within(1.0)),
+        _ => 0.01 * 1.6_f32.powi(random.below(12)) * (1.0 + 0.05 * random.within(1.0)),
     };
     let place = PLACES[random.below(PLACES.len() as u32) as usize];
     let mut translation = [(); 3].map(|()| f64::from(random.within(1.0)) * 16.0);

@@ -128,9 +128,11 @@ pub fn judge_answers(case: &Case, answers: &[Answer]) -> Result<CaseScore, Inval
 /// A case whose truth is found once, when it is first needed.
 pub struct KnownCase<'a> {
     case: &'a Case,
-    /// By the claim, by balls, and the pairs that are required in each frame.
-    known: OnceLock<(Truth, Truth, Vec<Vec<[u32; 2]>>)>,
+    known: OnceLock<CaseTruth>,
 }
+
+/// By the claim, by balls, and the pairs that are required in each frame.
+type CaseTruth = (Truth, Truth, Vec<Vec<[u32; 2]>>);
 
 impl<'a> KnownCase<'a> {
     /// A case of which nothing is known yet.
@@ -139,7 +141,7 @@ impl<'a> KnownCase<'a> {
         Self { case, known: OnceLock::new() }
     }
 
-    fn known(&self) -> Result<&(Truth, Truth, Vec<Vec<[u32; 2]>>), InvalidInput> {
+    fn known(&self) -> Result<&CaseTruth, InvalidInput> {
         if let Some(known) = self.known.get() {
             return Ok(known);
         }

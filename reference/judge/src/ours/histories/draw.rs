@@ -316,8 +316,10 @@ struct Drawn<B> {
     bodies: Vec<Option<B>>,
     excluded: Vec<[usize; 2]>,
     /// Both, as they were saved.
-    saved: Option<(Vec<Option<B>>, Vec<[usize; 2]>)>,
+    saved: Option<Saved<B>>,
 }
+
+type Saved<B> = (Vec<Option<B>>, Vec<[usize; 2]>);
 
 impl<B: Properties> Drawn<B> {
     fn present(&self) -> Vec<B> {
