@@ -5,7 +5,6 @@
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-use super::robots::{QUARTER_TURNS, draw_rotation};
 use super::worlds::Properties;
 use super::{Change, ChangeKind, History, HistoryError, WorldKind};
 use crate::ours::boxes::beside;
@@ -47,6 +46,23 @@ const FAR: [f64; 3] = [16_777_216.0, -8_388_608.0, 4_194_304.25];
 /// Units of boxes, and where they are.
 const UNITS: [(i32, [f32; 3]); 5] =
     [(0, [0.0; 3]), (0, [0.0; 3]), (0, [1.0e6, -3.0e5, 7.0]), (-70, [0.0; 3]), (50, [0.0; 3])];
+
+/// Quaternions of bodies, up to the order and the signs of their components.
+pub(super) const ROTATIONS: [[f32; 4]; 10] = [
+    [0.0, 0.0, 0.0, 1.0],
+    [0.0, 0.0, 1.0, 1.0],
+    [1.0, 1.0, 1.0, 1.0],
+    [0.0, 1.0, 1.0, 1.0],
+    [1.0, 1.0, 2.0, 3.0],
+    [0.0, 1.0, 2.0, 4.0],
+    [0.0, 1.0, 2.0, 10.0],
+    [1.0, 2.0, 6.0, 8.0],
+    [2.0, 2.0, 4.0, 9.0],
+    [2.0, 4.0, 6.0, 7.0],
+];
+
+/// Those whose matrices are of zeros and ones.
+const QUARTER_TURNS: &[[f32; 4]] = ROTATIONS.split_at(3).0;
 
 /// Regions of meshes: those in different ones never meet.
 const REGIONS: [[f64; 3]; 3] =
@@ -95,6 +111,19 @@ fn in_region(number: usize, within: [f32; 3]) -> [f64; 3] {
             REGIONS[number][axis] + f64::from(steps * REGION_STEP)
         }
     })
+}
+
+/// A quaternion of one of these kinds, in any order, with any signs, times a power of two.
+pub(super) fn draw_rotation(
+    kinds: &[[f32; 4]],
+    below: &mut (impl FnMut(u32) -> u32 + ?Sized),
+) -> [f32; 4] {
+    let mut q = kinds[below(kinds.len() as u32) as usize];
+    for last in (1..4).rev() {
+        q.swap(last, below(last as u32 + 1) as usize);
+    }
+    let scale = [1.0, 1.0, 2_f32.powi(40), 2_f32.powi(-40)][below(4) as usize];
+    q.map(|x| if below(2) == 0 { scale * x } else { -scale * x })
 }
 
 /// A step to either side or none, from a whole unit to an eighth of a thousandth of it.

@@ -9,7 +9,9 @@ use rand_chacha::ChaCha8Rng;
 
 use sdop_reference::WidePose;
 
-use super::draw::{MARGINS, SMALL_MARGINS, draw_bodies, other, with_properties};
+use super::draw::{
+    MARGINS, ROTATIONS, SMALL_MARGINS, draw_bodies, draw_rotation, other, with_properties,
+};
 use super::{History, HistoryError};
 use crate::ours::contact::{Contact, PlacedShape};
 use crate::ours::reference_shapes::Shapes;
@@ -24,23 +26,6 @@ const SQUARE: f64 = 105.0;
 
 /// A step of parts' translations.
 const STEP: f64 = 1.0 / (1 << 20) as f64;
-
-/// Quaternions of bodies, up to the order and the signs of their components.
-const ROTATIONS: [[f32; 4]; 10] = [
-    [0.0, 0.0, 0.0, 1.0],
-    [0.0, 0.0, 1.0, 1.0],
-    [1.0, 1.0, 1.0, 1.0],
-    [0.0, 1.0, 1.0, 1.0],
-    [1.0, 1.0, 2.0, 3.0],
-    [0.0, 1.0, 2.0, 4.0],
-    [0.0, 1.0, 2.0, 10.0],
-    [1.0, 2.0, 6.0, 8.0],
-    [2.0, 2.0, 4.0, 9.0],
-    [2.0, 4.0, 6.0, 7.0],
-];
-
-/// Those whose matrices are of zeros and ones.
-pub(super) const QUARTER_TURNS: &[[f32; 4]] = ROTATIONS.split_at(3).0;
 
 /// Where the bodies of a history are, and a step of their translations: f64 holds sums of such
 /// steps and of those of parts.
@@ -178,17 +163,4 @@ fn draw_parts(count: u32, shapes: u32, below: &mut impl FnMut(u32) -> u32) -> Ve
         });
     }
     parts
-}
-
-/// A quaternion of one of these kinds, in any order, with any signs, times a power of two.
-pub(super) fn draw_rotation(
-    kinds: &[[f32; 4]],
-    below: &mut (impl FnMut(u32) -> u32 + ?Sized),
-) -> [f32; 4] {
-    let mut q = kinds[below(kinds.len() as u32) as usize];
-    for last in (1..4).rev() {
-        q.swap(last, below(last as u32 + 1) as usize);
-    }
-    let scale = [1.0, 1.0, 2_f32.powi(40), 2_f32.powi(-40)][below(4) as usize];
-    q.map(|x| if below(2) == 0 { scale * x } else { -scale * x })
 }
