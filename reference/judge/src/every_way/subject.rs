@@ -116,14 +116,13 @@ fn lived<C: Contestant>(
 
 /// The frames in a long-lived world of meshes.
 fn meshes(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
-    let way = CullSettings { budget: Some(Budget::Tests(3)), ..way.clone() };
-    let world = |scene: &Scene<'_>| MeshLife::new(scene.shapes, &world_culler(&way, mode));
-    lived(case, |scene| world(scene).map(Living::new))
+    let culler = world_culler(way, mode).budget(Budget::Tests(3));
+    lived(case, |scene| MeshLife::new(scene.shapes, &culler).map(Living::new))
 }
 
 /// The frames by an index of a world, which is asked about each body's volumes.
 fn asked_about(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
-    let culler = world_culler(way, mode);
+    let culler = world_culler(way, mode).budget(Budget::Tests(3));
     lived(case, |scene| asked_meshes(scene.shapes, &culler, mode).map(Living::new))
 }
 
