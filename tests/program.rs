@@ -3,7 +3,4 @@
 #[path = "support/answers.rs"]
 mod answers;
 mod cli;
-#[path = "support/drawn_pairs.rs"]
-mod drawn_pairs;
 mod judge;
-mod tradeoff;

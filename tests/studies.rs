@@ -6,3 +6,4 @@ mod cost;
 mod drawn_pairs;
 mod known_answers;
 mod reproduce;
+mod tradeoff;

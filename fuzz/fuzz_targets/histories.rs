@@ -63,7 +63,7 @@ fuzz_target!(|data: &[u8]| {
         }
         let history = draw_meshes(shapes(number), &mut below);
         if is_periodic {
-            let history = Repeated::meshes(&history, &mut below);
+            let history = Repeated::meshes(shapes(number), &history, &mut below);
             judge_periodic_meshes(shapes(number), &history, variant, &[mode])
         } else {
             judge_meshes(shapes(number), &history, variant, modes(row))

@@ -74,7 +74,7 @@ macro_rules! files {
 
         #[test]
         fn every_file_is_checked() {
-            let listed = [$(stringify!($name)),+, "judge", "tradeoff"]; // checked in those rooms
+            let listed = [$(stringify!($name)),+, "judge"]; // checked in that room
             for file in std::fs::read_dir(Path::new(ROOT).join("tests/cmd")).unwrap() {
                 let path = file.unwrap().path();
                 let name = path.file_stem().unwrap().to_str().unwrap();
@@ -83,4 +83,4 @@ macro_rules! files {
         }
     };
 }
-files!(board, cost, mesh, program, records, report, reproduce, run, shards, view);
+files!(board, cost, mesh, program, records, report, reproduce, run, shards, tradeoff, view);

@@ -16,7 +16,7 @@ fn all(flaw: Flaw) -> impl Fn(&Scene<'_>) -> All + Sync {
 
 /// The cases that were judged and not passed.
 fn failures(verdict: &Verdict) -> Vec<&str> {
-    let against = verdict.cases.iter().filter(|case| verdict.counts_against(case));
+    let against = verdict.cases.iter().filter(|case| case.counts_against());
     against.map(|case| case.name.as_str()).collect()
 }
 

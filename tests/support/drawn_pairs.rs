@@ -1,7 +1,5 @@
 //! Random pairs of shapes for estimators with known answers.
 
-#![allow(dead_code, reason = "each test binary uses its own part of this support")]
-
 use sdop::bodies::Bodies;
 use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;

@@ -200,10 +200,3 @@ fn worlds_are_compared_where_bodies_rest() {
         }
     }
 }
-
-/// `tests/cmd/tradeoff.console`: what `tradeoff` and `advise` write, print and reject.
-#[cfg(target_os = "linux")]
-#[test]
-fn commands() {
-    crate::cli::check("tradeoff");
-}

@@ -202,7 +202,7 @@ impl EngineVerdict {
             cases.filter(|case| is(&case.outcome)).count()
         };
         let cases = verdict.cases.iter();
-        let bad: Vec<_> = cases.filter(|case| verdict.counts_against(case)).collect();
+        let bad: Vec<_> = cases.filter(|case| case.counts_against()).collect();
         let mut against: BTreeMap<&str, usize> = BTreeMap::new();
         for case in &bad {
             *against.entry(case.group()).or_default() += 1;

@@ -74,7 +74,7 @@ pub struct OwnPrices {
     pub hit: f64,
     /// Cv of a miss.
     pub miss: f64,
-    /// Nu·Cu, F and Nv·Cv of a frame.
+    /// Our own terms in the mean frame: Nu·Cu, F and Nv·Cv.
     pub terms: [f64; 3],
 }
 

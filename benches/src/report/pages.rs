@@ -17,6 +17,7 @@
 //! | `rows \| where(column=value, …)`, `rows \| one(column=value, …)` | the rows with these cells; the only one, or an error |
 //! | `x \| fixed(2)`, `x \| sig(3)`, `n \| thousands`, `x \| percent(1)` | digits after the point; digits that count; 12,345; 12.3 |
 //! | `e \| interval(1e6)`, `x \| number`, `x \| signed(1)` | an estimate times 10⁶ as mean ± half-width; four digits that count; +1.2 |
+//! | `lines \| cheapest(1e-6)` | the name of the cheapest of a density's variants if a check takes 1 µs, and those tied with it |
 //! | `values \| in_order`, `x \| shortest` | an estimate from values in the order of time; the shortest text that reads back |
 //!
 //! `experiment` is the record of the machine that `data/record/quoted.toml` names,
@@ -36,6 +37,7 @@ use super::digits::{self, Quantities, markdown_table, significant, thousands};
 use super::fill::filled;
 use super::store::Store;
 use crate::measure::estimate::Estimate;
+use crate::tradeoff::pays::{Line, choose};
 
 /// Where templates of whole pages are, below the directory of templates.
 pub const WHOLE: &str = "pages";
@@ -164,6 +166,7 @@ fn environment<'s>(page: &str, sources: &'s PageSources) -> Result<Environment<'
     environment.add_filter("percent", format(page, |x, digits| format!("{:.digits$}", 100.0 * x)));
     environment.add_filter("interval", interval);
     environment.add_filter("in_order", in_order);
+    environment.add_filter("cheapest", cheapest);
     environment.add_filter("number", digits::number);
     environment.add_filter("signed", |x: f64, digits: usize| format!("{x:+.digits$}"));
     environment.add_filter("shortest", |x: f64| x.to_string());
@@ -250,6 +253,14 @@ fn lost(error: impl std::fmt::Display) -> Error {
 fn in_order(values: Vec<f64>) -> Result<Value, Error> {
     let estimate = serde_json::to_value(Estimate::in_order(&values)).map_err(lost)?;
     Ok(Value::from(Serde(estimate)))
+}
+
+/// The choice among the variants of a density, if a check takes so many seconds.
+fn cheapest(lines: Value, check: f64) -> Result<Value, Error> {
+    let lines = serde_json::to_value(lines).and_then(serde_json::from_value::<Vec<Line>>);
+    let lines = lines.map_err(lost)?;
+    let choice = choose(&lines, check).ok_or_else(|| lost("no variants to choose from"))?;
+    Ok(context! { name => choice.best, tied => choice.tied })
 }
 
 /// An estimate, scaled; one without a half-width is its mean alone.

@@ -68,12 +68,12 @@ impl fmt::Display for SmallestCase {
             counted(self.case.frames.len(), "frame", "frames"),
             self.from
         )?;
-        let lines = self.reasons().into_iter().chain(self.former_frames());
-        lines.into_iter().try_for_each(|line| writeln!(f, "  {line}"))
+        let mut lines = self.reasons().into_iter().chain(self.former_frames());
+        lines.try_for_each(|line| writeln!(f, "  {line}"))
     }
 }
 
-/// Frames of more bodies are told by the picture.
+/// The most bodies of a frame whose places are printed.
 const MOST_BODIES_TOLD: usize = 4;
 
 impl SmallestCase {
@@ -100,18 +100,18 @@ impl SmallestCase {
         });
         let mut lines: Vec<String> = told.collect();
         if frames.iter().all(Frame::keeps_numbers) {
-            let moves = pair.iter().flat_map(|&body| moves([&frames[0], &frames[last]], body));
-            lines.extend(moves);
+            let ends = [&frames[0], &frames[last]];
+            lines.extend(pair.iter().flat_map(|&body| moved(ends, body)));
         }
         lines
     }
 }
 
-/// Along which axes a body has moved since the first frame.
-fn moves([first, last]: [&Frame; 2], body: u32) -> impl Iterator<Item = String> {
+/// A line for each axis along which a body has moved since the first frame.
+fn moved([first, last]: [&Frame; 2], body: u32) -> impl Iterator<Item = String> {
     let [before, now] = [first, last].map(|frame| frame.boxes[body as usize]);
-    let moved = (0..3).filter(move |&axis| before[axis] != now[axis]);
-    moved.map(move |axis| {
+    let axes = (0..3).filter(move |&axis| before[axis] != now[axis]);
+    axes.map(move |axis| {
         let (from, to) = (coordinate(before[axis]), coordinate(now[axis]));
         let along = ["x", "y", "z"][axis];
         format!("body {body} moved along {along}, {from} → {to}, since frame 0")

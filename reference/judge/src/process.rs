@@ -322,7 +322,7 @@ fn processor_time(group: u32) -> Option<Duration> {
         let fields: Vec<&str> =
             stat.rsplit_once(')').map_or("", |(_, rest)| rest).split_whitespace().collect();
         if fields.get(2) == Some(&group.as_str()) {
-            let used = fields[11..15].iter().filter_map(|field| field.parse::<u64>().ok());
+            let used = fields.iter().skip(11).take(4).filter_map(|field| field.parse::<u64>().ok());
             ticks = Some(ticks.unwrap_or(0) + used.sum::<u64>());
         }
     }

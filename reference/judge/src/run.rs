@@ -14,7 +14,7 @@ use super::case::{Case, Frame};
 use super::catalogue::{CaseId, CatalogueError, select};
 use super::claim::Claim;
 use super::score::{CaseScore, Outcome, judge_case};
-use super::shrink::{SmallestCase, shrink};
+use super::shrink::shrink_some;
 use super::subject::{ContestantFactory, CullFunction, PairwiseTest, Scene, Subject};
 use super::verdict::{CaseVerdict, Verdict};
 use crate::contestant::Contestant;
@@ -66,9 +66,6 @@ pub enum JudgeError {
         hint: String,
     },
 }
-
-/// Groups of which a case is reduced.
-const GROUPS_REDUCED: usize = 3;
 
 /// A program that answers none of this number of cases is given up.
 const STARTS: usize = 3;
@@ -242,8 +239,7 @@ pub fn examine(
         // Every group's first case runs twice: equal input must have equal answers.
         let judged = judge_case(&subject, &case, id.number == 0)?;
         let verdict = line(&case, &judged, &options.known);
-        let failed = matches!(verdict.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
-        stop.fetch_or(options.fail_fast && failed && !verdict.known, Ordering::Relaxed);
+        stop.fetch_or(options.fail_fast && verdict.counts_against(), Ordering::Relaxed);
         progress(jobs.len().min(done.fetch_add(1, Ordering::Relaxed) + 1), jobs.len());
         Ok(Some((case, verdict)))
     };
@@ -365,7 +361,9 @@ fn conclude(
 ) -> Verdict {
     let not_run = ran.iter().filter(|one| one.is_none()).count();
     let ran: Vec<(Case, CaseVerdict)> = ran.into_iter().flatten().collect();
-    let smallest = smallest(subject, options, &ran);
+    let missed = ran.iter().filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
+    let missed: Vec<&Case> = missed.map(|(case, _)| case).collect();
+    let smallest = shrink_some(subject, &missed, options.shrink_time);
     let cases: Vec<CaseVerdict> = ran.into_iter().map(|(_, verdict)| verdict).collect();
     Verdict {
         claim: options.claim,
@@ -377,41 +375,6 @@ fn conclude(
         extra_limit: options.extra_limit,
         smallest,
     }
-}
-
-/// The smallest scene of a miss, from the groups whose cases are reduced fastest, those with the
-/// fewest pairs: the one with the shortest numbers.
-fn smallest(
-    subject: &dyn Subject,
-    options: &Options,
-    ran: &[(Case, CaseVerdict)],
-) -> Option<SmallestCase> {
-    let missed = ran.iter().filter(|(_, verdict)| verdict.miss.is_some() && !verdict.known);
-    let mut groups: BTreeMap<&str, &Case> = BTreeMap::new();
-    for (case, _) in missed {
-        let known = groups.entry(case.group()).or_insert(case);
-        if case.pairs() < known.pairs() {
-            *known = case;
-        }
-    }
-    let mut cases: Vec<&Case> = groups.into_values().collect();
-    cases.sort_by_key(|case| case.pairs());
-    let until = Instant::now() + options.shrink_time;
-    let mut found: Option<SmallestCase> = None;
-    for case in cases.into_iter().take(GROUPS_REDUCED) {
-        let left = until.saturating_duration_since(Instant::now());
-        if found.is_some() && left < options.shrink_time / 2 {
-            break;
-        }
-        let smaller = shrink(subject, case, left);
-        let is_better = |other: &SmallestCase| {
-            found.as_ref().is_none_or(|known| other.case.digits() < known.case.digits())
-        };
-        if smaller.as_ref().is_some_and(is_better) {
-            found = smaller;
-        }
-    }
-    found
 }
 
 fn line(case: &Case, judged: &CaseScore, known: &BTreeSet<String>) -> CaseVerdict {

@@ -36,6 +36,14 @@ impl CaseVerdict {
         group_of(&self.name)
     }
 
+    /// Whether it failed or erred, and isn't known to. A slow program on a busy machine is not
+    /// wrong: no answer in time is no failure, and no pass either.
+    #[must_use]
+    pub fn counts_against(&self) -> bool {
+        let fails = matches!(self.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
+        fails && !self.known && !self.is_late()
+    }
+
     /// Whether the time was over before an answer.
     #[must_use]
     pub fn is_late(&self) -> bool {
@@ -126,7 +134,7 @@ impl Verdict {
     pub fn conclusion(&self) -> Conclusion {
         let is_refuted = !self.stale.is_empty()
             || self.is_beyond_limit()
-            || self.cases.iter().any(|case| self.counts_against(case));
+            || self.cases.iter().any(CaseVerdict::counts_against);
         if is_refuted {
             Conclusion::NotPassed
         } else if self.judged() < self.asked() || self.cases.is_empty() {
@@ -184,7 +192,7 @@ impl Verdict {
 
     /// What speaks against the claim first.
     fn refutation(&self) -> String {
-        let mut against = self.cases.iter().filter(|case| self.counts_against(case));
+        let mut against = self.cases.iter().filter(|case| case.counts_against());
         if let Some(first) = against.next() {
             let count = 1 + against.count();
             return format!("{count} of {} cases failed, first {first}", self.asked());
@@ -210,15 +218,6 @@ impl Verdict {
         let is_skipped =
             |case: &&CaseVerdict| matches!(case.outcome, Outcome::Skipped { .. }) || case.is_late();
         self.cases.len() - self.cases.iter().filter(is_skipped).count()
-    }
-
-    /// A case that failed or erred, and isn't known to. A slow program on a busy machine is not
-    /// wrong: no answer in time is no failure, and no pass either.
-    #[must_use]
-    pub fn counts_against(&self, case: &CaseVerdict) -> bool {
-        let fails =
-            !case.known && matches!(case.outcome, Outcome::Fail { .. } | Outcome::Error { .. });
-        fails && !case.is_late()
     }
 
     /// Whether more extra pairs were reported than the culler allows itself.
@@ -316,7 +315,7 @@ impl fmt::Display for Verdict {
         for name in self.stale.iter().take(3) {
             writeln!(f, "known failure {name} passes: take it off the list")?;
         }
-        for case in self.cases.iter().filter(|case| self.counts_against(case)).take(3) {
+        for case in self.cases.iter().filter(|case| case.counts_against()).take(3) {
             writeln!(f, "{case}")?;
             if matches!(case.outcome, Outcome::Fail { .. }) && !case.flag.is_empty() {
                 writeln!(f, "  this case is also meant to catch: {}", case.flag)?;

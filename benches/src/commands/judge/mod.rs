@@ -237,7 +237,7 @@ fn save(args: &Args, command: &str, verdict: &Verdict) -> miette::Result<()> {
         }
         lines.push(format!("again:   {base} --replay {}.ndjson", stem.display()));
     }
-    let first = verdict.cases.iter().find(|case| verdict.counts_against(case));
+    let first = verdict.cases.iter().find(|case| case.counts_against());
     let found = verdict.smallest.as_ref().map(|smallest| &smallest.from);
     if let (Some(name), None) = (found.or(first.map(|case| &case.name)), &args.replay) {
         let seed = name

@@ -144,7 +144,8 @@ pub fn history(
         HistoryKind::Periodic => {
             let shapes = shapes(false)?;
             let boxes = Repeated::boxes(&draw_boxes(false, &mut below), &mut below);
-            let meshes = Repeated::meshes(&draw_meshes(&shapes, &mut below), &mut below);
+            let meshes = draw_meshes(&shapes, &mut below);
+            let meshes = Repeated::meshes(&shapes, &meshes, &mut below);
             let mut judged = judge_periodic_boxes(&boxes, &modes(0))?;
             judged.add(judge_periodic_meshes(&shapes, &meshes, (k, axes), &modes(0))?);
             judged

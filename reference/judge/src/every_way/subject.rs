@@ -1,7 +1,7 @@
 //! Our cullers as a subject: in every way that they have, each in the mode whose turn it is.
 
 use super::lives::Living;
-use super::worlds::{MeshLife, asked, asked_meshes};
+use super::worlds::MeshLife;
 use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
@@ -9,14 +9,15 @@ use crate::contestant::{Contestant, WorldBox};
 use crate::ours::boxes::BoxCell;
 use crate::ours::compare::{culler, settings};
 use crate::ours::configurations::{Mode, Rotation, ways};
-use crate::ours::histories::{HistoryError, culler as world_culler};
+use crate::ours::histories::{Asked, HistoryError, culler as world_culler};
 use crate::subject::{ContestantFactory, Scene, Subject};
 use sdop::bodies::Aabb;
 use sdop::boxes::BoxWorld;
 use sdop::culler::{CullError, Culler};
 use sdop::periodic::PeriodicBoxes;
-use sdop::settings::{Budget, CullSettings, Finder, Strategy};
+use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet};
+use sdop::world::World;
 
 /// Whether a strategy makes a claim: it reports every pair of which the claim holds.
 #[must_use]
@@ -116,14 +117,15 @@ fn lived<C: Contestant>(
 
 /// The frames in a long-lived world of meshes.
 fn meshes(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
-    let culler = world_culler(way, mode).budget(Budget::Tests(3));
-    lived(case, |scene| MeshLife::new(scene.shapes, &culler).map(Living::new))
+    lived(case, |scene| MeshLife::new(scene.shapes, &world_culler(way, mode)).map(Living::new))
 }
 
-/// The frames by an index of a world, which is asked about each body's volumes.
+/// The frames by an index of such a world, which is asked about each body's volumes.
 fn asked_about(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
-    let culler = world_culler(way, mode).budget(Budget::Tests(3));
-    lived(case, |scene| asked_meshes(scene.shapes, &culler, mode).map(Living::new))
+    lived(case, |scene| {
+        let world = World::with(scene.shapes.to_vec(), &world_culler(way, mode))?;
+        Ok(Living::new(Asked::new(world, scene.shapes, mode)?))
+    })
 }
 
 /// The frames by one way; the culler is made anew for another set of bodies.
@@ -160,7 +162,7 @@ fn boxes(n: u64, case: &Case, cell: BoxCell, mode: Mode) -> Result<Vec<Answer>, 
             lived(case, |_| Ok(Living::new(PeriodicBoxes::with(&builder, [None; 3])?)))
         }
         0 => lived(case, |_| Ok(Living::new(BoxWorld::with(&builder)?))),
-        1 => lived(case, |_| Ok(Living::new(asked(&builder, mode)?))),
+        1 => lived(case, |_| Ok(Living::new(Asked::new(BoxWorld::with(&builder)?, &[], mode)?))),
         _ => frames(case, cell, mode),
     }
 }

@@ -4,11 +4,10 @@ use std::collections::HashMap;
 
 use crate::case::Frame;
 use crate::contestant::BodyPart;
-use crate::ours::configurations::Mode;
 use crate::ours::histories::{Asked, CompoundWorld, HistoryError, JudgedWorld};
 use sdop::Groups;
 use sdop::bodies::Aabb;
-use sdop::boxes::{BoxBody, BoxCullerBuilder, BoxWorld};
+use sdop::boxes::{BoxBody, BoxWorld};
 use sdop::compound::{Compound, Part, PartCuller};
 use sdop::culler::CullerBuilder;
 use sdop::periodic::PeriodicBoxes;
@@ -202,18 +201,4 @@ impl LivingWorld for Asked<World> {
     fn body(&mut self, frame: &Frame, i: usize) -> Result<Body, HistoryError> {
         Ok(mesh_body(frame, i, frame.bodies.shape[i]))
     }
-}
-
-/// A world of meshes that an index is asked about.
-pub fn asked_meshes(
-    shapes: &[Shape],
-    culler: &CullerBuilder,
-    mode: Mode,
-) -> Result<Asked<World>, HistoryError> {
-    Asked::new(World::with(shapes.to_vec(), culler)?, shapes, mode)
-}
-
-/// A world of boxes that an index is asked about.
-pub fn asked(culler: &BoxCullerBuilder, mode: Mode) -> Result<Asked<BoxWorld>, HistoryError> {
-    Asked::new(BoxWorld::with(culler)?, &[], mode)
 }

@@ -25,7 +25,7 @@ use super::{History, HistoryError, HistoryLedger, WorldKind};
 use crate::ours::configurations::{Mode, rows};
 use crate::ours::reference_shapes::{InvalidInput, Shapes, grown};
 use sdop::rounding::down;
-use sdop::settings::{Budget, CullSettings, Overlap, Strategy};
+use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop::world::{Body, World};
@@ -56,11 +56,10 @@ pub fn judge_compounds(
     let mut exact = ExactParts::new(robots, &grown);
     let near: Vec<Vec<NearParts>> = states.iter().map(|state| exact.near(state)).collect();
     let mut ledger = HistoryLedger::default();
-    for (number, row) in rows(variant).into_iter().enumerate() {
-        if !row.strategy.scheme().culls() || row.overlap != Overlap::TwoSided {
+    for (number, way) in rows(variant).into_iter().enumerate() {
+        if !way.strategy.scheme().culls() || way.overlap != Overlap::TwoSided {
             continue;
         }
-        let way = CullSettings { budget: Some(Budget::Tests(3)), ..row };
         let mut truths: HashMap<&str, Truth> = HashMap::new();
         for (number, mode) in modes(number).into_iter().enumerate() {
             let plain = match mode.tier {

@@ -5,6 +5,7 @@
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
+use super::places::{REGIONS, drifted, place, placed};
 use super::worlds::Properties;
 use super::{Change, ChangeKind, History, HistoryError, WorldKind};
 use crate::ours::boxes::beside;
@@ -15,7 +16,6 @@ use crate::ours::seeded_draws::{ContactSpec, TurnKind};
 use sdop::bodies::Aabb;
 use sdop::boxes::BoxBody;
 use sdop::mesh::TriangleMesh;
-use sdop::rounding::pose::rotation;
 use sdop::volume::{Axes, DirectionSet, Shape, ShapeSpec};
 use sdop::world::Body;
 use sdop::{Groups, Motion};
@@ -63,55 +63,6 @@ pub(super) const ROTATIONS: [[f32; 4]; 10] = [
 
 /// Those whose matrices are of zeros and ones.
 const QUARTER_TURNS: &[[f32; 4]] = ROTATIONS.split_at(3).0;
-
-/// Regions of meshes: those in different ones never meet.
-const REGIONS: [[f64; 3]; 3] =
-    [[0.0; 3], [1_073_741_824.0, -536_870_912.0, 0.0], [-1_073_741_824.0, 0.0, 268_435_456.0]];
-/// Translations within a region other than the first are multiples of this, so that f64 holds the
-/// sums.
-const REGION_STEP: f32 = 1.0 / (1 << 22) as f32;
-
-/// The number of a body's region, and where in it the point is that the vertices of the body's
-/// shape are about, exactly: a body whose shape is far from its own origin has a quarter turn.
-pub(super) fn place(shapes: &[Shape], body: &Body) -> (usize, [f32; 3]) {
-    let offset = turned_offset(shapes, body);
-    region([0, 1, 2].map(|axis| body.translation[axis] + offset[axis]))
-}
-
-/// The body where that point is in a place.
-fn placed(shapes: &[Shape], body: Body, (number, within): (usize, [f32; 3])) -> Body {
-    let (offset, at) = (turned_offset(shapes, &body), in_region(number, within));
-    Body { translation: [0, 1, 2].map(|axis| at[axis] - offset[axis]), ..body }
-}
-
-fn turned_offset(shapes: &[Shape], body: &Body) -> [f64; 3] {
-    match shapes.get(body.shape as usize).map_or([0.0; 3], |shape| shape.pose_offset) {
-        [0.0, 0.0, 0.0] => [0.0; 3],
-        offset => {
-            let turn = rotation(body.rotation);
-            turn.map(|row| (0..3).map(|axis| row[axis] * offset[axis]).sum())
-        }
-    }
-}
-
-/// The number of a region, and where in it a point is.
-pub(super) fn region(translation: [f64; 3]) -> (usize, [f32; 3]) {
-    let within = |base: [f64; 3]| [0, 1, 2].map(|axis| translation[axis] - base[axis]);
-    let size = |at: [f64; 3]| at.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let near = REGIONS.iter().position(|base| size(within(*base)) < 1.0e8).unwrap_or(0);
-    (near, within(REGIONS[near]).map(|x| x as f32))
-}
-
-/// The translation of a body in a region.
-fn in_region(number: usize, within: [f32; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| match number {
-        0 => f64::from(within[axis]),
-        _ => {
-            let steps = (within[axis] / REGION_STEP).round();
-            REGIONS[number][axis] + f64::from(steps * REGION_STEP)
-        }
-    })
-}
 
 /// A quaternion of one of these kinds, in any order, with any signs, times a power of two.
 pub(super) fn draw_rotation(
@@ -201,27 +152,29 @@ pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> Histo
         ..ContactSpec::default()
     };
     let near = shapes.built.iter().take_while(|shape| shape.pose_offset == [0.0; 3]).count();
-    let count = if below(2) == 0 { near } else { shapes.built.len() } as u32;
+    let drawn = &shapes.built[..if below(2) == 0 { near } else { shapes.built.len() }];
     // In most histories all bodies are in one region.
     let regions = [(0, 1), (0, 1), (1, 1), (0, REGIONS.len())][below(4) as usize];
     let new = |others: &[Body], below: &mut dyn FnMut(u32) -> u32| {
         let mut rng = ChaCha8Rng::seed_from_u64(u64::from(below(u32::MAX)));
-        let shape = below(count) as usize;
+        let shape = below(drawn.len() as u32) as usize;
         let partner = other(others, below).filter(|_| below(8) > 0);
         let (number, first) = match &partner {
             Some(body) => {
-                let (number, translation) = place(&shapes.built, body);
+                let (number, within) = place(drawn, body);
+                let translation = within.map(|x| x as f32);
                 let (shape, rotation) = (body.shape as usize, body.rotation);
                 (number, PlacedShape { shape, rotation, translation })
             }
             None => {
-                let eighths = if below(8) == 0 { 256.0 } else { 1.0 };
-                let translation = [(); 3].map(|()| eighths * below(64) as f32 / 8.0);
+                // Now and then so far out that it moves the middle of all.
+                let step = if below(8) == 0 { 32.0 } else { 0.125 };
+                let translation = [(); 3].map(|()| step * below(64) as f32);
                 let number = regions.0 + below(regions.1 as u32) as usize;
                 (number, PlacedShape { translation, ..spec.start(shape, &mut rng) })
             }
         };
-        let rotation = match (count as usize > near, &partner) {
+        let rotation = match (drawn.len() > near, &partner) {
             (true, _) => draw_rotation(QUARTER_TURNS, below),
             (false, Some(_)) => spec.turn.second(first.rotation, &mut rng),
             (false, None) => first.rotation,
@@ -229,20 +182,19 @@ pub fn draw_meshes(shapes: &Shapes, below: &mut impl FnMut(u32) -> u32) -> Histo
         let contact = partner.map(|_| spec.contact(&mut rng));
         let within = contact.and_then(|contact| contact.place(shapes, &first, shape, rotation));
         let body = Body::at(shape as u32, rotation, [0.0; 3]);
-        let within = within.unwrap_or(first.translation);
-        with_properties(placed(&shapes.built, body, (number, within)), &MARGINS, below)
+        let within = within.unwrap_or(first.translation).map(f64::from);
+        with_properties(placed(drawn, body, (number, within)), &MARGINS, below)
     };
-    draw_bodies(&shapes.built[..count as usize], count, &MARGINS, new, below)
+    draw_bodies(drawn, &MARGINS, new, below)
 }
 
 /// The part of a pose, or of ends, that a drifting body has of another: none.
 const DRIFT: u32 = 3;
 
-/// A history of bodies in these shapes, of which there are so many, with these margins, each body
-/// drawn by `new` next to others.
+/// A history of bodies in these shapes, with these margins, each body drawn by `new` next to
+/// others.
 pub(super) fn draw_bodies(
     shapes: &[Shape],
-    count: u32,
     margins: &[f32],
     new: impl Fn(&[Body], &mut dyn FnMut(u32) -> u32) -> Body,
     below: &mut dyn FnMut(u32) -> u32,
@@ -251,7 +203,7 @@ pub(super) fn draw_bodies(
         let (number, within) = place(shapes, from);
         let rotation = if part < 2 { to.rotation } else { from.rotation };
         let at = match part {
-            DRIFT => (number, within.map(|x| x + drift(below))),
+            DRIFT => (number, within.map(|x| drifted(x, drift(below)))),
             1 => (number, within),
             _ => place(shapes, to),
         };
@@ -260,6 +212,7 @@ pub(super) fn draw_bodies(
     let own = |body: Body, kind, below: &mut dyn FnMut(u32) -> u32| match kind {
         ChangeKind::Margin => Body { margin: next_margin(body.margin, margins, below), ..body },
         _ => {
+            let count = shapes.len() as u32;
             let shape = (body.shape + 1 + below(count - 1)) % count;
             placed(shapes, Body { shape, ..body }, place(shapes, &body))
         }

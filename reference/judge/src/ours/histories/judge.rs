@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::draw::{MARGINS, place};
+use super::draw::MARGINS;
+use super::places::place;
 use super::state::{NumberedPair, Pairs, State, by_number, in_order};
 use super::worlds::JudgedWorld;
 use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, WorldKind};
@@ -297,8 +298,7 @@ pub fn judge_meshes(
     let answers = |state| answers(shapes, &with_margins, state, variant.0, &predicates);
     let answers = states.iter().map(answers).collect::<Result<Vec<_>, _>>()?;
     let mut ledger = HistoryLedger::default();
-    for (row, modes) in rows {
-        let way = CullSettings { budget: Some(Budget::Tests(3)), ..row };
+    for (way, modes) in rows {
         let required = states.iter().zip(&answers);
         let required: Vec<Pairs> =
             required.map(|(state, answers)| required_of(shapes, state, answers, &way)).collect();
@@ -341,9 +341,9 @@ fn needs(way: &CullSettings, predicate: Predicate) -> bool {
     }
 }
 
-/// Culls in this way and mode.
+/// Culls in this way and mode, with a small budget where a strategy has one.
 pub fn culler(way: &CullSettings, mode: Mode) -> CullerBuilder {
-    let culler = Culler::builder().settings(way).updates(mode.updates);
+    let culler = Culler::builder().settings(way).budget(Budget::Tests(3)).updates(mode.updates);
     culler.tier(mode.tier).threads(mode.threads).worth_waking(0)
 }
 
@@ -389,7 +389,7 @@ pub(super) fn answers(
 ) -> Result<Answers, HistoryError> {
     let mut bodies = Bodies::default();
     for (_, body) in state.present() {
-        let (_, translation) = place(&shapes.built, &body);
+        let translation = place(&shapes.built, &body).1.map(|x| x as f32); // drawn as f32
         let is_dynamic = body.motion.is_dynamic();
         bodies.push(grown_shape(&body), is_dynamic, body.rotation, translation);
     }

@@ -8,6 +8,7 @@ mod compounds;
 mod draw;
 mod judge;
 mod periodic;
+mod places;
 mod queries;
 mod robots;
 mod state;

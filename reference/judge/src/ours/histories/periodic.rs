@@ -9,8 +9,9 @@ use sdop_reference::exact::period::{meeting_images, separation};
 use sdop_reference::exact::{ordop, sphere};
 use sdop_reference::{Body as JudgedBody, Overlap, Pose};
 
-use super::draw::{MARGINS, SMALL_MARGINS, region};
+use super::draw::{MARGINS, SMALL_MARGINS};
 use super::judge::{Life, Truth, box_culler, culler, finder, grown_shape, with_margins};
+use super::places::place;
 use super::state::{NumberedPair, Pairs, State, in_order};
 use super::worlds::Properties;
 use super::{Change, ChangeKind, History, HistoryError, HistoryLedger, WorldKind};
@@ -59,9 +60,13 @@ impl Repeated<PeriodicBox> {
 impl Repeated<Body> {
     /// A history of meshes in one region and with small margins, each of them moved by periods that
     /// `below` draws.
-    pub fn meshes(history: &History<Body>, below: &mut impl FnMut(u32) -> u32) -> Self {
+    pub fn meshes(
+        shapes: &Shapes,
+        history: &History<Body>,
+        below: &mut impl FnMut(u32) -> u32,
+    ) -> Self {
         Self::of(history, LEAST_OF_MESHES, below, |body, moved| {
-            let within = region(body.translation).1.map(f64::from);
+            let (_, within) = place(&shapes.built, body);
             Body {
                 translation: moved(within.map(|x| (x / STEP).round() * STEP)),
                 margin: body.margin.min(MARGINS[SMALL_MARGINS - 1]),

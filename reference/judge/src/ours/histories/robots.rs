@@ -93,10 +93,10 @@ impl Robots {
     pub fn history(&self, below: &mut impl FnMut(u32) -> u32) -> History<Body> {
         let (place, step) = PLACES[below(PLACES.len() as u32) as usize];
         let spec = ContactSpec::default();
-        let (count, margins) = (self.parts.len() as u32, &MARGINS[..SMALL_MARGINS]);
+        let (shapes, margins) = (self.world_shapes(), &MARGINS[..SMALL_MARGINS]);
         let new = |others: &[Body], below: &mut dyn FnMut(u32) -> u32| {
             let mut rng = ChaCha8Rng::seed_from_u64(u64::from(below(u32::MAX)));
-            let shape = below(count);
+            let shape = below(shapes.len() as u32);
             let body = Body::at(shape, draw_rotation(&ROTATIONS, below), [0.0; 3]);
             let mut body = with_properties(body, margins, below);
             let part_of = |body: &Body, below: &mut dyn FnMut(u32) -> u32| {
@@ -114,7 +114,7 @@ impl Robots {
             body.translation = at.map(|x| (x / step).round() * step);
             body
         };
-        draw_bodies(&[], count, margins, new, below)
+        draw_bodies(&shapes, margins, new, below)
     }
 
     /// The translation at which a part of the second body, which is at the origin, nearly touches a
