@@ -74,7 +74,7 @@ impl ExperimentStep {
     fn needed(&self) -> Option<&str> {
         match self.program.as_str() {
             "sdop" => None,
-            "peers" | "rapier" | "bullet" | "bench" | "estimates" => Some("Cargo.toml"),
+            "peers" | "bench" | "estimates" => Some("Cargo.toml"),
             file => Some(file),
         }
     }

@@ -29,6 +29,7 @@ use super::volumes::{rounding, volume};
 pub struct CullingDispatcher(Arc<RwLock<KnownShapes>>);
 
 struct KnownShapes {
+    enabled: bool,
     test: PairTest,
     /// By address. Holding the shape prevents the address from being reused.
     shapes: FxHashMap<usize, Entry>,
@@ -45,11 +46,18 @@ struct Entry {
 impl Default for CullingDispatcher {
     fn default() -> Self {
         let test = PairTest::new(DirectionSet::K18);
-        Self(Arc::new(RwLock::new(KnownShapes { test, shapes: FxHashMap::default() })))
+        Self(Arc::new(RwLock::new(KnownShapes { enabled: true, test, shapes: FxHashMap::default() })))
     }
 }
 
 impl CullingDispatcher {
+    /// Switches the filter, also of clones, on or off: all pairs pass while it is off.
+    pub fn set_enabled(&self, enabled: bool) {
+        if let Ok(mut known) = self.0.write() {
+            known.enabled = enabled;
+        }
+    }
+
     /// Adds a collider's shape. Returns whether its pairs can be filtered (see [`volume`]); if not,
     /// they pass.
     pub fn add(&self, shape: &SharedShape) -> bool {
@@ -76,7 +84,9 @@ impl CullingDispatcher {
         let Ok(known) = self.0.read() else {
             return true;
         };
-        let Some((first, second)) = known.find(g1).zip(known.find(g2)) else {
+        let Some((first, second)) =
+            known.find(g1).zip(known.find(g2)).filter(|_| known.enabled)
+        else {
             return true;
         };
         // 1 % for parry's GJK, which stops within 0.1 % of a distance.
@@ -99,7 +109,7 @@ impl CullingDispatcher {
         let Ok(mut known) = self.0.write() else {
             return;
         };
-        let KnownShapes { test, shapes } = &mut *known;
+        let KnownShapes { test, shapes, .. } = &mut *known;
         if let Some(entry) = shapes.get_mut(&address(shape))
             && let Ok(model) = test.grown(entry.number, margin * WIDER)
         {
