@@ -46,6 +46,7 @@ const BENCH: &[&str] = &[
     "sweep",
     "tightness",
     "effects",
+    "roster",
     "scene",
     "simulate",
     "domain",

@@ -3,7 +3,7 @@
 //!
 //! Calibration scenes with the same number of bodies have different boxes and therefore different
 //! numbers of hits; the difference gives the price of a hit. The finders' scenes are those of
-//! [`common::swarm`]. `sdop-peers control` measures the gain of a second thread.
+//! [`common::swarm`]. `sdop-field boxes` times one thread and two.
 
 #![allow(clippy::unwrap_used, reason = "a bench without its scene can't go on")]
 

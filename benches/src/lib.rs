@@ -24,6 +24,7 @@ pub mod record;
 pub mod remedy;
 pub mod report;
 pub mod reproduce;
+pub mod roster;
 pub mod scene;
 pub mod simulate;
 pub mod sweep;

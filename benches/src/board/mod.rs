@@ -1,23 +1,23 @@
 //! The public board: which libraries miss which pairs.
 //!
-//! > `claims.toml` ([`claims`]) → each adapter judged, a [`Row`] of [`Cell`]s ([`row`]) → one
+//! > `engines.toml` ([`crate::roster`]) → each engine judged, a [`Row`] of [`Cell`]s ([`row`]) → one
 //! > page ([`page`])
 //!
 //! An adapter is a program that answers the judge's cases with another library
 //! (`benches/adapters/`). It has one cell for each family of its claim's cases. A family is the
 //! first word of a case's name, so that a new family automatically gets a column.
 
-mod claims;
 mod page;
 mod row;
 mod speed;
 
-pub use claims::{Adapter, Claims, FurtherClaim, NotRun, UnclaimedCases};
 pub use page::page;
 pub use row::{Cell, CellVerdict, Counter, Row, judge};
 pub use speed::Speed;
 
 use serde::Serialize;
+
+use crate::roster::NotRun;
 
 /// All rows.
 #[derive(Clone, Debug, Serialize)]

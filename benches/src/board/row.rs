@@ -17,7 +17,7 @@ use sdop_judge::witness::Witness;
 use sdop_judge::{Case, Claim, JudgeError, Miss, Options, Outcome, Subject, examine};
 use serde::Serialize;
 
-use super::claims::Adapter;
+use crate::roster::RosterRow;
 use crate::view::{Page, ShownRun};
 
 /// Time limit of a case; libraries that compile at their first call need it.
@@ -65,7 +65,7 @@ impl CellVerdict {
 pub struct Row {
     /// The judged adapter.
     #[serde(flatten)]
-    pub adapter: Adapter,
+    pub adapter: RosterRow,
     /// The version that answered, as the adapter names it; empty if it could not be run.
     pub found: String,
     /// The verdict over all cells.
@@ -119,7 +119,7 @@ pub struct Counter {
 /// # Errors
 /// A case can't be made.
 pub fn judge(
-    adapter: &Adapter,
+    adapter: &RosterRow,
     command: &str,
     cases: &str,
     progress: impl Fn(usize, usize) + Sync,
@@ -249,7 +249,7 @@ impl Cell {
     /// any.
     fn explained(
         mut self,
-        adapter: &Adapter,
+        adapter: &RosterRow,
         subject: &dyn Subject,
         cases: &[&CaseVerdict],
     ) -> Result<Self, JudgeError> {
@@ -322,7 +322,7 @@ fn only_touch(subject: &dyn Subject, case: &Case) -> bool {
 }
 
 impl Counter {
-    fn of(smallest: &SmallestCase, adapter: &Adapter) -> Self {
+    fn of(smallest: &SmallestCase, adapter: &RosterRow) -> Self {
         let files = counter_example(smallest).unwrap_or_default();
         let case = files
             .first()
@@ -333,7 +333,7 @@ impl Counter {
 }
 
 /// The viewer's data of a counter-example; empty if it can't be shown.
-fn picture(smallest: &SmallestCase, adapter: &Adapter) -> String {
+fn picture(smallest: &SmallestCase, adapter: &RosterRow) -> String {
     let pairs = Some(smallest.pairs.clone());
     let source = Path::new("missed-pair.ndjson");
     let Ok(mut show) = ShownRun::case(&smallest.case, pairs, source) else {

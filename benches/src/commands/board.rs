@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use miette::{IntoDiagnostic as _, miette};
-use sdop_bench::board::{Adapter, Board, CellVerdict, Claims, Row, Speed, judge, page};
+use sdop_bench::board::{Board, CellVerdict, Row, Speed, judge, page};
 use sdop_bench::outsiders::timing::frames;
+use sdop_bench::roster::{Roster, RosterRow};
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_judge::process::Program;
 use sdop_judge::wire::Wire;
@@ -36,12 +37,17 @@ pub struct Args {
     /// Directory for board.json and board.html
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Exit with 1 if a verdict or a version differs from the table of claims
+    /// Exit with 1 if a verdict or a version differs from the table of engines
     #[arg(long)]
     check: bool,
-    /// The table of claims
-    #[arg(long, value_name = "FILE", default_value = "benches/adapters/claims.toml")]
-    claims: PathBuf,
+    /// The table of engines
+    #[arg(
+        long,
+        value_name = "FILE",
+        alias = "claims",
+        default_value = "benches/field/engines.toml"
+    )]
+    engines: PathBuf,
     /// Time the libraries and ours on this scene instead of judging them, and write times.json
     #[arg(long, value_name = "SCENE", conflicts_with_all = ["case", "check", "times"])]
     timed: Option<PathBuf>,
@@ -58,15 +64,15 @@ const FRAMES: u32 = 12;
 /// # Errors
 /// The table can't be read, an adapter doesn't exist, or files can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    let claims = Claims::parse(&files::read(&args.claims)?)
-        .map_err(|problem| miette!("{}: {problem}", args.claims.display()))?;
+    let roster = Roster::parse(&files::read(&args.engines)?)
+        .map_err(|problem| miette!("{}: {problem}", args.engines.display()))?;
     match &args.timed {
-        Some(scene) => time_all(args, &claims, &SceneFile::read(scene)?.build()?),
-        None => judge_all(args, &claims),
+        Some(scene) => time_all(args, &roster, &SceneFile::read(scene)?.build()?),
+        None => judge_all(args, &roster),
     }
 }
 
-fn judge_all(args: &Args, claims: &Claims) -> miette::Result<Outcome> {
+fn judge_all(args: &Args, roster: &Roster) -> miette::Result<Outcome> {
     let times = match &args.times {
         Some(file) => serde_json::from_str(&files::read(file)?).into_diagnostic()?,
         None => Vec::new(),
@@ -74,16 +80,16 @@ fn judge_all(args: &Args, claims: &Claims) -> miette::Result<Outcome> {
     let mut board = Board {
         code: env!("CARGO_PKG_VERSION").to_owned(),
         adapters: Vec::new(),
-        not_run: claims.not_run.clone(),
+        not_run: roster.not_run.clone(),
         times,
     };
-    for adapter in chosen(args, claims)? {
+    for adapter in chosen(args, roster)? {
         let bar = progress(0, &adapter.name);
         let show = |done: usize, of: usize| {
             bar.set_length(of as u64);
             bar.set_position(done as u64);
         };
-        let command = claims.command(adapter);
+        let command = roster.command(adapter);
         let row = judge(adapter, &command, &args.case, show).into_diagnostic()?;
         bar.finish_and_clear();
         eprintln!("{}", line(&row).join("  "));
@@ -102,17 +108,17 @@ fn judge_all(args: &Args, claims: &Claims) -> miette::Result<Outcome> {
 }
 
 /// Times each library once, in a new process and by its first claim, and our culler once per claim.
-fn time_all(args: &Args, claims: &Claims, scene: &Scene) -> miette::Result<Outcome> {
+fn time_all(args: &Args, roster: &Roster, scene: &Scene) -> miette::Result<Outcome> {
     let mut times: Vec<Speed> = Vec::new();
-    let is_first = |adapter: &&Adapter| adapter.name == adapter.base;
-    for adapter in chosen(args, claims)?.into_iter().filter(is_first) {
+    let is_first = |adapter: &&RosterRow| adapter.name == adapter.base;
+    for adapter in chosen(args, roster)?.into_iter().filter(is_first) {
         let claim = adapter.claim;
         let case = frames(scene, FRAMES, claim).into_diagnostic()?;
         if !times.iter().any(|time| time.claim == claim) {
             times.extend(Speed::ours(&case).into_diagnostic()?);
         }
         let program = Program {
-            command: claims.command(adapter),
+            command: roster.command(adapter),
             wire: Wire::Ndjson,
             timeout: Duration::from_secs(120),
         };
@@ -136,17 +142,18 @@ fn write_json(path: &Path, value: &impl serde::Serialize) -> miette::Result<()> 
     files::write(path, text + "\n")
 }
 
-fn chosen<'a>(args: &Args, claims: &'a Claims) -> miette::Result<Vec<&'a Adapter>> {
-    let known = |name: &&String| claims.adapter.iter().any(|adapter| adapter.name == **name);
+fn chosen<'a>(args: &Args, roster: &'a Roster) -> miette::Result<Vec<&'a RosterRow>> {
+    let known = |name: &&String| roster.engine.iter().any(|adapter| adapter.name == **name);
     if let Some(name) = args.names.iter().find(|name| !known(name)) {
-        let names: Vec<&str> = claims.adapter.iter().map(|adapter| adapter.name.as_str()).collect();
+        let names: Vec<&str> = roster.engine.iter().map(|adapter| adapter.name.as_str()).collect();
         return Err(miette!(help = format!("one of: {}", names.join(", ")), "no adapter `{name}`"));
     }
-    let wanted = |adapter: &&Adapter| {
+    let wanted = |adapter: &&RosterRow| {
         (args.names.is_empty() || args.names.contains(&adapter.name))
             && (!args.quick || adapter.quick)
+            && !adapter.verdict.is_empty()
     };
-    Ok(claims.adapter.iter().filter(wanted).collect())
+    Ok(roster.engine.iter().filter(wanted).collect())
 }
 
 const HEADER: [&str; 8] =
@@ -171,7 +178,7 @@ fn line(row: &Row) -> Vec<String> {
     ]
 }
 
-/// The difference from the table of claims, if there is one.
+/// The difference from the table of engines, if there is one.
 fn changed(row: &Row) -> Option<String> {
     let (adapter, name) = (&row.adapter, &row.adapter.name);
     if let Some(how) = &row.how {

@@ -1,5 +1,6 @@
 //! `sdop record`: runs an experiment and stores its measurements with their provenance.
 
+mod estimates;
 mod flow;
 mod identifier;
 

@@ -19,7 +19,7 @@ const PAGES_WITH_BLOCKS: [&str; 11] = [
     "README.md",
     "paper/results.md",
     "benches/adapters/README.md",
-    "benches/engines/VERDICTS.md",
+    "benches/field/VERDICTS.md",
     "examples/bullet/README.md",
     "examples/rapier/README.md",
     "paper/machines.md",

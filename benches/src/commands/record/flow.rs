@@ -17,7 +17,7 @@ use sdop_bench::sweep::{Units, code};
 
 use super::super::Cli;
 use super::super::files::{COMMAND, SHARING, write};
-use super::{Args, chosen};
+use super::{Args, chosen, estimates};
 
 /// The endings of the directories next to a record's: of one that isn't whole, and of its shards.
 const PART: &str = ".part";
@@ -89,6 +89,11 @@ fn prepare(directory: &Path) -> miette::Result<PathBuf> {
 fn run(args: &Args, experiment: &Experiment, out: &Path, is_kept: bool) -> miette::Result<()> {
     let (name, of) = (&experiment.name, experiment.steps.len());
     for (index, step) in experiment.steps.iter().enumerate() {
+        if let ("estimates", Some(file)) = (&*step.program, &step.file) {
+            eprintln!("{name} {}/{of}: {}", index + 1, step.arguments.join(" "));
+            estimates::record(&step.arguments, &out.join(file))?;
+            continue;
+        }
         let mut command = command(step, out)?;
         if is_sweep(experiment) {
             command.args(args.sweep.arguments());
@@ -103,17 +108,12 @@ fn run(args: &Args, experiment: &Experiment, out: &Path, is_kept: bool) -> miett
         } else if args.sweep.shard().is_some() {
             command.stdout(Stdio::inherit());
         }
-        let said = output(name, step, &mut command)?;
-        if let Some(file) = step.file.as_ref().filter(|_| is_kept && is_printed(step)) {
+        let said = output(name, &mut command)?;
+        if let Some(file) = step.file.as_ref().filter(|_| is_kept) {
             write(&out.join(file), said)?;
         }
     }
     Ok(())
-}
-
-/// Whether a step's program prints its file instead of writing it.
-fn is_printed(step: &ExperimentStep) -> bool {
-    step.program != "estimates"
 }
 
 /// Writes the manifest of a record that is whole, and puts it in its place.
@@ -158,7 +158,7 @@ fn merge(experiment: &Experiment, directory: &Path, line: &str) -> miette::Resul
     let mut command = Command::new(std::env::current_exe().into_diagnostic()?);
     command.arg("merge").args(&shards).arg("--out").arg(&part).args(["--format", "json"]);
     for step in &experiment.steps {
-        let said = output(&experiment.name, step, &mut command)?;
+        let said = output(&experiment.name, &mut command)?;
         if let Some(file) = &step.file {
             write(&part.join(file), said)?;
         }
@@ -261,7 +261,7 @@ pub(super) fn command_line(experiment: &Experiment, args: &Args) -> String {
 }
 
 /// What a step's command prints, if it ends well.
-fn output(name: &str, step: &ExperimentStep, command: &mut Command) -> miette::Result<Vec<u8>> {
+fn output(name: &str, command: &mut Command) -> miette::Result<Vec<u8>> {
     let output = command
         .stderr(Stdio::inherit())
         .output()
@@ -273,10 +273,8 @@ fn output(name: &str, step: &ExperimentStep, command: &mut Command) -> miette::R
     Ok(output.stdout)
 }
 
-/// A step's command. Programs that write files have `--out` with a directory, or with the step's
-/// file.
+/// A step's command. Programs that write files themselves have `--out` with a directory.
 fn command(step: &ExperimentStep, out: &Path) -> miette::Result<Command> {
-    let place = step.file.as_ref().map_or_else(|| out.to_owned(), |file| out.join(file));
     let mut command = match step.program.as_str() {
         "sdop" => {
             let mut command = Command::new(std::env::current_exe().into_diagnostic()?);
@@ -286,12 +284,12 @@ fn command(step: &ExperimentStep, out: &Path) -> miette::Result<Command> {
             }
             command
         }
-        "peers" => {
+        "field" => {
             let mut cargo = Command::new("cargo");
             // Engines in C++ are built as their packages are.
-            cargo.env("CXX", "g++").args(["run", "--release", "--quiet", "-p", "sdop-peers"]);
+            cargo.env("CXX", "g++").args(["run", "--release", "--quiet", "-p", "sdop-field"]);
             cargo.args(["--features", "physx,debian,box3d", "--"]).args(&step.arguments);
-            cargo.arg("--out").arg(&place);
+            cargo.arg("--out").arg(out);
             cargo
         }
         "bench" => {
@@ -299,7 +297,6 @@ fn command(step: &ExperimentStep, out: &Path) -> miette::Result<Command> {
             cargo.args(["bench", "--quiet", "--bench"]).args(&step.arguments);
             cargo
         }
-        "estimates" => estimates(&step.arguments, &place)?,
         script => {
             let mut command = Command::new(script);
             command.args(&step.arguments);
@@ -307,30 +304,5 @@ fn command(step: &ExperimentStep, out: &Path) -> miette::Result<Command> {
         }
     };
     command.stdout(if step.file.is_some() { Stdio::piped() } else { Stdio::null() });
-    Ok(command)
-}
-
-/// Runs benches into a directory of their own; the command that gathers criterion's estimates from
-/// it.
-fn estimates(benches: &[String], file: &Path) -> miette::Result<Command> {
-    let home = std::env::current_dir().into_diagnostic()?.join("target/criterion-record");
-    if home.exists() {
-        std::fs::remove_dir_all(&home).into_diagnostic()?;
-    }
-    for bench in benches {
-        let status = Command::new("cargo")
-            .args(["bench", "--quiet", "--bench", bench, "--"])
-            .args("--noplot --sample-size 20 --warm-up-time 0.1 --measurement-time 0.4".split(' '))
-            .env("CRITERION_HOME", &home)
-            .stdout(Stdio::null())
-            .status()
-            .into_diagnostic()?;
-        if !status.success() {
-            return Err(miette!("the bench {bench} failed: {status}"));
-        }
-    }
-    let mut command = Command::new("cargo");
-    command.args(["run", "--release", "--quiet", "-p", "sdop-peers", "--", "kernels"]);
-    command.arg("--from").arg(home).arg("--out").arg(file);
     Ok(command)
 }
