@@ -127,12 +127,12 @@ struct QueriesArgs {
 fn main() -> miette::Result<()> {
     let cli = Cli::parse();
     threads::claim_caller()?;
-    let (common, cases) = match &cli.command {
+    let (common, cases, name) = match &cli.command {
         Command::Answer(args) => return answer::run(args),
-        Command::Boxes(args) => (&args.common, boxes(args)),
-        Command::Movers(args) => (&args.common, movers(args)),
-        Command::Queries(args) => (&args.common, queries(args)),
-        Command::Quick(common) => (common, quick()),
+        Command::Boxes(args) => (&args.common, boxes(args), "peers"),
+        Command::Movers(args) => (&args.common, movers(args), "movers"),
+        Command::Queries(args) => (&args.common, queries(args), "queries"),
+        Command::Quick(common) => (common, quick(), "times"),
     };
     let mut table = Table::new(&common.note);
     for mut case in cases {
@@ -147,7 +147,7 @@ fn main() -> miette::Result<()> {
             _ => threads::outside_of_pools(compare)?,
         });
         if let Some(directory) = &common.out {
-            table.write(directory)?;
+            table.write(directory, name)?;
         }
     }
     print!("{}", table.page());

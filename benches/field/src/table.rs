@@ -8,7 +8,6 @@ use std::path::Path;
 use miette::{IntoDiagnostic as _, WrapErr as _};
 use sdop::Tier;
 use sdop_bench::measure::machine::Machine;
-use sdop_bench::roster::Workload;
 use serde::{Serialize, Serializer};
 
 use crate::case::Case;
@@ -155,21 +154,14 @@ impl Table {
         self.left_out.extend(left_out);
     }
 
-    /// Writes a CSV, a JSON and a page, named after the workload, or `times` if there are several.
+    /// Writes a CSV, a JSON and a page of a name.
     ///
     /// # Errors
     /// A file that can't be written.
-    pub fn write(&self, directory: &Path) -> miette::Result<()> {
+    pub fn write(&self, directory: &Path, name: &str) -> miette::Result<()> {
         let json = serde_json::to_string_pretty(self).into_diagnostic()? + "\n";
         let blame = || format!("writing to {}", directory.display());
         fs::create_dir_all(directory).into_diagnostic().wrap_err_with(blame)?;
-        let of_all = |workload| self.rows.iter().all(|row| row.case.workload == workload);
-        let named = [
-            (Workload::Boxes, "peers"),
-            (Workload::Movers, "movers"),
-            (Workload::Queries, "queries"),
-        ];
-        let name = named.iter().find(|(workload, _)| of_all(*workload)).map_or("times", |it| it.1);
         for (ending, text) in [("csv", self.csv()?), ("json", json), ("md", self.page())] {
             sdop::files::write(&directory.join(name).with_extension(ending), text)
                 .into_diagnostic()

@@ -2,6 +2,7 @@
 //! with its new tree, which is driven as [Box3D's](super::tree).
 
 use box3d_rust::dynamic_tree::DynamicTree;
+use box3d_rust::math_functions::aabb_contains;
 use box3d_rust::{Aabb, Vec3};
 
 use super::tree::{self, BoxTree};
@@ -36,7 +37,13 @@ impl BoxTree for Tree {
 
     fn update(&mut self, moved: &[u32], boxes: &[Slabs]) {
         for &body in moved {
-            self.tree.enlarge_proxy(self.proxies[body as usize], aabb(&boxes[body as usize]));
+            let (proxy, aabb) = (self.proxies[body as usize], aabb(&boxes[body as usize]));
+            // A box that became smaller can't enlarge its leaf.
+            if aabb_contains(self.tree.aabb(proxy), aabb) {
+                self.tree.move_proxy(proxy, aabb);
+            } else {
+                self.tree.enlarge_proxy(proxy, aabb);
+            }
         }
     }
 

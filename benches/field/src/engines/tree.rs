@@ -65,7 +65,7 @@ impl<T: BoxTree> TreeEngine<T> {
             let (at, leaf) = (body as usize, &self.boxes[body as usize]);
             let is_inside = (0..3)
                 .all(|axis| leaf[axis][0] <= slabs[axis][0] && slabs[axis][1] <= leaf[axis][1]);
-            if self.margin == 0.0 || !is_inside {
+            if !is_inside || (self.margin == 0.0 && leaf != slabs) {
                 self.boxes[at] = grown(slabs, self.margin);
                 self.is_moved[at] = true;
                 self.moved.push(body);
