@@ -15,6 +15,7 @@ use sdop_judge::every_way::rounds::group;
 use sdop_judge::every_way::{Ledger, Run};
 use sdop_judge::ours::compare::{culler, settings};
 use sdop_judge::ours::configurations::{Mode, Rotation, variants, ways};
+use sdop_judge::ours::coverage::Cell;
 use sdop_judge::ours::hard::{
     FILES, HardCaseError, HardCaseGroup, HardCases, naive_misses, page, spell, variant_name,
 };
@@ -188,7 +189,7 @@ fn hard_cases_fill_the_matrix() {
         let ledgers: Vec<Ledger> = turns.into_par_iter().map(judge).collect();
         let mut all = Ledger::default();
         ledgers.into_iter().for_each(|ledger| all.add(ledger));
-        assert_eq!(all.matrix.empty(&rotation), []);
+        assert_eq!(all.coverage.empty(Cell::of_all_meshes(&rotation)), []);
         assert_eq!((all.missed(), all.differing()), (0, 0));
     }
 }

@@ -17,6 +17,7 @@ use sdop_judge::every_way::{Ledger, Run};
 use sdop_judge::ours::arbitrary;
 use sdop_judge::ours::configurations::{Mode, Rotation, variants, ways};
 use sdop_judge::ours::contact::{Contact, PlacedShape};
+use sdop_judge::ours::coverage::Cell;
 use sdop_judge::ours::forms::{self, Form};
 use sdop_judge::ours::seeded_draws::add;
 use sdop_judge::ours::{Answers, Predicate, Shapes, compare};
@@ -120,7 +121,7 @@ macro_rules! on_tiers {
                     return eprintln!("{} is not on this CPU", stringify!($module));
                 };
                 let ledger = never_misses(tier);
-                let empty = ledger.matrix.empty(&Rotation::new(&[tier]));
+                let empty = ledger.coverage.empty(Cell::of_all_meshes(&Rotation::new(&[tier])));
                 assert_eq!(empty, [], "cases for every way in every mode");
                 // Beyond the margins only the slabs' bound of a support reports more; spheres and
                 // boxes have none.

@@ -150,7 +150,7 @@ fn contradictory_header_is_rejected() {
             "k = 26 takes 13 slabs; it has 9 lower and 9 upper ends",
         ),
         (altered("\"ball\":[0.0,", "\"ball\":[1e39,"), "r.ndjson:1: column "),
-        (altered("\"seed\":", "\"sEed\":"), "r.ndjson:1: column "),
+        (altered("\"bodies\":", "\"bOdies\":"), "r.ndjson:1: column "),
     ] {
         let (message, help) = refusal(&text);
         assert!(message.contains(problem), "{message}");

@@ -122,7 +122,8 @@ macro_rules! periodic_class {
                 locked(py, &self.0, |world| world.set_periods(periods)).map_err(refused)
             }
 
-            /// Finds the pairs that might touch now, each once.
+            /// Finds the pairs that might touch now, each once. If images have more than `limit`
+            /// pairs, it is an error.
             ///
             /// Returns
             /// -------
@@ -131,8 +132,16 @@ macro_rules! periodic_class {
             /// array of int32, shape (m, 3)
             ///     By how many periods along x, y and z the second body has to be moved, from where
             ///     it was put, so that it may touch the first.
-            fn cull<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
-                let found = locked(py, &self.0, |world| world.cull().map(<[_]>::to_vec));
+            #[pyo3(signature = (*, limit=None))]
+            fn cull<'py>(
+                &self,
+                py: Python<'py>,
+                limit: Option<usize>,
+            ) -> PyResult<PeriodicPairs<'py>> {
+                let found = locked(py, &self.0, |world| match limit {
+                    Some(limit) => world.cull_up_to(limit).map(<[_]>::to_vec),
+                    None => world.cull().map(<[_]>::to_vec),
+                });
                 arrays(py, &found.map_err(refused)?)
             }
 

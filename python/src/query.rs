@@ -28,6 +28,8 @@ use super::world::{ROUND, World};
 /// ----------
 /// threads : int
 ///     Number of threads that share the queries of a call. Answers don't depend on it.
+/// limit : int, optional
+///     More answers to a call are an error.
 #[pyclass(frozen, module = "sdop")]
 pub struct QueryIndex(Mutex<sdop::QueryIndex>);
 
@@ -46,10 +48,10 @@ type Hits<'py> = (Bound<'py, PyArray2<u64>>, Bound<'py, PyArray1<f64>>);
 #[pymethods]
 impl QueryIndex {
     #[new]
-    #[pyo3(signature = (*, threads=1))]
-    fn new(threads: usize) -> PyResult<Self> {
+    #[pyo3(signature = (*, threads=1, limit=None))]
+    fn new(threads: usize, limit: Option<usize>) -> PyResult<Self> {
         let index = sdop::QueryIndex::with_threads(threads).map_err(refused)?;
-        Ok(Self(Mutex::new(index)))
+        Ok(Self(Mutex::new(index.most_answers(limit.unwrap_or(usize::MAX)))))
     }
 
     /// Brings the index up to date with a `World` or a `BoxWorld`. Only bodies that have changed

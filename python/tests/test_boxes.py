@@ -208,3 +208,11 @@ def test_pairs_beyond_memory_or_limit_are_an_error():
     assert "the frame has 199990000 pairs, but at most 9 are allowed" in done.stdout
     with pytest.raises(sdop.SdopError, match="at most 3 are allowed"):
         sdop.box_pairs(boxes(1000), limit=3)
+    cell, world, index = sdop.PeriodicBoxes([50, 50, 50]), sdop.BoxWorld(), sdop.QueryIndex(limit=2)
+    for _ in range(20):
+        cell.insert([0, 0, 0, 1, 1, 1]), world.insert([0, 0, 0, 1, 1, 1])
+    with pytest.raises(sdop.SdopError, match="the frame has 190 pairs, but at most 3 are allowed"):
+        cell.cull(limit=3)
+    index.update(world)
+    with pytest.raises(sdop.SdopError, match="answers 20 in all, of at most 2"):
+        index.touching_boxes([[0, 0, 0, 1, 1, 1]])

@@ -56,10 +56,6 @@ unsafe fn spec(given: *const SdopShapeSpec) -> Result<ShapeSpec, Refusal> {
 /// Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex
 /// indices of triangles. Its volumes are grown by what rounding the vertices to float moves. `spec`
 /// may be null.
-///
-/// # Safety
-/// The columns have the stated numbers of entries; `spec` is null or a specification; `out` may be
-/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_shape_new(
     vertices: *const [f64; 3],
@@ -83,9 +79,6 @@ pub unsafe extern "C" fn sdop_shape_new(
 }
 
 /// Frees a shape; null is fine. Cullers and worlds keep copies.
-///
-/// # Safety
-/// It is from `sdop_shape_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_shape_free(shape: *mut SdopShape) {
     // SAFETY: the caller's promise.
@@ -163,10 +156,6 @@ pub struct SdopBodies {
 }
 
 /// Makes the culler of these bodies. `options` may be null.
-///
-/// # Safety
-/// The columns have the stated numbers of entries; `options` is null or options; `out` may be
-/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_culler_new(
     shapes: *const *const SdopShape,
@@ -199,9 +188,6 @@ pub unsafe extern "C" fn sdop_culler_new(
 }
 
 /// Frees a culler; null is fine.
-///
-/// # Safety
-/// It is from `sdop_culler_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_culler_free(culler: *mut SdopCuller) {
     // SAFETY: the caller's promise.
@@ -211,14 +197,40 @@ pub unsafe extern "C" fn sdop_culler_free(culler: *mut SdopCuller) {
 /// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
 /// that have moved are found where they are now; such a frame takes about twice as long. `pairs`
 /// gets their number; read them with `sdop_culler_pairs`.
-///
-/// # Safety
-/// `culler` is a handle; the columns have an entry for each body; `pairs` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_culler_cull(
     culler: *mut SdopCuller,
     rotation: *const [f32; 4],
     translation: *const [f32; 3],
+    pairs: *mut usize,
+) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    unsafe { cull(culler, rotation, translation, None, pairs) }
+}
+
+/// `sdop_culler_cull`, if there are at most `limit` pairs; more are an error that has their number,
+/// and memory for them is never allocated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_culler_cull_up_to(
+    culler: *mut SdopCuller,
+    rotation: *const [f32; 4],
+    translation: *const [f32; 3],
+    limit: usize,
+    pairs: *mut usize,
+) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    unsafe { cull(culler, rotation, translation, Some(limit), pairs) }
+}
+
+/// Culls at poses, up to a number of pairs if there is a limit.
+///
+/// # Safety
+/// As `sdop_culler_cull`.
+unsafe fn cull(
+    culler: *mut SdopCuller,
+    rotation: *const [f32; 4],
+    translation: *const [f32; 3],
+    limit: Option<usize>,
     pairs: *mut usize,
 ) -> SdopStatus {
     // SAFETY: the caller's promise.
@@ -231,15 +243,15 @@ pub unsafe extern "C" fn sdop_culler_cull(
             unsafe { (column(rotation, n, "rotation")?, column(translation, n, "translation")?) };
         it.bodies.rotation.copy_from_slice(rotation);
         it.bodies.translation.copy_from_slice(translation);
-        Ok(it.culler.cull(&it.bodies)?.len())
+        Ok(match limit {
+            Some(limit) => it.culler.cull_up_to(&it.bodies, limit)?.len(),
+            None => it.culler.cull(&it.bodies)?.len(),
+        })
     })
 }
 
 /// Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there
 /// are.
-///
-/// # Safety
-/// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_culler_pairs(
     culler: *mut SdopCuller,

@@ -211,6 +211,38 @@ pub fn answer<T>(out: Out<T>, what: &str, run: impl FnOnce() -> Result<T, Refusa
     })
 }
 
+/// What finds a frame's pairs, behind a handle.
+pub trait Culls {
+    /// Culls, if a limit is given up to so many pairs, and returns their number.
+    fn cull(&mut self, limit: Option<usize>) -> Result<usize, Refusal>;
+}
+
+macro_rules! culls {
+    ($handle:ty) => {
+        impl $crate::c::border::Culls for $handle {
+            fn cull(&mut self, limit: Option<usize>) -> Result<usize, $crate::c::border::Refusal> {
+                Ok(match limit {
+                    Some(limit) => self.0.cull_up_to(limit)?.len(),
+                    None => self.0.cull()?.len(),
+                })
+            }
+        }
+    };
+}
+pub(super) use culls;
+
+/// Carries out a cull, whose number of pairs is written.
+///
+/// # Safety
+/// `world` is a handle; `pairs` may be written.
+pub unsafe fn cull<W: Culls>(world: *mut W, limit: Option<usize>, pairs: *mut usize) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
+        // SAFETY: the caller's promise.
+        unsafe { handle(world, "world") }?.cull(limit)
+    })
+}
+
 /// Carries out a call that hands a new handle out.
 pub fn make<T>(out: Out<*mut T>, run: impl FnOnce() -> Result<T, Refusal>) -> SdopStatus {
     answer(out, "out", || run().map(|value| Box::into_raw(Box::new(value))))
@@ -319,7 +351,6 @@ pub fn read_back<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T, Refu
     serde_json::from_slice(bytes).map_err(refused)
 }
 
-/// The pairs of a list.
 pub fn pairs(list: &PairList) -> impl ExactSizeIterator<Item = SdopPair> + '_ {
     list.iter().map(|[first, second]| SdopPair { first, second })
 }

@@ -3,8 +3,8 @@
 use std::ffi::{c_char, c_void};
 
 use super::border::{
-    Buffer, Out, SdopIdPair, SdopStatus, SdopTakeEvent, answer, call, call_back, column, free,
-    handle, list, make, pass_events, read_back, saved, shared,
+    Buffer, Out, SdopIdPair, SdopStatus, SdopTakeEvent, answer, call, call_back, column, cull,
+    culls, free, handle, list, make, pass_events, read_back, saved, shared,
 };
 use super::boxes::builder;
 use crate::bodies::{Aabb, Groups, Motion};
@@ -14,6 +14,8 @@ use crate::world::BodyId;
 /// A long-lived set of boxes: ids that stay, groups, pairs and events.
 #[derive(Debug)]
 pub struct SdopBoxWorld(pub(super) BoxWorld);
+
+culls!(SdopBoxWorld);
 
 /// A box to be inserted.
 #[repr(C)]
@@ -46,9 +48,6 @@ pub extern "C" fn sdop_box_body_at(bounds: Aabb) -> SdopBoxBody {
 }
 
 /// Makes a world without boxes. `finder` is "auto" if null; 0 threads are 1.
-///
-/// # Safety
-/// `finder` is null or ends with a zero; `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_new(
     finder: *const c_char,
@@ -64,9 +63,6 @@ pub unsafe extern "C" fn sdop_box_world_new(
 }
 
 /// Frees a world; null is fine.
-///
-/// # Safety
-/// It is from `sdop_box_world_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_free(world: *mut SdopBoxWorld) {
     // SAFETY: the caller's promise.
@@ -74,9 +70,6 @@ pub unsafe extern "C" fn sdop_box_world_free(world: *mut SdopBoxWorld) {
 }
 
 /// Adds a box; `id` gets its id, which stays until the box is removed.
-///
-/// # Safety
-/// `world` is a handle, `body` a box; `id` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_insert(
     world: *mut SdopBoxWorld,
@@ -92,9 +85,6 @@ pub unsafe extern "C" fn sdop_box_world_insert(
 }
 
 /// Removes a box.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_remove(world: *mut SdopBoxWorld, id: u64) -> SdopStatus {
     // SAFETY: the caller's promise.
@@ -102,9 +92,6 @@ pub unsafe extern "C" fn sdop_box_world_remove(world: *mut SdopBoxWorld, id: u64
 }
 
 /// Changes a box in any of its properties.
-///
-/// # Safety
-/// `world` is a handle, `body` a box.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_set(
     world: *mut SdopBoxWorld,
@@ -119,9 +106,6 @@ pub unsafe extern "C" fn sdop_box_world_set(
 }
 
 /// Moves boxes: columns of ids and boxes. If one is rejected, those before it have moved.
-///
-/// # Safety
-/// `world` is a handle; the columns have `count` entries.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_set_bounds(
     world: *mut SdopBoxWorld,
@@ -140,9 +124,6 @@ pub unsafe extern "C" fn sdop_box_world_set_bounds(
 }
 
 /// Never reports the pair of two boxes again until it is included or one of them is removed.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_exclude(
     world: *mut SdopBoxWorld,
@@ -158,9 +139,6 @@ pub unsafe extern "C" fn sdop_box_world_exclude(
 }
 
 /// Reports the pair of two boxes again when it meets.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_include(
     world: *mut SdopBoxWorld,
@@ -176,26 +154,29 @@ pub unsafe extern "C" fn sdop_box_world_include(
 }
 
 /// Finds the boxes that meet now. `pairs` gets their number; read them with `sdop_box_world_pairs`.
-///
-/// # Safety
-/// `world` is a handle; `pairs` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_cull(
     world: *mut SdopBoxWorld,
     pairs: *mut usize,
 ) -> SdopStatus {
     // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(pairs) }, "pairs", || {
-        // SAFETY: the caller's promise.
-        Ok(unsafe { handle(world, "world") }?.0.cull()?.len())
-    })
+    unsafe { cull(world, None, pairs) }
+}
+
+/// `sdop_box_world_cull`, if there are at most `limit` pairs; more are an error that
+/// has their number, and memory for them is never allocated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_world_cull_up_to(
+    world: *mut SdopBoxWorld,
+    limit: usize,
+    pairs: *mut usize,
+) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    unsafe { cull(world, Some(limit), pairs) }
 }
 
 /// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 /// says how many there are.
-///
-/// # Safety
-/// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_pairs(
     world: *mut SdopBoxWorld,
@@ -213,9 +194,6 @@ pub unsafe extern "C" fn sdop_box_world_pairs(
 
 /// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 /// function.
-///
-/// # Safety
-/// `world` is a handle; `take` may be called with `user`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_events(
     world: *mut SdopBoxWorld,
@@ -233,9 +211,6 @@ pub unsafe extern "C" fn sdop_box_world_events(
 
 /// Copies the world as bytes into `buffer`, for `sdop_box_world_restore`. If they don't fit,
 /// `count` says how many there are.
-///
-/// # Safety
-/// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_snapshot(
     world: *mut SdopBoxWorld,
@@ -252,9 +227,6 @@ pub unsafe extern "C" fn sdop_box_world_snapshot(
 }
 
 /// Gives this world the state of a snapshot.
-///
-/// # Safety
-/// `world` is a handle; `count` bytes may be read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_world_restore(
     world: *mut SdopBoxWorld,

@@ -31,9 +31,6 @@ pub(super) unsafe fn builder(
 /// Rounds boxes in double, each the lower corner x, y, z and then the upper one, to the smallest
 /// boxes of floats that contain them. No pair is missed that way; boxes that are less than that
 /// apart may be reported.
-///
-/// # Safety
-/// `boxes` and `out` have `count` entries, and those of `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_boxes_outward(
     boxes: *const [f64; 6],
@@ -50,9 +47,6 @@ pub unsafe extern "C" fn sdop_boxes_outward(
 }
 
 /// Makes a culler of boxes. `finder` is "auto" if null; 0 threads are 1.
-///
-/// # Safety
-/// `finder` is null or ends with a zero; `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_culler_new(
     finder: *const c_char,
@@ -68,9 +62,6 @@ pub unsafe extern "C" fn sdop_box_culler_new(
 }
 
 /// Frees a culler; null is fine.
-///
-/// # Safety
-/// It is from `sdop_box_culler_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_culler_free(culler: *mut SdopBoxCuller) {
     // SAFETY: the caller's promise.
@@ -97,10 +88,6 @@ impl SdopBoxCuller {
 
 /// Finds the pairs of boxes that meet, touching included, and whose groups collide. If `groups` is
 /// null, all collide. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
-///
-/// # Safety
-/// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be
-/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_culler_cull(
     culler: *mut SdopBoxCuller,
@@ -119,11 +106,29 @@ pub unsafe extern "C" fn sdop_box_culler_cull(
     })
 }
 
+/// `sdop_box_culler_cull`, if there are at most `limit` pairs; more are an error that has their
+/// number, and memory for them is never allocated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_box_culler_cull_up_to(
+    culler: *mut SdopBoxCuller,
+    boxes: *const Aabb,
+    groups: *const Groups,
+    count: usize,
+    limit: usize,
+    pairs: *mut usize,
+) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    answer(unsafe { Out::new(pairs) }, "pairs", || {
+        // SAFETY: the caller's promise.
+        let it = unsafe { handle(culler, "culler") }?;
+        // SAFETY: the caller's promise.
+        let boxes = unsafe { it.take(boxes, groups, count) }?;
+        Ok(it.0.cull_up_to(boxes, limit)?.len())
+    })
+}
+
 /// Copies the pairs of the last frame into `buffer`, in an order that depends only on the finder
 /// and the frames so far. If they don't fit, `count` says how many there are.
-///
-/// # Safety
-/// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_culler_pairs(
     culler: *mut SdopBoxCuller,
@@ -142,9 +147,6 @@ pub unsafe extern "C" fn sdop_box_culler_pairs(
 /// Culls as `sdop_box_culler_cull` does and passes the pairs to `take`, about 65,000 at a time, so
 /// that memory doesn't grow with their number. With several threads, `take` is called from any of
 /// them, one call at a time.
-///
-/// # Safety
-/// As `sdop_box_culler_cull`; `take` may be called with `user`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_box_culler_cull_each(
     culler: *mut SdopBoxCuller,

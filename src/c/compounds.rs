@@ -46,10 +46,6 @@ pub extern "C" fn sdop_part_turned(part: Part, x: f64, y: f64, z: f64, w: f64) -
 
 /// Makes a compound of parts, whose shapes are numbered as in `shapes`. `name` is for errors, and
 /// may be null.
-///
-/// # Safety
-/// `name` is null or ends with a zero; the columns have the stated numbers of entries; `out` may be
-/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_compound_new(
     name: *const c_char,
@@ -73,9 +69,6 @@ pub unsafe extern "C" fn sdop_compound_new(
 }
 
 /// Frees a compound; null is fine. Part cullers keep copies.
-///
-/// # Safety
-/// It is from `sdop_compound_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_compound_free(compound: *mut SdopCompound) {
     // SAFETY: the caller's promise.
@@ -83,9 +76,6 @@ pub unsafe extern "C" fn sdop_compound_free(compound: *mut SdopCompound) {
 }
 
 /// Makes the shape that contains all parts: give it to a world like any other, and free it.
-///
-/// # Safety
-/// `compound` is a handle; `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_compound_shape(
     compound: *const SdopCompound,
@@ -100,9 +90,6 @@ pub unsafe extern "C" fn sdop_compound_shape(
 }
 
 /// Makes a culler of parts without compounds: every shape is one part.
-///
-/// # Safety
-/// `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_part_culler_new(out: *mut *mut SdopPartCuller) -> SdopStatus {
     // SAFETY: the caller's promise.
@@ -110,9 +97,6 @@ pub unsafe extern "C" fn sdop_part_culler_new(out: *mut *mut SdopPartCuller) -> 
 }
 
 /// Frees a culler of parts; null is fine.
-///
-/// # Safety
-/// It is from `sdop_part_culler_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_part_culler_free(culler: *mut SdopPartCuller) {
     // SAFETY: the caller's promise.
@@ -121,9 +105,6 @@ pub unsafe extern "C" fn sdop_part_culler_free(culler: *mut SdopPartCuller) {
 
 /// Sets the parts of a shape of the world. The world's shape of that number has to be the one that
 /// `sdop_compound_shape` made. If `compound` is null, the shape is one part again.
-///
-/// # Safety
-/// `culler` is a handle, `compound` a handle or null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_part_culler_set_parts(
     culler: *mut SdopPartCuller,
@@ -143,9 +124,6 @@ pub unsafe extern "C" fn sdop_part_culler_set_parts(
 
 /// Finds the pairs of parts in the pairs of the world's last cull: call it after each cull, before
 /// bodies change. `pairs` gets their number; read them with `sdop_part_culler_pairs`.
-///
-/// # Safety
-/// `culler` and `world` are handles; `pairs` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_part_culler_cull(
     culler: *mut SdopPartCuller,
@@ -162,9 +140,6 @@ pub unsafe extern "C" fn sdop_part_culler_cull(
 
 /// Copies the pairs of parts of the last cull into `buffer`, sorted by slots and then by parts. If
 /// they don't fit, `count` says how many there are.
-///
-/// # Safety
-/// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_part_culler_pairs(
     culler: *const SdopPartCuller,
@@ -182,9 +157,6 @@ pub unsafe extern "C" fn sdop_part_culler_pairs(
 
 /// Copies the pairs of bodies of which some parts may touch into `buffer`, sorted by slots. If they
 /// don't fit, `count` says how many there are.
-///
-/// # Safety
-/// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_part_culler_body_pairs(
     culler: *const SdopPartCuller,

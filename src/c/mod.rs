@@ -4,8 +4,17 @@
 //! [`sdop_last_error`]. No panic crosses the border. Handles may move between threads. Only one
 //! thread at a time may use a handle, except in functions that take it as `const`: such calls may
 //! run at the same time.
+//!
+//! # Safety
+//! Of every function: a handle comes from the function that makes such handles, and is not used
+//! after it was freed. A column has as many entries as the count beside it says, or one for each
+//! body; a vector or a quaternion has its 3 or 4 numbers; a text ends with a zero. What a call
+//! gives may be written: `capacity` entries of `buffer`, and one value behind any other pointer
+//! that isn't `const`. A callback may be called with its `user`. Null is refused, unless the
+//! function says what it means.
 
 #![allow(unsafe_code, reason = "pointers of C cross the border here")]
+#![allow(clippy::missing_safety_doc, reason = "stated once for all, above")]
 
 mod bodies;
 mod border;

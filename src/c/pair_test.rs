@@ -12,9 +12,6 @@ use crate::world::PairTest;
 pub struct SdopPairTest(PairTest);
 
 /// Makes a test without shapes, of or-DOPs with `k` faces: 6, 14, 18 or 26; 0 is 18.
-///
-/// # Safety
-/// `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_pair_test_new(k: u32, out: *mut *mut SdopPairTest) -> SdopStatus {
     // SAFETY: the caller's promise.
@@ -28,9 +25,6 @@ pub unsafe extern "C" fn sdop_pair_test_new(k: u32, out: *mut *mut SdopPairTest)
 }
 
 /// Frees a test; null is fine.
-///
-/// # Safety
-/// It is from `sdop_pair_test_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_pair_test_free(test: *mut SdopPairTest) {
     // SAFETY: the caller's promise.
@@ -39,9 +33,6 @@ pub unsafe extern "C" fn sdop_pair_test_free(test: *mut SdopPairTest) {
 
 /// Adds a shape, which the test copies. `number` gets its number: 0 for the first, and one more for
 /// each shape that is added or grown.
-///
-/// # Safety
-/// `test` and `shape` are handles; `number` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_pair_test_add(
     test: *mut SdopPairTest,
@@ -58,9 +49,6 @@ pub unsafe extern "C" fn sdop_pair_test_add(
 
 /// Adds a shape of the test grown by `margin`, a length. `number` gets the number of the grown
 /// shape.
-///
-/// # Safety
-/// `test` is a handle; `number` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_pair_test_grow(
     test: *mut SdopPairTest,
@@ -79,10 +67,6 @@ pub unsafe extern "C" fn sdop_pair_test_grow(
 /// z, w of any non-zero norm and the translation of its origin. False only if they are apart in
 /// exact arithmetic; true for null pointers, unknown numbers and poses that are not finite. Many
 /// threads may call it at the same time.
-///
-/// # Safety
-/// `test` is a handle, to which nothing is added meanwhile, or null; `rotation` and `translation`
-/// may be read, or are null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_pair_test_may_touch(
     test: *const SdopPairTest,

@@ -4,7 +4,7 @@ use std::ffi::{c_char, c_void};
 
 use super::border::{
     Buffer, Out, Refusal, SdopEventKind, SdopIdPair, SdopStatus, answer, call, call_back, column,
-    free, handle, list, make, shared,
+    cull, culls, free, handle, list, make, shared,
 };
 use super::boxes::builder;
 use crate::bodies::{Groups, Motion};
@@ -14,6 +14,8 @@ use crate::world::BodyId;
 /// A long-lived set of boxes in space that repeats along some axes.
 #[derive(Debug)]
 pub struct SdopPeriodicBoxes(PeriodicBoxes);
+
+culls!(SdopPeriodicBoxes);
 
 /// A box in space that repeats. It may be anywhere; along a periodic axis it has to be shorter than
 /// half of the period.
@@ -105,9 +107,6 @@ pub extern "C" fn sdop_periodic_box_between(
 
 /// Makes a world without boxes. `periods` are three lengths along x, y and z, 0 for an axis without
 /// a period. `finder` is "auto" if null; 0 threads are 1.
-///
-/// # Safety
-/// `periods` are three numbers; `finder` is null or ends with a zero; `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_new(
     periods: *const [f64; 3],
@@ -125,9 +124,6 @@ pub unsafe extern "C" fn sdop_periodic_boxes_new(
 }
 
 /// Frees a world; null is fine.
-///
-/// # Safety
-/// It is from `sdop_periodic_boxes_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_free(world: *mut SdopPeriodicBoxes) {
     // SAFETY: the caller's promise.
@@ -136,9 +132,6 @@ pub unsafe extern "C" fn sdop_periodic_boxes_free(world: *mut SdopPeriodicBoxes)
 
 /// Changes the periods. Boxes stay where they were put. If one is too large for them, nothing
 /// changes.
-///
-/// # Safety
-/// `world` is a handle; `periods` are three numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_set_periods(
     world: *mut SdopPeriodicBoxes,
@@ -152,9 +145,6 @@ pub unsafe extern "C" fn sdop_periodic_boxes_set_periods(
 }
 
 /// Adds a box; `id` gets its id, which stays until the box is removed.
-///
-/// # Safety
-/// `world` is a handle, `body` a box; `id` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_insert(
     world: *mut SdopPeriodicBoxes,
@@ -170,9 +160,6 @@ pub unsafe extern "C" fn sdop_periodic_boxes_insert(
 }
 
 /// Removes a box.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_remove(
     world: *mut SdopPeriodicBoxes,
@@ -187,9 +174,6 @@ pub unsafe extern "C" fn sdop_periodic_boxes_remove(
 
 /// Moves boxes, or changes them in any of their properties: columns of ids and boxes. If one is
 /// rejected, those before it have changed.
-///
-/// # Safety
-/// `world` is a handle; the columns have `count` entries.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_set(
     world: *mut SdopPeriodicBoxes,
@@ -212,9 +196,6 @@ pub unsafe extern "C" fn sdop_periodic_boxes_set(
 
 /// Never reports the pair of two boxes again, in any image, until it is included or one of them is
 /// removed.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_exclude(
     world: *mut SdopPeriodicBoxes,
@@ -230,9 +211,6 @@ pub unsafe extern "C" fn sdop_periodic_boxes_exclude(
 }
 
 /// Reports the pair of two boxes again when it meets.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_include(
     world: *mut SdopPeriodicBoxes,
@@ -249,26 +227,30 @@ pub unsafe extern "C" fn sdop_periodic_boxes_include(
 
 /// Finds the pairs of which an image meets. `pairs` gets their number; read them with
 /// `sdop_periodic_boxes_pairs`.
-///
-/// # Safety
-/// `world` is a handle; `pairs` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_cull(
     world: *mut SdopPeriodicBoxes,
     pairs: *mut usize,
 ) -> SdopStatus {
     // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(pairs) }, "pairs", || {
-        // SAFETY: the caller's promise.
-        Ok(unsafe { handle(world, "world") }?.0.cull()?.len())
-    })
+    unsafe { cull(world, None, pairs) }
+}
+
+/// `sdop_periodic_boxes_cull`, if images have at most `limit` pairs; more are an error that has
+/// their number. A pair across a corner of the period is found at several images, and counts as
+/// often.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_boxes_cull_up_to(
+    world: *mut SdopPeriodicBoxes,
+    limit: usize,
+    pairs: *mut usize,
+) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    unsafe { cull(world, Some(limit), pairs) }
 }
 
 /// Copies the pairs of the last cull into `buffer`, each once, sorted by slots. If they don't fit,
 /// `count` says how many there are.
-///
-/// # Safety
-/// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_pairs(
     world: *const SdopPeriodicBoxes,
@@ -286,9 +268,6 @@ pub unsafe extern "C" fn sdop_periodic_boxes_pairs(
 
 /// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 /// function. Two boxes are one pair, in whatever image they meet.
-///
-/// # Safety
-/// `world` is a handle; `take` may be called with `user`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_boxes_events(
     world: *mut SdopPeriodicBoxes,

@@ -4,7 +4,8 @@ use std::ffi::c_void;
 
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
 use super::border::{
-    Buffer, Out, SdopStatus, answer, call, call_back, column, free, handle, list, make, shared,
+    Buffer, Out, SdopStatus, answer, call, call_back, column, cull, culls, free, handle, list,
+    make, shared,
 };
 use super::periodic_boxes::{
     SdopPeriodicPair, SdopTakePeriodicEvent, pass_periodic_events, periods,
@@ -18,12 +19,10 @@ use crate::world::{Body, BodyId};
 #[derive(Debug)]
 pub struct SdopPeriodicWorld(PeriodicWorld);
 
+culls!(SdopPeriodicWorld);
+
 /// Makes a world without bodies. `periods` are three lengths along x, y and z, 0 for an axis
 /// without a period. `options` may be null for the defaults.
-///
-/// # Safety
-/// The column has the stated number of shapes; `periods` are three numbers; `options` is null or
-/// options; `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_new(
     shapes: *const *const SdopShape,
@@ -44,9 +43,6 @@ pub unsafe extern "C" fn sdop_periodic_world_new(
 }
 
 /// Frees a world; null is fine.
-///
-/// # Safety
-/// It is from `sdop_periodic_world_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_free(world: *mut SdopPeriodicWorld) {
     // SAFETY: the caller's promise.
@@ -55,9 +51,6 @@ pub unsafe extern "C" fn sdop_periodic_world_free(world: *mut SdopPeriodicWorld)
 
 /// Changes the periods. Bodies stay where they were put. If one is too large for them, nothing
 /// changes.
-///
-/// # Safety
-/// `world` is a handle; `periods` are three numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_set_periods(
     world: *mut SdopPeriodicWorld,
@@ -71,9 +64,6 @@ pub unsafe extern "C" fn sdop_periodic_world_set_periods(
 }
 
 /// Adds a body; `id` gets its id, which stays until the body is removed.
-///
-/// # Safety
-/// `world` is a handle, `body` a body; `id` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_insert(
     world: *mut SdopPeriodicWorld,
@@ -89,9 +79,6 @@ pub unsafe extern "C" fn sdop_periodic_world_insert(
 }
 
 /// Removes a body.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_remove(
     world: *mut SdopPeriodicWorld,
@@ -106,9 +93,6 @@ pub unsafe extern "C" fn sdop_periodic_world_remove(
 
 /// Moves bodies, or changes them in any of their properties: columns of ids and bodies. If one is
 /// rejected, those before it have changed.
-///
-/// # Safety
-/// `world` is a handle; the columns have `count` entries.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_set(
     world: *mut SdopPeriodicWorld,
@@ -131,9 +115,6 @@ pub unsafe extern "C" fn sdop_periodic_world_set(
 
 /// Never reports the pair of two bodies again, in any image, until it is included or one of them is
 /// removed.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_exclude(
     world: *mut SdopPeriodicWorld,
@@ -149,9 +130,6 @@ pub unsafe extern "C" fn sdop_periodic_world_exclude(
 }
 
 /// Reports the pair of two bodies again when it meets.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_include(
     world: *mut SdopPeriodicWorld,
@@ -168,26 +146,30 @@ pub unsafe extern "C" fn sdop_periodic_world_include(
 
 /// Finds the pairs of which an image may touch. `pairs` gets their number; read them with
 /// `sdop_periodic_world_pairs`.
-///
-/// # Safety
-/// `world` is a handle; `pairs` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_cull(
     world: *mut SdopPeriodicWorld,
     pairs: *mut usize,
 ) -> SdopStatus {
     // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(pairs) }, "pairs", || {
-        // SAFETY: the caller's promise.
-        Ok(unsafe { handle(world, "world") }?.0.cull()?.len())
-    })
+    unsafe { cull(world, None, pairs) }
+}
+
+/// `sdop_periodic_world_cull`, if images have at most `limit` pairs; more are an error that has
+/// their number. A pair across a corner of the period is found at several images, and counts as
+/// often.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_periodic_world_cull_up_to(
+    world: *mut SdopPeriodicWorld,
+    limit: usize,
+    pairs: *mut usize,
+) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    unsafe { cull(world, Some(limit), pairs) }
 }
 
 /// Copies the pairs of the last cull into `buffer`, each once, sorted by slots. If they don't fit,
 /// `count` says how many there are.
-///
-/// # Safety
-/// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_pairs(
     world: *const SdopPeriodicWorld,
@@ -205,9 +187,6 @@ pub unsafe extern "C" fn sdop_periodic_world_pairs(
 
 /// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 /// function. Two bodies are one pair, in whatever image they touch.
-///
-/// # Safety
-/// `world` is a handle; `take` may be called with `user`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_periodic_world_events(
     world: *mut SdopPeriodicWorld,

@@ -45,9 +45,6 @@ impl From<LineHit> for SdopHit {
 }
 
 /// Makes an index without bodies.
-///
-/// # Safety
-/// `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_new(out: *mut *mut SdopQueryIndex) -> SdopStatus {
     // SAFETY: the caller's promise.
@@ -55,9 +52,6 @@ pub unsafe extern "C" fn sdop_query_index_new(out: *mut *mut SdopQueryIndex) -> 
 }
 
 /// Frees an index; null is fine.
-///
-/// # Safety
-/// It is from `sdop_query_index_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_free(index: *mut SdopQueryIndex) {
     // SAFETY: the caller's promise.
@@ -66,9 +60,6 @@ pub unsafe extern "C" fn sdop_query_index_free(index: *mut SdopQueryIndex) {
 
 /// Brings the index up to date with a world: queries then see its bodies as they are now. A body
 /// that has not changed since the last update costs one comparison. No cull is needed.
-///
-/// # Safety
-/// `index` and `world` are handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_update(
     index: *mut SdopQueryIndex,
@@ -83,9 +74,6 @@ pub unsafe extern "C" fn sdop_query_index_update(
 }
 
 /// `sdop_query_index_update` for a world of boxes.
-///
-/// # Safety
-/// `index` and `world` are handles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_update_boxes(
     index: *mut SdopQueryIndex,
@@ -102,10 +90,6 @@ pub unsafe extern "C" fn sdop_query_index_update_boxes(
 /// Writes the ids of the bodies that may touch a box on the world's axes into `buffer`, sorted by
 /// slots. No body that has a point in common with it is missed. If they don't fit, `count` says how
 /// many there are.
-///
-/// # Safety
-/// `index` is a handle; `min` and `max` are the box's corners; `capacity` entries of `buffer` and
-/// `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_touching_box(
     index: *const SdopQueryIndex,
@@ -126,10 +110,6 @@ pub unsafe extern "C" fn sdop_query_index_touching_box(
 }
 
 /// `sdop_query_index_touching_box` for a ball, or a point if the radius is 0.
-///
-/// # Safety
-/// `index` is a handle; `centre` is a point; `capacity` entries of `buffer` and `count` may be
-/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_touching_ball(
     index: *const SdopQueryIndex,
@@ -150,9 +130,6 @@ pub unsafe extern "C" fn sdop_query_index_touching_ball(
 
 /// Finds the body whose volume a segment may meet first: no other is met at a smaller s. `found`
 /// gets whether there is such a body, and `hit`, unless it is null, gets it.
-///
-/// # Safety
-/// `index` is a handle, `segment` a segment; `hit` is null or may be written, `found` may be.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_first(
     index: *const SdopQueryIndex,
@@ -176,10 +153,6 @@ pub unsafe extern "C" fn sdop_query_index_first(
 
 /// Writes all bodies that a segment may meet into `buffer`, sorted by s. If they don't fit, `count`
 /// says how many there are.
-///
-/// # Safety
-/// `index` is a handle, `segment` a segment; `capacity` entries of `buffer` and `count` may be
-/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_query_index_along(
     index: *const SdopQueryIndex,

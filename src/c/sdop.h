@@ -1,4 +1,14 @@
-/* sdop: collision culling that never misses a touching pair. Made by cbindgen from src/c. */
+/* sdop: collision culling that never misses a touching pair. Made by cbindgen from src/c.
+
+   A function that can fail returns a status and leaves the reason, with its remedy, in
+   sdop_last_error. Handles may move between threads. Only one thread at a time may use a handle,
+   except in functions that take it as const: such calls may run at the same time.
+
+   Of every function: a handle comes from the function that makes such handles, and is not used after
+   it was freed. A column has as many entries as the count beside it says, or one for each body; a
+   vector or a quaternion has its 3 or 4 numbers; a text ends with a zero. What a call gives may be
+   written: `capacity` entries of `buffer`, and one value behind any other pointer that isn't const.
+   A callback may be called with its `user`. Null is refused, unless the function says what it means. */
 
 #ifndef SDOP_H
 #define SDOP_H
@@ -287,10 +297,6 @@ const char *sdop_last_error(void);
 // Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex
 // indices of triangles. Its volumes are grown by what rounding the vertices to float moves. `spec`
 // may be null.
-//
-// # Safety
-// The columns have the stated numbers of entries; `spec` is null or a specification; `out` may be
-// written.
 SdopStatus sdop_shape_new(const double (*vertices)[3],
                           size_t vertex_count,
                           const uint32_t (*triangles)[3],
@@ -299,16 +305,9 @@ SdopStatus sdop_shape_new(const double (*vertices)[3],
                           SdopShape **out);
 
 // Frees a shape; null is fine. Cullers and worlds keep copies.
-//
-// # Safety
-// It is from `sdop_shape_new` and not used afterwards.
 void sdop_shape_free(SdopShape *shape);
 
 // Makes the culler of these bodies. `options` may be null.
-//
-// # Safety
-// The columns have the stated numbers of entries; `options` is null or options; `out` may be
-// written.
 SdopStatus sdop_culler_new(const SdopShape *const *shapes,
                            size_t shape_count,
                            const SdopBodies *bodies,
@@ -316,161 +315,115 @@ SdopStatus sdop_culler_new(const SdopShape *const *shapes,
                            SdopCuller **out);
 
 // Frees a culler; null is fine.
-//
-// # Safety
-// It is from `sdop_culler_new` and not used afterwards.
 void sdop_culler_free(SdopCuller *culler);
 
 // Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
 // that have moved are found where they are now; such a frame takes about twice as long. `pairs`
 // gets their number; read them with `sdop_culler_pairs`.
-//
-// # Safety
-// `culler` is a handle; the columns have an entry for each body; `pairs` may be written.
 SdopStatus sdop_culler_cull(SdopCuller *culler,
                             const float (*rotation)[4],
                             const float (*translation)[3],
                             size_t *pairs);
 
+// `sdop_culler_cull`, if there are at most `limit` pairs; more are an error that has their number,
+// and memory for them is never allocated.
+SdopStatus sdop_culler_cull_up_to(SdopCuller *culler,
+                                  const float (*rotation)[4],
+                                  const float (*translation)[3],
+                                  size_t limit,
+                                  size_t *pairs);
+
 // Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there
 // are.
-//
-// # Safety
-// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_culler_pairs(SdopCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
 
 // A box that is neither fixed nor resting, in all groups. Change what differs.
 SdopBoxBody sdop_box_body_at(SdopBox bounds);
 
 // Makes a world without boxes. `finder` is "auto" if null; 0 threads are 1.
-//
-// # Safety
-// `finder` is null or ends with a zero; `out` may be written.
 SdopStatus sdop_box_world_new(const char *finder, size_t threads, SdopBoxWorld **out);
 
 // Frees a world; null is fine.
-//
-// # Safety
-// It is from `sdop_box_world_new` and not used afterwards.
 void sdop_box_world_free(SdopBoxWorld *world);
 
 // Adds a box; `id` gets its id, which stays until the box is removed.
-//
-// # Safety
-// `world` is a handle, `body` a box; `id` may be written.
 SdopStatus sdop_box_world_insert(SdopBoxWorld *world, const SdopBoxBody *body, uint64_t *id);
 
 // Removes a box.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_box_world_remove(SdopBoxWorld *world, uint64_t id);
 
 // Changes a box in any of its properties.
-//
-// # Safety
-// `world` is a handle, `body` a box.
 SdopStatus sdop_box_world_set(SdopBoxWorld *world, uint64_t id, const SdopBoxBody *body);
 
 // Moves boxes: columns of ids and boxes. If one is rejected, those before it have moved.
-//
-// # Safety
-// `world` is a handle; the columns have `count` entries.
 SdopStatus sdop_box_world_set_bounds(SdopBoxWorld *world,
                                      const uint64_t *ids,
                                      const SdopBox *boxes,
                                      size_t count);
 
 // Never reports the pair of two boxes again until it is included or one of them is removed.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_box_world_exclude(SdopBoxWorld *world, uint64_t a, uint64_t b);
 
 // Reports the pair of two boxes again when it meets.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_box_world_include(SdopBoxWorld *world, uint64_t a, uint64_t b);
 
 // Finds the boxes that meet now. `pairs` gets their number; read them with `sdop_box_world_pairs`.
-//
-// # Safety
-// `world` is a handle; `pairs` may be written.
 SdopStatus sdop_box_world_cull(SdopBoxWorld *world, size_t *pairs);
+
+// `sdop_box_world_cull`, if there are at most `limit` pairs; more are an error that
+// has their number, and memory for them is never allocated.
+SdopStatus sdop_box_world_cull_up_to(SdopBoxWorld *world, size_t limit, size_t *pairs);
 
 // Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 // says how many there are.
-//
-// # Safety
-// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_box_world_pairs(SdopBoxWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
 
 // Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 // function.
-//
-// # Safety
-// `world` is a handle; `take` may be called with `user`.
 SdopStatus sdop_box_world_events(SdopBoxWorld *world, SdopTakeEvent take, void *user);
 
 // Copies the world as bytes into `buffer`, for `sdop_box_world_restore`. If they don't fit,
 // `count` says how many there are.
-//
-// # Safety
-// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
 SdopStatus sdop_box_world_snapshot(SdopBoxWorld *world, uint8_t *buffer, size_t capacity, size_t *count);
 
 // Gives this world the state of a snapshot.
-//
-// # Safety
-// `world` is a handle; `count` bytes may be read.
 SdopStatus sdop_box_world_restore(SdopBoxWorld *world, const uint8_t *bytes, size_t count);
 
 // Rounds boxes in double, each the lower corner x, y, z and then the upper one, to the smallest
 // boxes of floats that contain them. No pair is missed that way; boxes that are less than that
 // apart may be reported.
-//
-// # Safety
-// `boxes` and `out` have `count` entries, and those of `out` may be written.
 SdopStatus sdop_boxes_outward(const double (*boxes)[6], size_t count, SdopBox *out);
 
 // Makes a culler of boxes. `finder` is "auto" if null; 0 threads are 1.
-//
-// # Safety
-// `finder` is null or ends with a zero; `out` may be written.
 SdopStatus sdop_box_culler_new(const char *finder, size_t threads, SdopBoxCuller **out);
 
 // Frees a culler; null is fine.
-//
-// # Safety
-// It is from `sdop_box_culler_new` and not used afterwards.
 void sdop_box_culler_free(SdopBoxCuller *culler);
 
 // Finds the pairs of boxes that meet, touching included, and whose groups collide. If `groups` is
 // null, all collide. `pairs` gets their number; read them with `sdop_box_culler_pairs`.
-//
-// # Safety
-// `culler` is a handle; `boxes` has `count` entries, `groups` too unless null; `pairs` may be
-// written.
 SdopStatus sdop_box_culler_cull(SdopBoxCuller *culler,
                                 const SdopBox *boxes,
                                 const SdopGroups *groups,
                                 size_t count,
                                 size_t *pairs);
 
+// `sdop_box_culler_cull`, if there are at most `limit` pairs; more are an error that has their
+// number, and memory for them is never allocated.
+SdopStatus sdop_box_culler_cull_up_to(SdopBoxCuller *culler,
+                                      const SdopBox *boxes,
+                                      const SdopGroups *groups,
+                                      size_t count,
+                                      size_t limit,
+                                      size_t *pairs);
+
 // Copies the pairs of the last frame into `buffer`, in an order that depends only on the finder
 // and the frames so far. If they don't fit, `count` says how many there are.
-//
-// # Safety
-// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_box_culler_pairs(SdopBoxCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
 
 // Culls as `sdop_box_culler_cull` does and passes the pairs to `take`, about 65,000 at a time, so
 // that memory doesn't grow with their number. With several threads, `take` is called from any of
 // them, one call at a time.
-//
-// # Safety
-// As `sdop_box_culler_cull`; `take` may be called with `user`.
 SdopStatus sdop_box_culler_cull_each(SdopBoxCuller *culler,
                                      const SdopBox *boxes,
                                      const SdopGroups *groups,
@@ -484,10 +437,6 @@ SdopPart sdop_part_turned(SdopPart part, double x, double y, double z, double w)
 
 // Makes a compound of parts, whose shapes are numbered as in `shapes`. `name` is for errors, and
 // may be null.
-//
-// # Safety
-// `name` is null or ends with a zero; the columns have the stated numbers of entries; `out` may be
-// written.
 SdopStatus sdop_compound_new(const char *name,
                              const SdopShape *const *shapes,
                              size_t shape_count,
@@ -496,48 +445,27 @@ SdopStatus sdop_compound_new(const char *name,
                              SdopCompound **out);
 
 // Frees a compound; null is fine. Part cullers keep copies.
-//
-// # Safety
-// It is from `sdop_compound_new` and not used afterwards.
 void sdop_compound_free(SdopCompound *compound);
 
 // Makes the shape that contains all parts: give it to a world like any other, and free it.
-//
-// # Safety
-// `compound` is a handle; `out` may be written.
 SdopStatus sdop_compound_shape(const SdopCompound *compound, SdopShape **out);
 
 // Makes a culler of parts without compounds: every shape is one part.
-//
-// # Safety
-// `out` may be written.
 SdopStatus sdop_part_culler_new(SdopPartCuller **out);
 
 // Frees a culler of parts; null is fine.
-//
-// # Safety
-// It is from `sdop_part_culler_new` and not used afterwards.
 void sdop_part_culler_free(SdopPartCuller *culler);
 
 // Sets the parts of a shape of the world. The world's shape of that number has to be the one that
 // `sdop_compound_shape` made. If `compound` is null, the shape is one part again.
-//
-// # Safety
-// `culler` is a handle, `compound` a handle or null.
 SdopStatus sdop_part_culler_set_parts(SdopPartCuller *culler, uint32_t shape, const SdopCompound *compound);
 
 // Finds the pairs of parts in the pairs of the world's last cull: call it after each cull, before
 // bodies change. `pairs` gets their number; read them with `sdop_part_culler_pairs`.
-//
-// # Safety
-// `culler` and `world` are handles; `pairs` may be written.
 SdopStatus sdop_part_culler_cull(SdopPartCuller *culler, const SdopWorld *world, size_t *pairs);
 
 // Copies the pairs of parts of the last cull into `buffer`, sorted by slots and then by parts. If
 // they don't fit, `count` says how many there are.
-//
-// # Safety
-// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_part_culler_pairs(const SdopPartCuller *culler,
                                   SdopPartPair *buffer,
                                   size_t capacity,
@@ -545,48 +473,29 @@ SdopStatus sdop_part_culler_pairs(const SdopPartCuller *culler,
 
 // Copies the pairs of bodies of which some parts may touch into `buffer`, sorted by slots. If they
 // don't fit, `count` says how many there are.
-//
-// # Safety
-// `culler` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_part_culler_body_pairs(const SdopPartCuller *culler,
                                        SdopIdPair *buffer,
                                        size_t capacity,
                                        size_t *count);
 
 // Makes a test without shapes, of or-DOPs with `k` faces: 6, 14, 18 or 26; 0 is 18.
-//
-// # Safety
-// `out` may be written.
 SdopStatus sdop_pair_test_new(uint32_t k, SdopPairTest **out);
 
 // Frees a test; null is fine.
-//
-// # Safety
-// It is from `sdop_pair_test_new` and not used afterwards.
 void sdop_pair_test_free(SdopPairTest *test);
 
 // Adds a shape, which the test copies. `number` gets its number: 0 for the first, and one more for
 // each shape that is added or grown.
-//
-// # Safety
-// `test` and `shape` are handles; `number` may be written.
 SdopStatus sdop_pair_test_add(SdopPairTest *test, const SdopShape *shape, uint32_t *number);
 
 // Adds a shape of the test grown by `margin`, a length. `number` gets the number of the grown
 // shape.
-//
-// # Safety
-// `test` is a handle; `number` may be written.
 SdopStatus sdop_pair_test_grow(SdopPairTest *test, uint32_t shape, float margin, uint32_t *number);
 
 // Whether two shapes may touch, the second posed in the frame of the first by a quaternion x, y,
 // z, w of any non-zero norm and the translation of its origin. False only if they are apart in
 // exact arithmetic; true for null pointers, unknown numbers and poses that are not finite. Many
 // threads may call it at the same time.
-//
-// # Safety
-// `test` is a handle, to which nothing is added meanwhile, or null; `rotation` and `translation`
-// may be read, or are null.
 bool sdop_pair_test_may_touch(const SdopPairTest *test,
                               uint32_t first,
                               uint32_t second,
@@ -603,44 +512,26 @@ SdopPeriodicBox sdop_periodic_box_between(double min_x,
 
 // Makes a world without boxes. `periods` are three lengths along x, y and z, 0 for an axis without
 // a period. `finder` is "auto" if null; 0 threads are 1.
-//
-// # Safety
-// `periods` are three numbers; `finder` is null or ends with a zero; `out` may be written.
 SdopStatus sdop_periodic_boxes_new(const double (*periods)[3],
                                    const char *finder,
                                    size_t threads,
                                    SdopPeriodicBoxes **out);
 
 // Frees a world; null is fine.
-//
-// # Safety
-// It is from `sdop_periodic_boxes_new` and not used afterwards.
 void sdop_periodic_boxes_free(SdopPeriodicBoxes *world);
 
 // Changes the periods. Boxes stay where they were put. If one is too large for them, nothing
 // changes.
-//
-// # Safety
-// `world` is a handle; `periods` are three numbers.
 SdopStatus sdop_periodic_boxes_set_periods(SdopPeriodicBoxes *world, const double (*periods)[3]);
 
 // Adds a box; `id` gets its id, which stays until the box is removed.
-//
-// # Safety
-// `world` is a handle, `body` a box; `id` may be written.
 SdopStatus sdop_periodic_boxes_insert(SdopPeriodicBoxes *world, const SdopPeriodicBox *body, uint64_t *id);
 
 // Removes a box.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_periodic_boxes_remove(SdopPeriodicBoxes *world, uint64_t id);
 
 // Moves boxes, or changes them in any of their properties: columns of ids and boxes. If one is
 // rejected, those before it have changed.
-//
-// # Safety
-// `world` is a handle; the columns have `count` entries.
 SdopStatus sdop_periodic_boxes_set(SdopPeriodicBoxes *world,
                                    const uint64_t *ids,
                                    const SdopPeriodicBox *bodies,
@@ -648,29 +539,22 @@ SdopStatus sdop_periodic_boxes_set(SdopPeriodicBoxes *world,
 
 // Never reports the pair of two boxes again, in any image, until it is included or one of them is
 // removed.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_periodic_boxes_exclude(SdopPeriodicBoxes *world, uint64_t a, uint64_t b);
 
 // Reports the pair of two boxes again when it meets.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_periodic_boxes_include(SdopPeriodicBoxes *world, uint64_t a, uint64_t b);
 
 // Finds the pairs of which an image meets. `pairs` gets their number; read them with
 // `sdop_periodic_boxes_pairs`.
-//
-// # Safety
-// `world` is a handle; `pairs` may be written.
 SdopStatus sdop_periodic_boxes_cull(SdopPeriodicBoxes *world, size_t *pairs);
+
+// `sdop_periodic_boxes_cull`, if images have at most `limit` pairs; more are an error that has
+// their number. A pair across a corner of the period is found at several images, and counts as
+// often.
+SdopStatus sdop_periodic_boxes_cull_up_to(SdopPeriodicBoxes *world, size_t limit, size_t *pairs);
 
 // Copies the pairs of the last cull into `buffer`, each once, sorted by slots. If they don't fit,
 // `count` says how many there are.
-//
-// # Safety
-// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_periodic_boxes_pairs(const SdopPeriodicBoxes *world,
                                      SdopPeriodicPair *buffer,
                                      size_t capacity,
@@ -678,17 +562,10 @@ SdopStatus sdop_periodic_boxes_pairs(const SdopPeriodicBoxes *world,
 
 // Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 // function. Two boxes are one pair, in whatever image they meet.
-//
-// # Safety
-// `world` is a handle; `take` may be called with `user`.
 SdopStatus sdop_periodic_boxes_events(SdopPeriodicBoxes *world, SdopTakePeriodicEvent take, void *user);
 
 // Makes a world without bodies. `periods` are three lengths along x, y and z, 0 for an axis
 // without a period. `options` may be null for the defaults.
-//
-// # Safety
-// The column has the stated number of shapes; `periods` are three numbers; `options` is null or
-// options; `out` may be written.
 SdopStatus sdop_periodic_world_new(const SdopShape *const *shapes,
                                    size_t shape_count,
                                    const double (*periods)[3],
@@ -696,35 +573,20 @@ SdopStatus sdop_periodic_world_new(const SdopShape *const *shapes,
                                    SdopPeriodicWorld **out);
 
 // Frees a world; null is fine.
-//
-// # Safety
-// It is from `sdop_periodic_world_new` and not used afterwards.
 void sdop_periodic_world_free(SdopPeriodicWorld *world);
 
 // Changes the periods. Bodies stay where they were put. If one is too large for them, nothing
 // changes.
-//
-// # Safety
-// `world` is a handle; `periods` are three numbers.
 SdopStatus sdop_periodic_world_set_periods(SdopPeriodicWorld *world, const double (*periods)[3]);
 
 // Adds a body; `id` gets its id, which stays until the body is removed.
-//
-// # Safety
-// `world` is a handle, `body` a body; `id` may be written.
 SdopStatus sdop_periodic_world_insert(SdopPeriodicWorld *world, const SdopBody *body, uint64_t *id);
 
 // Removes a body.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_periodic_world_remove(SdopPeriodicWorld *world, uint64_t id);
 
 // Moves bodies, or changes them in any of their properties: columns of ids and bodies. If one is
 // rejected, those before it have changed.
-//
-// # Safety
-// `world` is a handle; the columns have `count` entries.
 SdopStatus sdop_periodic_world_set(SdopPeriodicWorld *world,
                                    const uint64_t *ids,
                                    const SdopBody *bodies,
@@ -732,29 +594,22 @@ SdopStatus sdop_periodic_world_set(SdopPeriodicWorld *world,
 
 // Never reports the pair of two bodies again, in any image, until it is included or one of them is
 // removed.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_periodic_world_exclude(SdopPeriodicWorld *world, uint64_t a, uint64_t b);
 
 // Reports the pair of two bodies again when it meets.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_periodic_world_include(SdopPeriodicWorld *world, uint64_t a, uint64_t b);
 
 // Finds the pairs of which an image may touch. `pairs` gets their number; read them with
 // `sdop_periodic_world_pairs`.
-//
-// # Safety
-// `world` is a handle; `pairs` may be written.
 SdopStatus sdop_periodic_world_cull(SdopPeriodicWorld *world, size_t *pairs);
+
+// `sdop_periodic_world_cull`, if images have at most `limit` pairs; more are an error that has
+// their number. A pair across a corner of the period is found at several images, and counts as
+// often.
+SdopStatus sdop_periodic_world_cull_up_to(SdopPeriodicWorld *world, size_t limit, size_t *pairs);
 
 // Copies the pairs of the last cull into `buffer`, each once, sorted by slots. If they don't fit,
 // `count` says how many there are.
-//
-// # Safety
-// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_periodic_world_pairs(const SdopPeriodicWorld *world,
                                      SdopPeriodicPair *buffer,
                                      size_t capacity,
@@ -762,43 +617,24 @@ SdopStatus sdop_periodic_world_pairs(const SdopPeriodicWorld *world,
 
 // Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 // function. Two bodies are one pair, in whatever image they touch.
-//
-// # Safety
-// `world` is a handle; `take` may be called with `user`.
 SdopStatus sdop_periodic_world_events(SdopPeriodicWorld *world, SdopTakePeriodicEvent take, void *user);
 
 // Makes an index without bodies.
-//
-// # Safety
-// `out` may be written.
 SdopStatus sdop_query_index_new(SdopQueryIndex **out);
 
 // Frees an index; null is fine.
-//
-// # Safety
-// It is from `sdop_query_index_new` and not used afterwards.
 void sdop_query_index_free(SdopQueryIndex *index);
 
 // Brings the index up to date with a world: queries then see its bodies as they are now. A body
 // that has not changed since the last update costs one comparison. No cull is needed.
-//
-// # Safety
-// `index` and `world` are handles.
 SdopStatus sdop_query_index_update(SdopQueryIndex *index, const SdopWorld *world);
 
 // `sdop_query_index_update` for a world of boxes.
-//
-// # Safety
-// `index` and `world` are handles.
 SdopStatus sdop_query_index_update_boxes(SdopQueryIndex *index, const SdopBoxWorld *world);
 
 // Writes the ids of the bodies that may touch a box on the world's axes into `buffer`, sorted by
 // slots. No body that has a point in common with it is missed. If they don't fit, `count` says how
 // many there are.
-//
-// # Safety
-// `index` is a handle; `min` and `max` are the box's corners; `capacity` entries of `buffer` and
-// `count` may be written.
 SdopStatus sdop_query_index_touching_box(const SdopQueryIndex *index,
                                          const double (*min)[3],
                                          const double (*max)[3],
@@ -807,10 +643,6 @@ SdopStatus sdop_query_index_touching_box(const SdopQueryIndex *index,
                                          size_t *count);
 
 // `sdop_query_index_touching_box` for a ball, or a point if the radius is 0.
-//
-// # Safety
-// `index` is a handle; `centre` is a point; `capacity` entries of `buffer` and `count` may be
-// written.
 SdopStatus sdop_query_index_touching_ball(const SdopQueryIndex *index,
                                           const double (*centre)[3],
                                           double radius,
@@ -820,9 +652,6 @@ SdopStatus sdop_query_index_touching_ball(const SdopQueryIndex *index,
 
 // Finds the body whose volume a segment may meet first: no other is met at a smaller s. `found`
 // gets whether there is such a body, and `hit`, unless it is null, gets it.
-//
-// # Safety
-// `index` is a handle, `segment` a segment; `hit` is null or may be written, `found` may be.
 SdopStatus sdop_query_index_first(const SdopQueryIndex *index,
                                   const SdopSegment *segment,
                                   SdopHit *hit,
@@ -830,10 +659,6 @@ SdopStatus sdop_query_index_first(const SdopQueryIndex *index,
 
 // Writes all bodies that a segment may meet into `buffer`, sorted by s. If they don't fit, `count`
 // says how many there are.
-//
-// # Safety
-// `index` is a handle, `segment` a segment; `capacity` entries of `buffer` and `count` may be
-// written.
 SdopStatus sdop_query_index_along(const SdopQueryIndex *index,
                                   const SdopSegment *segment,
                                   SdopHit *buffer,
@@ -850,55 +675,31 @@ SdopBody sdop_body_turned(SdopBody body, double x, double y, double z, double w)
 
 // Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 // defaults.
-//
-// # Safety
-// The column has the stated number of shapes; `options` is null or options; `out` may be written.
 SdopStatus sdop_world_new(const SdopShape *const *shapes,
                           size_t shape_count,
                           const SdopOptions *options,
                           SdopWorld **out);
 
 // Frees a world; null is fine.
-//
-// # Safety
-// It is from `sdop_world_new` and not used afterwards.
 void sdop_world_free(SdopWorld *world);
 
 // Adds a shape; `number` gets its number.
-//
-// # Safety
-// `world` and `shape` are handles; `number` may be written.
 SdopStatus sdop_world_add_shape(SdopWorld *world, const SdopShape *shape, uint32_t *number);
 
 // Removes a shape that no body has.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_world_remove_shape(SdopWorld *world, uint32_t shape);
 
 // Adds a body; `id` gets its id, which stays until the body is removed.
-//
-// # Safety
-// `world` is a handle, `body` a body; `id` may be written.
 SdopStatus sdop_world_insert(SdopWorld *world, const SdopBody *body, uint64_t *id);
 
 // Removes a body.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_world_remove(SdopWorld *world, uint64_t id);
 
 // Changes a body in any of its properties.
-//
-// # Safety
-// `world` is a handle, `body` a body.
 SdopStatus sdop_world_set(SdopWorld *world, uint64_t id, const SdopBody *body);
 
 // Moves bodies: columns of ids, rotations and translations. If one is rejected, those before it
 // have moved.
-//
-// # Safety
-// `world` is a handle; the columns have `count` entries.
 SdopStatus sdop_world_set_poses(SdopWorld *world,
                                 const uint64_t *ids,
                                 const float (*rotation)[4],
@@ -907,9 +708,6 @@ SdopStatus sdop_world_set_poses(SdopWorld *world,
 
 // Moves bodies as `sdop_world_set_poses` does, with rotations in double: no pair of the exact
 // poses is missed.
-//
-// # Safety
-// As `sdop_world_set_poses`.
 SdopStatus sdop_world_set_poses_f64(SdopWorld *world,
                                     const uint64_t *ids,
                                     const double (*rotation)[4],
@@ -918,49 +716,32 @@ SdopStatus sdop_world_set_poses_f64(SdopWorld *world,
 
 // Never reports the pair of two bodies again, such as two links that share a joint, until it is
 // included or one of them is removed.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_world_exclude(SdopWorld *world, uint64_t a, uint64_t b);
 
 // Reports the pair of two bodies again when it meets.
-//
-// # Safety
-// `world` is a handle.
 SdopStatus sdop_world_include(SdopWorld *world, uint64_t a, uint64_t b);
 
 // Finds the pairs that might touch now. `pairs` gets their number; read them with
 // `sdop_world_pairs`.
-//
-// # Safety
-// `world` is a handle; `pairs` may be written.
 SdopStatus sdop_world_cull(SdopWorld *world, size_t *pairs);
+
+// `sdop_world_cull`, if there are at most `limit` pairs; more are an error that
+// has their number, and memory for them is never allocated.
+SdopStatus sdop_world_cull_up_to(SdopWorld *world, size_t limit, size_t *pairs);
 
 // Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 // says how many there are.
-//
-// # Safety
-// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 SdopStatus sdop_world_pairs(SdopWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
 
 // Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 // function.
-//
-// # Safety
-// `world` is a handle; `take` may be called with `user`.
 SdopStatus sdop_world_events(SdopWorld *world, SdopTakeEvent take, void *user);
 
 // Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count`
 // says how many there are.
-//
-// # Safety
-// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
 SdopStatus sdop_world_snapshot(SdopWorld *world, uint8_t *buffer, size_t capacity, size_t *count);
 
 // Gives this world the state of a snapshot. It must have the same shapes under the same numbers.
-//
-// # Safety
-// `world` is a handle; `count` bytes may be read.
 SdopStatus sdop_world_restore(SdopWorld *world, const uint8_t *bytes, size_t count);
 
 #ifdef __cplusplus

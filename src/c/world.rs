@@ -4,8 +4,8 @@ use std::ffi::c_void;
 
 use super::bodies::{SdopOptions, SdopShape, builder, shapes};
 use super::border::{
-    Buffer, Out, SdopIdPair, SdopStatus, SdopTakeEvent, answer, call, call_back, column, free,
-    handle, list, make, pass_events, read_back, saved, shared,
+    Buffer, Out, SdopIdPair, SdopStatus, SdopTakeEvent, answer, call, call_back, column, cull,
+    culls, free, handle, list, make, pass_events, read_back, saved, shared,
 };
 use crate::bodies::{Groups, Motion};
 use crate::world::{Body, BodyId, World, WorldError};
@@ -14,6 +14,8 @@ use crate::world::{Body, BodyId, World, WorldError};
 /// events.
 #[derive(Debug)]
 pub struct SdopWorld(pub(super) World);
+
+culls!(SdopWorld);
 
 /// A body to be inserted.
 #[repr(C)]
@@ -78,9 +80,6 @@ pub extern "C" fn sdop_body_turned(body: SdopBody, x: f64, y: f64, z: f64, w: f6
 
 /// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 /// defaults.
-///
-/// # Safety
-/// The column has the stated number of shapes; `options` is null or options; `out` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_new(
     shapes: *const *const SdopShape,
@@ -98,9 +97,6 @@ pub unsafe extern "C" fn sdop_world_new(
 }
 
 /// Frees a world; null is fine.
-///
-/// # Safety
-/// It is from `sdop_world_new` and not used afterwards.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_free(world: *mut SdopWorld) {
     // SAFETY: the caller's promise.
@@ -108,9 +104,6 @@ pub unsafe extern "C" fn sdop_world_free(world: *mut SdopWorld) {
 }
 
 /// Adds a shape; `number` gets its number.
-///
-/// # Safety
-/// `world` and `shape` are handles; `number` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_add_shape(
     world: *mut SdopWorld,
@@ -126,9 +119,6 @@ pub unsafe extern "C" fn sdop_world_add_shape(
 }
 
 /// Removes a shape that no body has.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_remove_shape(world: *mut SdopWorld, shape: u32) -> SdopStatus {
     // SAFETY: the caller's promise.
@@ -136,9 +126,6 @@ pub unsafe extern "C" fn sdop_world_remove_shape(world: *mut SdopWorld, shape: u
 }
 
 /// Adds a body; `id` gets its id, which stays until the body is removed.
-///
-/// # Safety
-/// `world` is a handle, `body` a body; `id` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_insert(
     world: *mut SdopWorld,
@@ -154,9 +141,6 @@ pub unsafe extern "C" fn sdop_world_insert(
 }
 
 /// Removes a body.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_remove(world: *mut SdopWorld, id: u64) -> SdopStatus {
     // SAFETY: the caller's promise.
@@ -164,9 +148,6 @@ pub unsafe extern "C" fn sdop_world_remove(world: *mut SdopWorld, id: u64) -> Sd
 }
 
 /// Changes a body in any of its properties.
-///
-/// # Safety
-/// `world` is a handle, `body` a body.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_set(
     world: *mut SdopWorld,
@@ -182,9 +163,6 @@ pub unsafe extern "C" fn sdop_world_set(
 
 /// Moves bodies: columns of ids, rotations and translations. If one is rejected, those before it
 /// have moved.
-///
-/// # Safety
-/// `world` is a handle; the columns have `count` entries.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_set_poses(
     world: *mut SdopWorld,
@@ -199,9 +177,6 @@ pub unsafe extern "C" fn sdop_world_set_poses(
 
 /// Moves bodies as `sdop_world_set_poses` does, with rotations in double: no pair of the exact
 /// poses is missed.
-///
-/// # Safety
-/// As `sdop_world_set_poses`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_set_poses_f64(
     world: *mut SdopWorld,
@@ -246,9 +221,6 @@ unsafe fn set_poses<Q: Copy>(
 
 /// Never reports the pair of two bodies again, such as two links that share a joint, until it is
 /// included or one of them is removed.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_exclude(world: *mut SdopWorld, a: u64, b: u64) -> SdopStatus {
     call(|| {
@@ -260,9 +232,6 @@ pub unsafe extern "C" fn sdop_world_exclude(world: *mut SdopWorld, a: u64, b: u6
 }
 
 /// Reports the pair of two bodies again when it meets.
-///
-/// # Safety
-/// `world` is a handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_include(world: *mut SdopWorld, a: u64, b: u64) -> SdopStatus {
     call(|| {
@@ -275,23 +244,26 @@ pub unsafe extern "C" fn sdop_world_include(world: *mut SdopWorld, a: u64, b: u6
 
 /// Finds the pairs that might touch now. `pairs` gets their number; read them with
 /// `sdop_world_pairs`.
-///
-/// # Safety
-/// `world` is a handle; `pairs` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_cull(world: *mut SdopWorld, pairs: *mut usize) -> SdopStatus {
     // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(pairs) }, "pairs", || {
-        // SAFETY: the caller's promise.
-        Ok(unsafe { handle(world, "world") }?.0.cull()?.len())
-    })
+    unsafe { cull(world, None, pairs) }
+}
+
+/// `sdop_world_cull`, if there are at most `limit` pairs; more are an error that
+/// has their number, and memory for them is never allocated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdop_world_cull_up_to(
+    world: *mut SdopWorld,
+    limit: usize,
+    pairs: *mut usize,
+) -> SdopStatus {
+    // SAFETY: the caller's promise.
+    unsafe { cull(world, Some(limit), pairs) }
 }
 
 /// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 /// says how many there are.
-///
-/// # Safety
-/// `world` is a handle; `capacity` entries of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_pairs(
     world: *mut SdopWorld,
@@ -309,9 +281,6 @@ pub unsafe extern "C" fn sdop_world_pairs(
 
 /// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 /// function.
-///
-/// # Safety
-/// `world` is a handle; `take` may be called with `user`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_events(
     world: *mut SdopWorld,
@@ -329,9 +298,6 @@ pub unsafe extern "C" fn sdop_world_events(
 
 /// Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count`
 /// says how many there are.
-///
-/// # Safety
-/// `world` is a handle; `capacity` bytes of `buffer` and `count` may be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_snapshot(
     world: *mut SdopWorld,
@@ -348,9 +314,6 @@ pub unsafe extern "C" fn sdop_world_snapshot(
 }
 
 /// Gives this world the state of a snapshot. It must have the same shapes under the same numbers.
-///
-/// # Safety
-/// `world` is a handle; `count` bytes may be read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdop_world_restore(
     world: *mut SdopWorld,

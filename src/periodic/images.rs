@@ -83,7 +83,7 @@ pub trait ImageWorld: sealed::Sealed {
     fn remove_image(&mut self, id: BodyId) -> Result<(), WorldError>;
 
     #[doc(hidden)]
-    fn cull_images(&mut self) -> Result<WorldPairs<'_>, WorldError>;
+    fn cull_images(&mut self, limit: Option<usize>) -> Result<WorldPairs<'_>, WorldError>;
 
     /// Whether a reported pair may touch, the second body moved by whole periods. It is true for at
     /// most one such number. Two small bodies need not be asked about.
@@ -141,8 +141,11 @@ macro_rules! forward_images {
             self.remove(id)
         }
 
-        fn cull_images(&mut self) -> Result<WorldPairs<'_>, WorldError> {
-            self.cull()
+        fn cull_images(&mut self, limit: Option<usize>) -> Result<WorldPairs<'_>, WorldError> {
+            match limit {
+                Some(limit) => self.cull_up_to(limit),
+                None => self.cull(),
+            }
         }
 
         #[inline]

@@ -98,6 +98,13 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
         self
     }
 
+    /// As [`QueryIndex::most_answers`].
+    #[must_use]
+    pub fn most_answers(mut self, limit: usize) -> Self {
+        self.index = self.index.most_answers(limit);
+        self
+    }
+
     /// Brings the index up to date with a periodic world, as [`QueryIndex::update`] does. No cull
     /// is needed.
     pub fn update(&mut self, world: &Periodic<W>) {
@@ -134,7 +141,7 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
             self.check(query, volume)?;
         }
         let answer = |volume: &QueryVolume<'_>, found: &mut Vec<_>| self.touch(volume, found);
-        Ok(self.index.each_of(volumes, answer))
+        self.index.each_of(volumes, answer)
     }
 
     fn check(&self, query: usize, volume: &QueryVolume<'_>) -> Result<(), QueryError> {

@@ -204,11 +204,25 @@ impl<W: ImageWorld> Periodic<W> {
     /// There are more images than can be numbered, or as the world's `cull`. [`Self::pairs`] are
     /// those of the cull before.
     pub fn cull(&mut self) -> Result<&[PeriodicPair], PeriodicError> {
+        self.cull_images(None)
+    }
+
+    /// Culls as [`Self::cull`] does, if images have at most `limit` pairs. A pair across a corner
+    /// of the period is found at several images, and counts as often. Memory for more is never
+    /// allocated.
+    ///
+    /// # Errors
+    /// There are more pairs, and the error has their number. Otherwise as [`Self::cull`].
+    pub fn cull_up_to(&mut self, limit: usize) -> Result<&[PeriodicPair], PeriodicError> {
+        self.cull_images(Some(limit))
+    }
+
+    fn cull_images(&mut self, limit: Option<usize>) -> Result<&[PeriodicPair], PeriodicError> {
         if self.are_all_late || !self.late.is_empty() {
             in_default_mode(|| self.place_late())?;
         }
         self.sets = 0;
-        self.find()?;
+        self.find(limit)?;
         Ok(&self.pairs)
     }
 
@@ -381,8 +395,8 @@ impl<W: ImageWorld> Periodic<W> {
     }
 
     /// Culls the images and lists the pairs of their bodies.
-    fn find(&mut self) -> Result<(), WorldError> {
-        let found = self.world.cull_images()?;
+    fn find(&mut self, limit: Option<usize>) -> Result<(), WorldError> {
+        let found = self.world.cull_images(limit)?;
         self.pairs.clear();
         self.across.clear();
         // Those across borders are few, and are merged into them.

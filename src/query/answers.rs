@@ -1,5 +1,7 @@
 //! Finds the bodies of an index that may touch a volume, one query at a time or in batches.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use super::index::{QueryIndex, SolidBody, TREES};
 use super::shape::PosedShape;
 use super::tree::Tree;
@@ -150,7 +152,7 @@ impl QueryIndex {
         for (query, volume) in volumes.iter().enumerate() {
             volume.check(query)?;
         }
-        Ok(self.each_of(volumes, |volume, found| self.touch(volume, found)))
+        self.each_of(volumes, |volume, found| self.touch(volume, found))
     }
 
     /// Answers many queries on all threads. `answer` appends the answer to one query.
@@ -158,24 +160,27 @@ impl QueryIndex {
         &self,
         queries: &[Q],
         answer: impl Fn(&Q, &mut Vec<T>) + Sync,
-    ) -> Answers<T> {
+    ) -> Result<Answers<T>, QueryError> {
         let pieces = queries.chunks(QUERIES_PER_TASK);
         let mut tasks: Vec<_> = pieces.map(|piece| (piece, Vec::new(), Vec::new())).collect();
+        let count = AnswerCount::up_to(self.most_answers);
         in_default_mode(|| {
             self.threads.each(&mut tasks, |_, (piece, all, ends)| {
                 for query in *piece {
+                    let start = all.len();
                     answer(query, all);
+                    count.add(all, start);
                     ends.push(all.len());
                 }
             });
         });
-        let mut answers = Answers { all: Vec::new(), ends: Vec::with_capacity(queries.len()) };
+        let mut answers = Answers { all: count.room()?, ends: Vec::with_capacity(queries.len()) };
         for (_, all, ends) in tasks {
             let start = answers.all.len();
             answers.all.extend(all);
             answers.ends.extend(ends.into_iter().map(|end| start + end));
         }
-        answers
+        Ok(answers)
     }
 
     /// Appends the bodies that may touch a volume within the contract, sorted by slot.
@@ -191,6 +196,48 @@ impl QueryIndex {
             });
         }
         found[start..].sort_unstable();
+    }
+}
+
+/// The number of a call's answers, of all threads.
+pub(super) struct AnswerCount {
+    found: AtomicUsize,
+    limit: usize,
+}
+
+impl AnswerCount {
+    pub fn up_to(limit: usize) -> Self {
+        Self { found: AtomicUsize::new(0), limit }
+    }
+
+    /// Counts a list's answers from `start` on. Beyond the limit they are not kept.
+    pub fn add<T>(&self, list: &mut Vec<T>, start: usize) {
+        let new = list.len() - start;
+        let before = self.found.fetch_add(new, Ordering::Relaxed);
+        if before.saturating_add(new) > self.limit {
+            list.truncate(start);
+        }
+    }
+
+    /// An empty list with room for all.
+    pub fn room<T>(self) -> Result<Vec<T>, QueryError> {
+        let Self { found, limit } = self;
+        let (found, mut list) = (found.into_inner(), Vec::new());
+        if found > limit {
+            let value = format!("{found} in all, of at most {limit}");
+            return Err(QueryError::new(
+                0,
+                "answers",
+                value,
+                "raise `most_answers`, or ask less at a time",
+            ));
+        }
+        let memory = list.try_reserve_exact(found);
+        memory.map_err(|_| {
+            let value = format!("{found} in all, for which there is no memory");
+            QueryError::new(0, "answers", value, "ask less at a time, or limit `most_answers`")
+        })?;
+        Ok(list)
     }
 }
 

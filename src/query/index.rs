@@ -30,6 +30,7 @@ pub struct QueryIndex {
     pub(super) ids: Vec<BodyId>,
     pub(super) posed: Option<PosedBodies>,
     is_updated: bool,
+    pub(super) most_answers: usize,
 }
 
 /// The place of a row's box.
@@ -80,6 +81,7 @@ impl QueryIndex {
             ids: Vec::new(),
             posed: None,
             is_updated: false,
+            most_answers: usize::MAX,
         }
     }
 
@@ -87,6 +89,13 @@ impl QueryIndex {
     #[must_use]
     pub fn on_tier(self, tier: Tier) -> Self {
         Self { tier, ..self }
+    }
+
+    /// This index with a limit: if a call for many queries, or for the pairs of two sets, has more
+    /// answers, it is an error that says how many, and memory for them is never allocated.
+    #[must_use]
+    pub fn most_answers(self, limit: usize) -> Self {
+        Self { most_answers: limit, ..self }
     }
 
     /// Brings the index up to date with a world, [`World`](crate::World) or

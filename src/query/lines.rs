@@ -100,7 +100,7 @@ impl QueryIndex {
         for (query, line) in lines.iter().enumerate() {
             line.check(query)?;
         }
-        Ok(self.each_of(lines, |line, found| self.follow(line, found)))
+        self.each_of(lines, |line, found| self.follow(line, found))
     }
 
     /// The body whose volume a line may meet first: no body is met at a parameter below its `at`.
@@ -121,9 +121,9 @@ impl QueryIndex {
         for (query, line) in lines.iter().enumerate() {
             line.check(query)?;
         }
-        Ok(self.each_of(lines, |line, found| {
+        self.each_of(lines, |line, found| {
             found.extend(self.find_first(line, |hit| Some(hit.at)));
-        }))
+        })
     }
 
     /// The first body along a line, judged exactly by the caller: `judge` returns the parameter at

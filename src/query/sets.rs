@@ -1,6 +1,7 @@
 //! Finds the pairs of bodies between two sets.
 
 use super::QueryError;
+use super::answers::AnswerCount;
 use super::index::{QueryIndex, SolidBody, TREES, moved};
 use super::tree::{BOXES_PER_GROUP, BoxGroup, lanes_of};
 use crate::bodies::Aabb;
@@ -16,7 +17,8 @@ impl QueryIndex {
     /// world, and from worlds of either kind.
     ///
     /// # Errors
-    /// One of the indices was never updated.
+    /// One of the indices was never updated, or there are more pairs than [`Self::most_answers`] of
+    /// this index.
     pub fn pairs_with(&self, other: &Self) -> Result<Vec<[BodyId; 2]>, QueryError> {
         self.check_updated()?;
         other.check_updated()?;
@@ -29,15 +31,18 @@ impl QueryIndex {
                 (tree, start..end, Vec::new())
             }));
         }
+        let count = AnswerCount::up_to(self.most_answers);
         in_default_mode(|| {
             self.threads.each(&mut tasks, |_, (tree, groups, found)| {
                 for group in groups.clone() {
+                    let start = found.len();
                     let pairs = GroupPairs { sets: [self, other], tree: *tree, group, found };
                     dispatch(self.tier, pairs);
+                    count.add(found, start);
                 }
             });
         });
-        let mut pairs = Vec::with_capacity(tasks.iter().map(|(_, _, found)| found.len()).sum());
+        let mut pairs = count.room()?;
         tasks.iter().for_each(|(_, _, found)| pairs.extend_from_slice(found));
         pairs.sort_unstable_by_key(|[one, other]: &[BodyId; 2]| {
             (one.slot() as u64) << 32 | other.slot() as u64

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use sdop::boxes::{BoxBody, BoxWorldSnapshot};
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion, WorldError};
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion};
 
 use crate::boxes::scenes::{Kind, boxes, expected};
 use crate::histories::{HistoryKind, live};
@@ -78,28 +78,6 @@ fn damaged_snapshots_of_boxes_are_refused() {
         }
         assert_eq!(other.snapshot(), world.snapshot());
     }
-}
-
-/// Crowds of a world come in portions or up to a limit.
-#[test]
-fn crowds_in_portions_or_limited() {
-    let mut world = BoxWorld::new();
-    for _ in 0..500 {
-        world.insert(Aabb::new([0.0; 3], [1.0; 3])).unwrap();
-    }
-    let pairs = 500 * 499 / 2;
-    let whole = world.cull().unwrap().sorted();
-    let mut portions = Vec::new();
-    let count = world.cull_in_portions(|portion| portions.extend(portion));
-    assert_eq!((count, world.pairs().len()), (Ok(pairs as u64), 0));
-    portions.sort();
-    assert_eq!(portions, whole);
-    let refused = world.cull_up_to(pairs - 1).map(|pairs| pairs.len());
-    assert!(matches!(refused, Err(WorldError::Cull(_))), "{refused:?}");
-    assert_eq!(world.pairs().len(), 0);
-    let listed = world.cull_up_to(pairs).map(|pairs| pairs.sorted());
-    assert_eq!(listed, Ok(whole));
-    assert!(world.pair_bytes() >= 8 * pairs);
 }
 
 /// A box at rest that is moved is found where it is.

@@ -68,6 +68,8 @@ static size_t frames_of_boxes(Caller *it) {
     refused(it, sdop_box_culler_cull_each(culler, boxes, NULL, BOXES, NULL, &summed), "take is null");
     check(it, sdop_box_culler_cull_each(culler, boxes, NULL, BOXES, count_pairs, &summed));
     assert(copied == found && summed == found);
+    refused(it, sdop_box_culler_cull_up_to(culler, boxes, NULL, BOXES, found - 1, &copied), "are allowed");
+    check(it, sdop_box_culler_cull_up_to(culler, boxes, NULL, BOXES, found, &copied));
     boxes[3].min[1] = 1e9F;
     refused(it, sdop_box_culler_cull(culler, boxes, NULL, BOXES, &found), "3");
     refused(it, sdop_box_culler_cull(culler, NULL, NULL, BOXES, &found), "boxes is null");
@@ -92,6 +94,9 @@ static size_t world_of_boxes(Caller *it) {
     }
     size_t found, begun = 0, bytes;
     check(it, sdop_box_world_cull(world, &found));
+    refused(it, sdop_box_world_cull_up_to(world, found - 1, &begun), "are allowed");
+    check(it, sdop_box_world_cull_up_to(world, found, &begun));
+    begun = 0;
     refused(it, sdop_box_world_events(world, NULL, &begun), "take is null"); /* and takes no event */
     check(it, sdop_box_world_events(world, count_event, &begun));
     assert(begun == found && ids[0] == 0);
@@ -127,6 +132,7 @@ static size_t bodies(Caller *it) {
         check(it, sdop_world_insert(world, &body, &id));
     }
     size_t found, parts;
+    refused(it, sdop_world_cull_up_to(world, 0, &found), "are allowed");
     check(it, sdop_world_cull(world, &found));
     SdopPartCuller *culler;
     check(it, sdop_part_culler_new(&culler));

@@ -14,8 +14,16 @@ fn our_configurations_pass_every_claim() {
         let own = format!("{claim}/*");
         let patterns: &[&str] = match claim {
             Claim::Parts => &[&own],
-            _ if claim.is_of_boxes() => &[&own, "long/*", "churn/*", "box/*", "oblique/*"],
-            _ => &["long/sets/0000", "churn/*/0000", "oblique/*/0000", "exact/*/0000"],
+            _ if claim.is_of_boxes() => {
+                &[&own, "long/*", "churn/*", "box/*", "oblique/*", "hard/counts/0000"]
+            }
+            _ => &[
+                "long/sets/0000",
+                "churn/*/0000",
+                "oblique/*/0000",
+                "exact/*/0000",
+                "hard/counts/0000",
+            ],
         };
         let mut pairs = PairCounts::default();
         for pattern in patterns {

@@ -47,7 +47,7 @@ const METHODS: [(&str, &str, &str); 24] = [
     ("BoxWorld", "", "bodies body contains counters exclude excluded ids include insert is_empty"),
     ("BoxWorld", "", "is_excluded len new pair_bytes remove rest_counters restore set set_bounds"),
     ("BoxWorld", "", "set_many set_motion shrink_to_fit slots snapshot with"),
-    ("Periodic", "nnn--", "cull"),
+    ("Periodic", "nnn--", "cull cull_up_to"),
     ("Periodic", "lll--", "events pairs"),
     ("Periodic", "", "body contains exclude ids images include insert is_excluded periods remove"),
     ("Periodic", "", "set set_periods"),
@@ -60,9 +60,9 @@ const QUERIES: [(&str, &str, &str); 6] = [
     ("PartCuller", "", "new remove_parts set_parts"),
     ("QueryIndex", "!ll--", "along along_all first first_all first_judged pairs_with touching"),
     ("QueryIndex", "!ll--", "touching_all"),
-    ("QueryIndex", "", "is_empty len new on_tier update with_threads"),
+    ("QueryIndex", "", "is_empty len most_answers new on_tier update with_threads"),
     ("PeriodicIndex", "!ll--", "touching touching_all"),
-    ("PeriodicIndex", "", "new on_tier update with_threads"),
+    ("PeriodicIndex", "", "most_answers new on_tier update with_threads"),
 ];
 
 fn rows() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
@@ -277,6 +277,7 @@ fn periodic_worlds_answer_about_present_bodies() {
                     "Periodic",
                     [
                         ("cull", found(world.clone().cull().map(<[_]>::len))),
+                        ("cull_up_to", found(world.clone().cull_up_to(9).map(<[_]>::len))),
                         ("pairs", Some(world.pairs().len())),
                         ("events", Some(world.clone().events().begun().len())),
                     ],

@@ -1,8 +1,9 @@
 //! One set of bodies against another.
 
 use sdop::boxes::BoxBody;
+use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicIndex};
 use sdop::volume::DirectionSet;
-use sdop::{Aabb, Body, BodyId, BoxWorld, Motion, QueryIndex, World};
+use sdop::{Aabb, Body, BodyId, BoxWorld, Line, Motion, QueryIndex, QueryVolume, World};
 use sdop_reference::Pose;
 use sdop_reference::exact::meeting::meet;
 
@@ -141,4 +142,38 @@ fn boxes_against_meshes_are_queries() {
     }
     assert!(wanted.len() > 100, "{}", wanted.len());
     assert_eq!(index.pairs_with(&with).unwrap(), wanted);
+}
+
+/// A call gives all answers or an error with their number, on any number of threads.
+#[test]
+fn answers_have_a_limit() {
+    let world = box_world(&[Aabb::new([0.0; 3], [1.0; 3]); 300]);
+    let line = Line::Segment { from: [-1.0; 3], to: [2.0; 3] };
+    let volume = QueryVolume::Ball { centre: [0.0; 3], radius: 1.0 };
+    let mut cell = PeriodicBoxes::new([Some(9.0); 3]).unwrap();
+    for _ in 0..300 {
+        cell.insert(PeriodicBox::new([0.0; 3], [1.0; 3])).unwrap();
+    }
+    let told = |limit: usize, threads: usize| {
+        let mut index = QueryIndex::with_threads(threads).unwrap().most_answers(limit);
+        let mut images = PeriodicIndex::with_threads(threads).unwrap().most_answers(limit);
+        index.update(&world);
+        images.update(&cell);
+        let answers = [
+            index.touching_all(&[volume; 300]).map(|all| all.iter().flatten().count()),
+            index.along_all(&[line; 300]).map(|all| all.iter().flatten().count()),
+            index.pairs_with(&index).map(|pairs| pairs.len()),
+            images.touching_all(&[volume; 300]).map(|all| all.iter().flatten().count()),
+        ];
+        answers.map(|answer| answer.map_err(|error| error.to_string()))
+    };
+    for threads in [1, 3] {
+        assert_eq!(told(90_000, threads), [(); 4].map(|()| Ok(90_000)));
+        for error in told(89_999, threads).map(Result::unwrap_err) {
+            assert!(error.contains("answers 90000 in all, of at most 89999"), "{error}");
+        }
+    }
+    assert_eq!(cell.cull_up_to(44_850).map(<[_]>::len), Ok(44_850));
+    let error = cell.cull_up_to(44_849).unwrap_err().to_string();
+    assert!(error.starts_with("the frame has 44850 pairs, but at most 44849"), "{error}");
 }

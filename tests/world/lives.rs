@@ -246,31 +246,3 @@ fn lookup_has_current_pairs() {
         before = met;
     }
 }
-
-/// Under every way to cull: portions hold the pairs of the list, and a limit is kept.
-#[test]
-fn crowds_in_portions_or_limited() {
-    for way in super::ways() {
-        let culler = Culler::builder().settings(&way);
-        let mut world = World::with(shapes(), &culler).unwrap();
-        for number in 0..60 {
-            world.insert(Body::at(number % 3, [0.0, 0.0, 0.1, 1.0], [0.0; 3])).unwrap();
-        }
-        let whole = world.cull().unwrap().sorted();
-        let mut portions = Vec::new();
-        let count = world.cull_in_portions(|portion| portions.extend(portion));
-        assert_eq!(count, Ok(whole.len() as u64), "{way:?}");
-        assert_eq!(world.pairs().len(), 0);
-        portions.sort();
-        assert_eq!(portions, whole, "{way:?}");
-        if whole.is_empty() {
-            continue;
-        }
-        let refused = world.cull_up_to(whole.len() - 1).map(|pairs| pairs.len());
-        assert!(matches!(refused, Err(WorldError::Cull(_))), "{way:?}: {refused:?}");
-        assert_eq!(world.pairs().len(), 0);
-        let listed = world.cull_up_to(whole.len()).map(|pairs| pairs.sorted());
-        assert_eq!(listed, Ok(whole), "{way:?}");
-        assert!(world.pair_bytes() > 0);
-    }
-}

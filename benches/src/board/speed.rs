@@ -1,14 +1,11 @@
 //! Recall against time: a library and our culler on the same frames, each with its own clock.
 
-use std::time::Instant;
-
-use sdop::BoxCuller;
 use sdop_judge::answer::Answer;
 use sdop_judge::score::judge_answers;
 use sdop_judge::{Case, Claim, Subject};
 use serde::{Deserialize, Serialize};
 
-use crate::outsiders::timing::{TimingError, ours, strategy};
+use crate::outsiders::timing::{TimingError, ours, own_name};
 
 /// The clock of programs.
 pub(super) const SELF_REPORTED: &str = "self-reported";
@@ -50,12 +47,10 @@ impl Speed {
     /// # Errors
     /// The reference or our culler rejects a frame.
     pub fn ours(case: &Case) -> Result<Option<Self>, TimingError> {
-        let (name, answers) = match strategy(case.claim) {
-            Some(strategy) => (format!("sdop {strategy}"), ours(strategy, case)?),
-            None if case.claim == Claim::Aabb => ("sdop BoxCuller".to_owned(), boxes(case)?),
-            None => return Ok(None),
-        };
-        Self::judged(&name, "wall, around the call", case, &answers)
+        if !Claim::PLAIN.contains(&case.claim) {
+            return Ok(None);
+        }
+        Self::judged(&own_name(case.claim), "wall, around the call", case, &ours(case)?)
     }
 
     fn judged(
@@ -77,22 +72,4 @@ impl Speed {
             reported: answers.iter().map(|answer| answer.pairs.len()).sum(),
         }))
     }
-}
-
-/// Our culler of given boxes over the frames, each with its time.
-fn boxes(case: &Case) -> Result<Vec<Answer>, TimingError> {
-    let mut culler = BoxCuller::builder().threads(1).build()?;
-    let mut answers = Vec::new();
-    for frame in &case.frames {
-        let corners = |&[a, b, c, d, e, f]: &[f32; 6]| sdop::Aabb::new([a, b, c], [d, e, f]);
-        let given: Vec<sdop::Aabb> = frame.boxes.iter().map(corners).collect();
-        let start = Instant::now();
-        culler.cull(&given)?;
-        let ns = start.elapsed().as_nanos() as u64;
-        let is_pair =
-            |pair: &[u32; 2]| pair.iter().any(|&body| frame.bodies.dynamic[body as usize]);
-        let pairs = culler.pairs().sorted().into_iter().filter(is_pair).collect();
-        answers.push(Answer { pairs, ns: Some(ns), ..Answer::default() });
-    }
-    Ok(answers)
 }

@@ -116,6 +116,11 @@ fn page(report: &BenchReport, args: &Args) -> String {
     let (claim, frames, rounds) = (args.claims, args.frames, args.rounds);
     let table = rows(&header, &report.contestants, line);
     let mut text = format!("claim {claim}, {frames} frames, {rounds} turns\n{table}");
+    if report.contestants.iter().any(|it| it.outcome == CaseOutcome::Pass && it.median_ns.is_none())
+    {
+        text += "\n\nThe program reports no time: have it end each answer with `ns N`, or in NDJSON give it \
+                 `\"ns\": N`, its nanoseconds for the frame.";
+    }
     if let Some(prices) = report.prices {
         text += &format!("\n\n{}", terms(&report.contestants, prices, frames));
     }

@@ -62,7 +62,7 @@ impl Conditions {
             of => format!("; {} of {of} intervals above 10 %", self.wide),
         };
         Some(format!(
-            "The machine did other work (processes other than ours: {} before, {} after{wide}): don't quote these times.",
+            "The machine did other work (load of other processes: {} before, {} after{wide}): don't quote these times.",
             load(self.others[0]),
             load(self.others[1])
         ))

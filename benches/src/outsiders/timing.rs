@@ -18,13 +18,16 @@ use crate::measure::turns::Regime;
 use crate::measure::variant::Variant;
 use crate::scene::Scene;
 use crate::simulate::SimulationError;
+use sdop::bodies::Aabb;
 use sdop::bodies::contract::ContractError;
+use sdop::boxes::BoxCuller;
 use sdop::culler::{CullError, Culler};
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
 use sdop_judge::answer::{Answer, StopReason};
 use sdop_judge::case::{Case, Frame};
 use sdop_judge::claim::Claim;
+use sdop_judge::contestant::WorldBox;
 use sdop_judge::ours::reference_shapes::InvalidInput;
 use sdop_judge::score::{Outcome, judge_answers};
 use sdop_judge::subject::Subject;
@@ -142,7 +145,7 @@ pub fn frames(scene: &Scene, count: u32, claim: Claim) -> Result<Case, TimingErr
     })
 }
 
-/// Our strategy for a claim; none finds pairs of given boxes from poses.
+/// Our strategy for a claim; none for given boxes, which a `BoxCuller` gets.
 #[must_use]
 pub fn strategy(claim: Claim) -> Option<Strategy> {
     match claim {
@@ -153,8 +156,34 @@ pub fn strategy(claim: Claim) -> Option<Strategy> {
     }
 }
 
+/// Our culler of given boxes over the frames, each with its time.
+fn boxes(case: &Case) -> Result<Vec<Answer>, CullError> {
+    let mut culler = BoxCuller::new();
+    let mut answers = Vec::new();
+    for frame in &case.frames {
+        let corners = |&[a, b, c, d, e, f]: &WorldBox| Aabb::new([a, b, c], [d, e, f]);
+        let given: Vec<Aabb> = frame.boxes.iter().map(corners).collect();
+        let start = Instant::now();
+        culler.cull(&given)?;
+        let ns = start.elapsed().as_nanos() as u64;
+        let is_pair =
+            |pair: &[u32; 2]| pair.iter().any(|&body| frame.bodies.dynamic[body as usize]);
+        let pairs = culler.pairs().sorted().into_iter().filter(is_pair).collect();
+        answers.push(Answer { pairs, ns: Some(ns), ..Answer::default() });
+    }
+    Ok(answers)
+}
+
+/// What tables call ours.
+pub(crate) fn own_name(claim: Claim) -> String {
+    format!("sdop {}", strategy(claim).map_or("BoxCuller", Strategy::name))
+}
+
 /// Our culler over the frames, each with its time.
-pub(crate) fn ours(strategy: Strategy, case: &Case) -> Result<Vec<Answer>, CullError> {
+pub(crate) fn ours(case: &Case) -> Result<Vec<Answer>, CullError> {
+    let Some(strategy) = strategy(case.claim) else {
+        return boxes(case);
+    };
     let Some(first) = case.frames.first() else {
         return Ok(Vec::new());
     };
@@ -186,19 +215,15 @@ pub fn compare(
     case: &Case,
     rounds: u32,
 ) -> Result<Vec<ContestantTiming>, TimingError> {
-    let strategy = strategy(case.claim);
     let mut theirs = TimedContestant::new(name.to_owned(), "self-reported");
-    let mut own = strategy
-        .map(|strategy| TimedContestant::new(format!("sdop {strategy}"), "wall, around the call"));
+    let mut own = TimedContestant::new(own_name(case.claim), "wall, around the call");
     for round in 0..rounds {
-        if let (Some(own), Some(strategy)) = (&mut own, strategy) {
-            own.add(case, Ok(ours(strategy, case)?), round == 0)?;
-        }
+        own.add(case, Ok(ours(case)?), round == 0)?;
         if theirs.outcome == Outcome::Pass {
             theirs.add(case, subject.answer(case), true)?;
         }
     }
-    Ok(own.into_iter().chain([theirs]).map(TimedContestant::timing).collect())
+    Ok([own, theirs].map(TimedContestant::timing).into())
 }
 
 /// A contestant between its turns.

@@ -17,12 +17,10 @@ use sdop::simd::Tier;
 use sdop_judge::every_way::rounds::{SeedSource, boxes, group, histories, round};
 use sdop_judge::every_way::{Ledger, LedgerKey};
 use sdop_judge::ours::answers::Predicate;
-use sdop_judge::ours::boxes::BoxCell;
 use sdop_judge::ours::compare::ListCount;
 use sdop_judge::ours::configurations::{Rotation, variants};
+use sdop_judge::ours::coverage::{Cell, Coverage, ListLedger};
 use sdop_judge::ours::hard::{FILES, HardCaseGroup};
-use sdop_judge::ours::histories::HistoryCell;
-use sdop_judge::ours::matrix::Cell;
 
 /// The name in its files.
 pub const NAME: &str = "verify";
@@ -54,8 +52,6 @@ pub struct Verification {
     rotation: Rotation,
     cells: Vec<Cell>,
     places: BTreeMap<Cell, usize>,
-    box_cells: Vec<BoxCell>,
-    history_cells: Vec<HistoryCell>,
     /// No round starts after this time.
     deadline: Option<Instant>,
 }
@@ -110,14 +106,12 @@ impl Verification {
             Ok((place, HardCaseGroup::parse(FILES[place].1).into_diagnostic()?))
         };
         let groups = settings.groups.iter().map(group);
-        let cells: Vec<Cell> = Cell::all(&rotation).collect();
+        let cells = Cell::all(&rotation);
         Ok(Self {
             groups: groups.collect::<miette::Result<_>>()?,
             scenes: Vec::new(),
             variants: variants().collect(),
             places: cells.iter().copied().zip(0..).collect(),
-            box_cells: BoxCell::all(&rotation).map(|(cell, _)| cell).collect(),
-            history_cells: HistoryCell::all(&rotation),
             cells,
             rotation,
             settings,
@@ -232,7 +226,14 @@ impl Verification {
     }
 
     fn text(&self, ledger: &Ledger) -> LedgerText {
-        let cells = ledger.matrix.filled();
+        let filled = |all: &Coverage| -> Vec<(usize, u64)> {
+            all.filled().map(|(cell, lists)| (self.places[cell], lists)).collect()
+        };
+        let lists = |lists: &ListLedger| {
+            let sums = [lists.lists, lists.required, lists.missed, lists.differ];
+            (filled(&lists.coverage), sums)
+        };
+        let (boxes, histories) = (&ledger.boxes, &ledger.histories);
         LedgerText {
             predicates: ledger
                 .predicates
@@ -240,23 +241,12 @@ impl Verification {
             rows: (ledger.rows.iter())
                 .map(|(row, count)| (row.strategy, row.overlap, *count))
                 .collect(),
-            cells: cells.map(|(cell, lists)| (self.places[cell], lists)).collect(),
-            boxes: (self.box_cells.iter().enumerate())
-                .filter_map(|(place, cell)| Some((place, *ledger.boxes.cells.get(cell)?)))
-                .collect(),
-            box_pairs: ledger.boxes.required,
-            histories: (self.history_cells.iter().enumerate())
-                .filter_map(|(place, cell)| Some((place, *ledger.histories.cells.get(cell)?)))
-                .collect(),
-            history_pairs: [
-                ledger.histories.lists,
-                ledger.histories.required,
-                ledger.histories.missed,
-                ledger.histories.differ,
-            ],
+            cells: filled(&ledger.coverage),
+            boxes: lists(boxes),
+            histories: lists(histories),
             failures: ledger.failures.len()
-                + usize::from(ledger.boxes.failure.is_some())
-                + usize::from(ledger.histories.failure.is_some()),
+                + usize::from(boxes.failure.is_some())
+                + usize::from(histories.failure.is_some()),
         }
     }
 
@@ -269,23 +259,26 @@ impl Verification {
         for (strategy, overlap, count) in text.rows {
             ledger.rows.insert(LedgerKey { strategy, overlap }, count);
         }
-        for (place, lists) in text.cells {
-            ledger.matrix.fill(*self.cells.get(place)?, lists);
-        }
-        for (place, judged) in text.boxes {
-            ledger.boxes.cells.insert(*self.box_cells.get(place)?, judged);
-        }
-        ledger.boxes.required = text.box_pairs;
-        let histories = &mut ledger.histories;
-        for (place, lists) in text.histories {
-            let cell = *self.history_cells.get(place)?;
-            histories.cells.insert(cell, lists);
-        }
-        [histories.lists, histories.required, histories.missed, histories.differ] =
-            text.history_pairs;
+        let covered = |filled: Vec<(usize, u64)>| {
+            let mut coverage = Coverage::default();
+            for (place, lists) in filled {
+                coverage.count(*self.cells.get(place)?, lists);
+            }
+            Some(coverage)
+        };
+        let of_lists = |(filled, sums): LedgerLists| {
+            let [lists, required, missed, differ] = sums;
+            let coverage = covered(filled)?;
+            Some(ListLedger { coverage, lists, required, missed, differ, failure: None })
+        };
+        ledger.coverage = covered(text.cells)?;
+        (ledger.boxes, ledger.histories) = (of_lists(text.boxes)?, of_lists(text.histories)?);
         Some(ledger)
     }
 }
+
+/// Lists by the index of their cell, all lists, and pairs required, missed and different.
+type LedgerLists = (Vec<(usize, u64)>, [u64; 4]);
 
 /// A ledger as a unit's result.
 #[derive(Serialize, Deserialize)]
@@ -296,14 +289,10 @@ struct LedgerText {
     rows: Vec<(Strategy, Option<Overlap>, ListCount)>,
     /// Lists judged, by the index of their cell.
     cells: Vec<(usize, u64)>,
-    /// Lists of given boxes and wrong pairs in them, by the index of their cell.
-    boxes: Vec<(usize, [u64; 2])>,
-    /// Pairs of given boxes that meet.
-    box_pairs: u64,
-    /// Lists of long-lived worlds, by the index of their cell.
-    histories: Vec<(usize, u64)>,
-    /// Their lists, and pairs that had to be reported, were missed, or differ.
-    history_pairs: [u64; 4],
+    /// Those of given boxes.
+    boxes: LedgerLists,
+    /// Those of long-lived worlds.
+    histories: LedgerLists,
     /// Number of failures, which only the process that ran the unit has in full.
     failures: usize,
 }

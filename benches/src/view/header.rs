@@ -48,9 +48,9 @@ pub struct Header {
 pub struct ShapeHeader {
     pub name: String,
     pub triangles: usize,
-    pub ball: [f32; 4],
+    pub ball: Option<[f32; 4]>,
     pub reach: f32,
-    pub ordop: OrDopLine,
+    pub ordop: Option<OrDopLine>,
     pub lods: Vec<Level>,
     pub hull: [usize; 2],
 }

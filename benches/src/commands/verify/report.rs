@@ -6,14 +6,12 @@ mod coverage;
 use sdop_judge::Conclusion;
 use sdop_judge::every_way::{Ledger, LedgerKey};
 use sdop_judge::ours::Predicate;
-use sdop_judge::ours::boxes::BoxLedger;
 use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::histories::HistoryLedger;
-use sdop_judge::ours::matrix::Matrix;
+use sdop_judge::ours::coverage::{Coverage, ListLedger, strategy_name};
 use serde::Serialize;
 
 use crate::commands::output::table;
-use coverage::Coverage;
+use coverage::CoverageReport;
 
 /// The result of `sdop verify`.
 #[derive(Serialize)]
@@ -35,9 +33,9 @@ pub struct Report {
     /// world.
     differ: u64,
     sources: Vec<SourceReport>,
-    coverage: Coverage,
+    coverage: CoverageReport,
     #[serde(skip)]
-    matrix: Matrix,
+    judged_cells: Coverage,
 }
 
 #[derive(Serialize)]
@@ -90,15 +88,15 @@ impl Report {
             missed: 0,
             differ: 0,
             sources: Vec::new(),
-            coverage: Coverage::default(),
-            matrix: Matrix::default(),
+            coverage: CoverageReport::default(),
+            judged_cells: Coverage::default(),
         }
     }
 
     pub fn add(&mut self, name: String, ledger: &Ledger) {
         self.missed += ledger.missed();
         self.differ += ledger.differing();
-        self.matrix.add(&ledger.matrix);
+        self.judged_cells.add(&ledger.coverage);
         let answers = ledger.predicates.iter().zip(Predicate::ALL);
         self.sources.push(SourceReport {
             name,
@@ -123,14 +121,17 @@ impl Report {
         &mut self,
         [asked, judged]: [usize; 2],
         seconds: f64,
-        (boxes, histories): (&BoxLedger, &HistoryLedger),
+        (boxes, histories): (&ListLedger, &ListLedger),
         rotation: &Rotation,
     ) {
         [self.asked, self.judged] = [asked, judged];
         self.seconds = seconds;
-        self.missed += histories.missed;
-        self.differ += boxes.wrong() + histories.differ;
-        self.coverage = Coverage::of(&self.matrix, (boxes, histories), rotation);
+        for lists in [boxes, histories] {
+            self.missed += lists.missed;
+            self.differ += lists.differ;
+            self.judged_cells.add(&lists.coverage);
+        }
+        self.coverage = CoverageReport::of(&self.judged_cells, (boxes, histories), rotation);
         self.conclusion = self.conclude();
     }
 
@@ -213,9 +214,8 @@ fn strategy((row, count): (&LedgerKey, &sdop_judge::ours::ListCount)) -> Strateg
     let rate = |part: u64, of: u64| (of > 0).then(|| 1e6 * part as f64 / of as f64);
     // What a budget leaves untested is no rounding margin.
     let budgeted = row.strategy.scheme().has_budget();
-    let overlap = row.overlap.map(|overlap| format!(" {overlap}"));
     StrategyReport {
-        name: format!("{}{}", row.strategy, overlap.unwrap_or_default()),
+        name: strategy_name(row.strategy, row.overlap),
         judged: count.judged,
         required: count.required,
         reported: count.reported,
@@ -247,8 +247,8 @@ mod tests {
             let mut report = Report::new(&[]);
             [report.missed, report.differ] = wrong;
             let rotation = Rotation::new(&[Tier::detect()]);
-            let (boxes, histories) = (BoxLedger::default(), HistoryLedger::default());
-            report.finish([4, judged], 1.0, (&boxes, &histories), &rotation);
+            let none = ListLedger::default();
+            report.finish([4, judged], 1.0, (&none, &none), &rotation);
             assert_eq!(report.conclusion(), conclusion);
             assert_eq!(report.why().as_deref(), Some(why));
         }

@@ -6,11 +6,9 @@ use sdop_reference::exact::Tally;
 
 use crate::case::Case;
 use crate::ours::answers::{Answers, Predicate};
-use crate::ours::boxes::BoxLedger;
 use crate::ours::compare::ListCount;
 use crate::ours::configurations::Mode;
-use crate::ours::histories::HistoryLedger;
-use crate::ours::matrix::Matrix;
+use crate::ours::coverage::{Coverage, ListLedger};
 use sdop::settings::{CullSettings, Overlap, Strategy};
 
 /// Failures that a ledger keeps.
@@ -35,11 +33,11 @@ pub struct Ledger {
     /// Pairs missed or found by one finder alone, with all that is needed to see it again.
     pub failures: Vec<Failure>,
     /// In which cells lists were judged.
-    pub matrix: Matrix,
+    pub coverage: Coverage,
     /// Lists of given boxes.
-    pub boxes: BoxLedger,
+    pub boxes: ListLedger,
     /// Lists of long-lived worlds.
-    pub histories: HistoryLedger,
+    pub histories: ListLedger,
 }
 
 /// A missed pair, or one on which a finder disagrees with all-pairs.
@@ -84,7 +82,7 @@ impl Ledger {
         for (row, count) in other.rows {
             self.rows.entry(row).or_default().add(&count);
         }
-        self.matrix.add(&other.matrix);
+        self.coverage.add(&other.coverage);
         self.boxes.add(other.boxes);
         self.histories.add(other.histories);
         self.failures.extend(other.failures);

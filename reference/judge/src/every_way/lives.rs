@@ -10,10 +10,10 @@ use sdop::bodies::Bodies;
 use sdop::world::BodyId;
 
 /// The bodies of the last frame: their ids and what they are; none for those that are to come.
-type Held<W> = Vec<Option<(BodyId, <<W as LivingWorld>::World as JudgedWorld>::Body)>>;
+type Held<W> = Vec<Option<(BodyId, <W as JudgedWorld>::Body)>>;
 
 /// A world's saved state, its bodies and the excluded pairs.
-type Saved<W> = (<<W as LivingWorld>::World as JudgedWorld>::Saved, Held<W>, BTreeSet<[u32; 2]>);
+type Saved<W> = (<W as JudgedWorld>::Saved, Held<W>, BTreeSet<[u32; 2]>);
 
 /// A long-lived world as a contestant. What a world refuses is a panic, which the judge reports.
 pub struct Living<W: LivingWorld> {
@@ -41,8 +41,8 @@ impl<W: LivingWorld> Living<W> {
             let id = match self.held[i] {
                 // What stays is not set again: a world has to know it.
                 Some((id, from)) if from == body => id,
-                Some((id, from)) => self.world.world().change(id, from, body).map(|()| id)?,
-                None => self.world.world().insert(body)?,
+                Some((id, from)) => self.world.change(id, from, body).map(|()| id)?,
+                None => self.world.insert(body)?,
             };
             self.held[i] = Some((id, body));
         }
@@ -51,7 +51,7 @@ impl<W: LivingWorld> Living<W> {
         let slots = ids.clone().map(BodyId::slot).max().map_or(0, |last| last + 1);
         let mut numbers = vec![0; slots];
         ids.zip(0..).for_each(|(id, number): (BodyId, u32)| numbers[id.slot()] = number);
-        let pairs = self.world.world().cull()?.into_iter().filter(|pair| pair.parts.is_none());
+        let pairs = self.world.cull()?.into_iter().filter(|pair| pair.parts.is_none());
         let pairs = pairs.map(|pair| pair.bodies.map(|id| numbers[id.slot()]));
         self.pairs = pairs.map(|[i, j]| [i.min(j), i.max(j)]).collect();
         Ok(())
@@ -65,7 +65,7 @@ impl<W: LivingWorld> Living<W> {
             let [Some((a, _)), Some((b, _))] = pair.map(|body| self.held[body as usize]) else {
                 continue;
             };
-            self.world.world().exclude([a, b], wanted.contains(pair))?;
+            self.world.exclude([a, b], wanted.contains(pair))?;
         }
         self.excluded = wanted;
         Ok(())
@@ -95,7 +95,7 @@ impl<W: LivingWorld> Contestant for Living<W> {
         let now: Held<W> = was.iter().map(stays).collect();
         let kept: HashSet<BodyId> = now.iter().flatten().map(|one| one.0).collect();
         for (id, _) in self.held.iter().flatten().filter(|one| !kept.contains(&one.0)) {
-            done(self.world.world().remove(*id));
+            done(self.world.remove(*id));
         }
         let numbers: HashMap<u32, u32> =
             was.iter().zip(0..).filter_map(|(was, now)| Some(((*was)?, now))).collect();
@@ -110,7 +110,7 @@ impl<W: LivingWorld> Contestant for Living<W> {
 
     fn filter(&mut self, filter: &Filter) -> bool {
         self.frame.filter = Some(filter.clone());
-        self.world.has_groups()
+        true
     }
 
     fn margins(&mut self, margins: &[f32]) -> bool {
@@ -128,7 +128,7 @@ impl<W: LivingWorld> Contestant for Living<W> {
     }
 
     fn save(&mut self) -> bool {
-        let state = self.world.world().save();
+        let state = self.world.save();
         self.saved = Some((state, self.held.clone(), self.excluded.clone()));
         true
     }
@@ -138,7 +138,7 @@ impl<W: LivingWorld> Contestant for Living<W> {
             return false;
         };
         (self.held, self.excluded) = (held.clone(), excluded.clone());
-        done(self.world.world().restore(state));
+        done(self.world.restore(state));
         true
     }
 }

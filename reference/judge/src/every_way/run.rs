@@ -11,6 +11,7 @@ use crate::claim::Claim;
 use crate::ours::answers::{Answers, Predicate, explained_by_margins};
 use crate::ours::compare::{compare, culler, difference, found, settings};
 use crate::ours::configurations::{Mode, rows};
+use crate::ours::coverage::Cell;
 use crate::ours::forms::FormError;
 use crate::ours::hard::HardCaseError;
 use crate::ours::histories::HistoryError;
@@ -105,7 +106,7 @@ impl Run<'_> {
     ) -> Result<Vec<Vec<[u32; 2]>>, RoundError> {
         let mut culler = culler(&self.shapes.built, &self.frames[0], way, mode)?;
         let mut lists = Vec::new();
-        ledger.matrix.count(way, mode, self.frames.len() as u64);
+        ledger.coverage.count(Cell::of_meshes(way, mode), self.frames.len() as u64);
         for (n, (frame, answers)) in self.frames.iter().zip(self.answers).enumerate() {
             let list = culler.cull(frame)?.sorted();
             let (mut count, missed, extra) = compare(answers, way, &list);

@@ -6,15 +6,15 @@ use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
 use crate::claim::Claim;
 use crate::contestant::{Contestant, WorldBox};
-use crate::ours::boxes::BoxCell;
+use crate::ours::boxes::{builder, finders};
 use crate::ours::compare::{culler, settings};
 use crate::ours::configurations::{Mode, Rotation, ways};
 use crate::ours::histories::{Asked, HistoryError, culler as world_culler};
 use crate::subject::{ContestantFactory, Scene, Subject};
 use sdop::bodies::Aabb;
-use sdop::boxes::BoxWorld;
+use sdop::boxes::{BoxCullerBuilder, BoxWorld};
 use sdop::culler::{CullError, Culler};
-use sdop::periodic::PeriodicBoxes;
+use sdop::periodic::{PeriodicBoxes, PeriodicWorld};
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet};
 use sdop::world::World;
@@ -57,9 +57,9 @@ impl EveryWay {
         if case.claim.is_of_boxes() {
             // Claims that have the same cases share the cells.
             let share = if case.claim.base().is_some() && !is_large { SHARES } else { 1 };
-            let cells = BoxCell::all(&self.rotation).filter(|(cell, _)| is_fast(cell.finder));
+            let cells = finders(&self.rotation).filter(|(finder, _)| is_fast(*finder));
             let cells = (turn..).zip(cells).filter(|(n, _)| n.is_multiple_of(share));
-            return all_report(cells.map(|(n, (cell, mode))| boxes(n / share, case, cell, mode)));
+            return all_report(cells.map(|(n, way)| boxes(n / share, case, way)));
         }
         let ways = ways(DirectionSet::K18, Axes::Principal).into_iter();
         let ways = ways.filter(|way| makes(way.strategy, case.claim) && is_fast(way.pairs));
@@ -68,10 +68,10 @@ impl EveryWay {
             // A culler for all, and a world for some, other ones of each case.
             let in_world = case.claim == Claim::Parts || (n + turn).is_multiple_of(WORLDS);
             let culler = (case.claim != Claim::Parts).then(|| posed(case, &way, mode));
-            let in_index = in_world && matches!(case.claim, Claim::Hull | Claim::Mesh);
+            let in_others = in_world && matches!(case.claim, Claim::Hull | Claim::Mesh);
             let world = in_world.then(|| meshes(case, &way, mode));
-            let index = in_index.then(|| asked_about(case, &way, mode));
-            all_report(culler.into_iter().chain(world).chain(index))
+            let other = in_others.then(|| others((n + turn) / WORLDS, case, &way, mode));
+            all_report(culler.into_iter().chain(world).chain(other))
         };
         all_report((0..).zip(ways.zip(modes.iter().cycle())).map(lists))
     }
@@ -120,12 +120,20 @@ fn meshes(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, St
     lived(case, |scene| MeshLife::new(scene.shapes, &world_culler(way, mode)).map(Living::new))
 }
 
-/// The frames by an index of such a world, which is asked about each body's volumes.
-fn asked_about(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
-    lived(case, |scene| {
-        let world = World::with(scene.shapes.to_vec(), &world_culler(way, mode))?;
-        Ok(Living::new(Asked::new(world, scene.shapes, mode)?))
-    })
+/// The frames by an index of such a world, which is asked about each body's volumes, by a world
+/// that might repeat, or by an index of one, whose turn it is.
+fn others(n: u64, case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, StopReason> {
+    let culler = world_culler(way, mode);
+    let shapes = || case.shapes.clone();
+    let periodic = || PeriodicWorld::with(shapes(), &culler, [None; 3]);
+    match n % 3 {
+        0 => lived(case, |_| {
+            let world = World::with(shapes(), &culler)?;
+            Ok(Living::new(Asked::new(world, &case.shapes, mode)?))
+        }),
+        1 => lived(case, |_| Ok(Living::new(periodic()?))),
+        _ => lived(case, |_| Ok(Living::new(Asked::new(periodic()?, &case.shapes, mode)?))),
+    }
 }
 
 /// The frames by one way; the culler is made anew for another set of bodies.
@@ -154,26 +162,27 @@ fn posed(case: &Case, way: &CullSettings, mode: Mode) -> Result<Vec<Answer>, Sto
 
 /// The given boxes by one finder: in a long-lived world, by an index of one or by a culler,
 /// whose turn it is and which can have the case's input; or in space that repeats.
-fn boxes(n: u64, case: &Case, cell: BoxCell, mode: Mode) -> Result<Vec<Answer>, StopReason> {
-    let builder = cell.builder(mode);
+fn boxes(n: u64, case: &Case, (finder, mode): (Finder, Mode)) -> Result<Vec<Answer>, StopReason> {
+    let builder = builder(finder, mode);
     let is_plain = matches!(case.claim, Claim::Aabb | Claim::Order);
+    let is_periodic = case.claim == Claim::Periodic;
+    let periodic = || PeriodicBoxes::with(&builder, [None; 3]);
     match n % if is_plain { 3 } else { 2 } {
-        _ if case.claim == Claim::Periodic => {
-            lived(case, |_| Ok(Living::new(PeriodicBoxes::with(&builder, [None; 3])?)))
-        }
+        0 if is_periodic => lived(case, |_| Ok(Living::new(periodic()?))),
+        1 if is_periodic => lived(case, |_| Ok(Living::new(Asked::new(periodic()?, &[], mode)?))),
         0 => lived(case, |_| Ok(Living::new(BoxWorld::with(&builder)?))),
         1 => lived(case, |_| Ok(Living::new(Asked::new(BoxWorld::with(&builder)?, &[], mode)?))),
-        _ => frames(case, cell, mode),
+        _ => frames(case, &builder),
     }
 }
 
-fn frames(case: &Case, cell: BoxCell, mode: Mode) -> Result<Vec<Answer>, StopReason> {
+fn frames(case: &Case, builder: &BoxCullerBuilder) -> Result<Vec<Answer>, StopReason> {
     let crashed = |error: CullError| AnswerError::Crashed {
         how: error.to_string(),
         answered: 0,
         said: String::new(),
     };
-    let mut culler = cell.culler(mode).map_err(crashed)?;
+    let mut culler = builder.build().map_err(crashed)?;
     let aabb = |&[x0, y0, z0, x1, y1, z1]: &WorldBox| Aabb::new([x0, y0, z0], [x1, y1, z1]);
     let mut answers = Vec::new();
     for frame in &case.frames {

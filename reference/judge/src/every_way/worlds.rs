@@ -4,36 +4,23 @@ use std::collections::HashMap;
 
 use crate::case::Frame;
 use crate::contestant::BodyPart;
-use crate::ours::histories::{Asked, CompoundWorld, HistoryError, JudgedWorld};
+use crate::ours::histories::{
+    Asked, AskedWorld, CompoundWorld, HistoryError, JudgedWorld, Listing, ReportedPair,
+};
 use sdop::Groups;
 use sdop::bodies::Aabb;
 use sdop::boxes::{BoxBody, BoxWorld};
 use sdop::compound::{Compound, Part, PartCuller};
 use sdop::culler::CullerBuilder;
-use sdop::periodic::PeriodicBoxes;
+use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicWorld};
 use sdop::rounding::{down, up};
 use sdop::volume::Shape;
 use sdop::world::{Body, World};
 
 /// A world that can have the bodies of a frame.
-pub trait LivingWorld {
-    /// The world.
-    type World: JudgedWorld;
-
-    /// The world.
-    fn world(&mut self) -> &mut Self::World;
-
+pub trait LivingWorld: JudgedWorld {
     /// The body of a frame with this number.
-    fn body(
-        &mut self,
-        frame: &Frame,
-        i: usize,
-    ) -> Result<<Self::World as JudgedWorld>::Body, HistoryError>;
-
-    /// Whether its bodies have groups.
-    fn has_groups(&self) -> bool {
-        true
-    }
+    fn body(&mut self, frame: &Frame, i: usize) -> Result<Self::Body, HistoryError>;
 
     /// Whether its bodies have margins.
     fn has_margins(&self) -> bool {
@@ -73,12 +60,6 @@ fn box_body(frame: &Frame, i: usize) -> BoxBody {
 }
 
 impl LivingWorld for BoxWorld {
-    type World = Self;
-
-    fn world(&mut self) -> &mut Self {
-        self
-    }
-
     fn body(&mut self, frame: &Frame, i: usize) -> Result<BoxBody, HistoryError> {
         Ok(box_body(frame, i))
     }
@@ -88,36 +69,15 @@ impl LivingWorld for BoxWorld {
     }
 }
 
-/// Boxes of which an index is asked.
-impl LivingWorld for Asked<BoxWorld> {
-    type World = Self;
-
-    fn world(&mut self) -> &mut Self {
-        self
-    }
-
-    fn body(&mut self, frame: &Frame, i: usize) -> Result<BoxBody, HistoryError> {
-        Ok(box_body(frame, i))
-    }
-
-    fn has_margins(&self) -> bool {
-        true
+impl LivingWorld for World {
+    fn body(&mut self, frame: &Frame, i: usize) -> Result<Body, HistoryError> {
+        Ok(mesh_body(frame, i, frame.bodies.shape[i]))
     }
 }
 
 impl LivingWorld for PeriodicBoxes {
-    type World = Self;
-
-    fn world(&mut self) -> &mut Self {
-        self
-    }
-
-    fn body(
-        &mut self,
-        frame: &Frame,
-        i: usize,
-    ) -> Result<<Self as JudgedWorld>::Body, HistoryError> {
-        Ok(frame.periodic_box(i))
+    fn body(&mut self, frame: &Frame, i: usize) -> Result<PeriodicBox, HistoryError> {
+        Ok(PeriodicBox { groups: groups(frame, i), ..frame.periodic_box(i) })
     }
 
     fn set_periods(&mut self, periods: [Option<f64>; 3]) -> Result<bool, HistoryError> {
@@ -125,6 +85,27 @@ impl LivingWorld for PeriodicBoxes {
             PeriodicBoxes::set_periods(self, periods)?;
         }
         Ok(true)
+    }
+}
+
+impl LivingWorld for PeriodicWorld {
+    fn body(&mut self, frame: &Frame, i: usize) -> Result<Body, HistoryError> {
+        Ok(mesh_body(frame, i, frame.bodies.shape[i]))
+    }
+}
+
+/// A world of which an index is asked.
+impl<W: LivingWorld + AskedWorld> LivingWorld for Asked<W> {
+    fn body(&mut self, frame: &Frame, i: usize) -> Result<Self::Body, HistoryError> {
+        self.world.body(frame, i)
+    }
+
+    fn has_margins(&self) -> bool {
+        self.world.has_margins()
+    }
+
+    fn set_periods(&mut self, periods: [Option<f64>; 3]) -> Result<bool, HistoryError> {
+        self.world.set_periods(periods)
     }
 }
 
@@ -163,13 +144,23 @@ impl MeshLife {
     }
 }
 
-impl LivingWorld for MeshLife {
+impl Listing for MeshLife {
     type World = CompoundWorld;
 
-    fn world(&mut self) -> &mut CompoundWorld {
+    fn world(&self) -> &CompoundWorld {
+        &self.world
+    }
+
+    fn world_mut(&mut self) -> &mut CompoundWorld {
         &mut self.world
     }
 
+    fn list(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
+        self.world.list()
+    }
+}
+
+impl LivingWorld for MeshLife {
     fn body(&mut self, frame: &Frame, i: usize) -> Result<Body, HistoryError> {
         let parts = frame.parts.as_ref().map_or(&[][..], |parts| &parts[i]);
         let shape = match parts {
@@ -188,17 +179,4 @@ fn mesh_body(frame: &Frame, i: usize, shape: u32) -> Body {
     let translation = frame.bodies.translation[i].map(f64::from);
     let body = Body::at(shape, frame.bodies.rotation[i], translation);
     Body { motion: frame.motion(i), groups: groups(frame, i), ..body }
-}
-
-/// Meshes of which an index is asked.
-impl LivingWorld for Asked<World> {
-    type World = Self;
-
-    fn world(&mut self) -> &mut Self {
-        self
-    }
-
-    fn body(&mut self, frame: &Frame, i: usize) -> Result<Body, HistoryError> {
-        Ok(mesh_body(frame, i, frame.bodies.shape[i]))
-    }
 }

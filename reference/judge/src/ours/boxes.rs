@@ -2,10 +2,9 @@
 //! threads, must list exactly the boxes that have a point in common. The definition compares ends,
 //! which needs no rounding.
 
-use std::collections::BTreeMap;
-
 use super::compare::difference;
 use super::configurations::{Mode, Rotation};
+use super::coverage::{Cell, Judged, ListLedger};
 use sdop::bodies::Aabb;
 use sdop::boxes::{BoxCuller, BoxCullerBuilder};
 use sdop::culler::CullError;
@@ -23,78 +22,16 @@ const SIDES: [&[[f32; 3]]; 4] = [
 /// Exponents of units: of the least, where nothing underflows, up to the greatest.
 const UNITS: [i32; 4] = [-70, 0, 0, 100];
 
-/// Which list of boxes: all that decides how it is made, and nothing that decides what it holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct BoxCell {
-    /// The finder of candidates.
-    pub finder: Finder,
-    /// The tier's name.
-    pub tier: &'static str,
-    /// The number of threads.
-    pub threads: usize,
+/// The choices of a culler or world of boxes by a finder in a mode.
+pub fn builder(finder: Finder, mode: Mode) -> BoxCullerBuilder {
+    let of = BoxCuller::builder().finder(finder).tier(mode.tier).threads(mode.threads);
+    of.worth_waking(0)
 }
 
-impl BoxCell {
-    /// The choices of this cell; its tier and number of threads are the mode's.
-    pub fn builder(&self, mode: Mode) -> BoxCullerBuilder {
-        let of = BoxCuller::builder().finder(self.finder);
-        let of = of.tier(mode.tier).threads(mode.threads);
-        of.worth_waking(0)
-    }
-
-    /// The culler of this cell.
-    ///
-    /// # Errors
-    /// Threads that the system refuses.
-    pub fn culler(&self, mode: Mode) -> Result<BoxCuller, CullError> {
-        self.builder(mode).build()
-    }
-
-    /// Every cell, and a mode of it: given boxes have no update mode.
-    pub fn all(rotation: &Rotation) -> impl Iterator<Item = (Self, Mode)> {
-        let modes = rotation.modes().iter();
-        let modes = modes.filter(|mode| mode.updates == Updates::Eager);
-        modes.flat_map(|&mode| {
-            let cell =
-                move |&finder| Self { finder, tier: mode.tier.name(), threads: mode.threads };
-            Finder::ALL.iter().map(move |finder| (cell(finder), mode))
-        })
-    }
-}
-
-/// What was judged: sums over frames.
-#[derive(Clone, Debug, Default)]
-pub struct BoxLedger {
-    /// Lists by cell, and pairs that a list had and shouldn't, or should have had.
-    pub cells: BTreeMap<BoxCell, [u64; 2]>,
-    /// Pairs that meet, over frames.
-    pub required: u64,
-    /// The first wrong pair, with all that is needed to see it again.
-    pub failure: Option<String>,
-}
-
-impl BoxLedger {
-    /// Adds another one.
-    pub fn add(&mut self, other: Self) {
-        for (cell, [lists, wrong]) in other.cells {
-            let mine = self.cells.entry(cell).or_default();
-            (mine[0], mine[1]) = (mine[0] + lists, mine[1] + wrong);
-        }
-        self.required += other.required;
-        self.failure = self.failure.take().or(other.failure);
-    }
-
-    /// The number of all wrong pairs.
-    #[must_use]
-    pub fn wrong(&self) -> u64 {
-        self.cells.values().map(|[_, wrong]| wrong).sum()
-    }
-
-    /// Lists judged in a cell.
-    #[must_use]
-    pub fn lists(&self, cell: &BoxCell) -> u64 {
-        self.cells.get(cell).map_or(0, |[lists, _]| *lists)
-    }
+/// Every finder in every mode; given boxes have no update mode.
+pub fn finders(rotation: &Rotation) -> impl Iterator<Item = (Finder, Mode)> {
+    let modes = rotation.modes().iter().filter(|mode| mode.updates == Updates::Eager);
+    modes.flat_map(|&mode| Finder::ALL.iter().map(move |&finder| (finder, mode)))
 }
 
 /// Frames of boxes that are hard to tell apart: each begins where another ends, or a few last
@@ -183,30 +120,30 @@ pub fn meeting(boxes: &[Aabb]) -> Vec<[u32; 2]> {
 ///
 /// # Errors
 /// Threads that the system refuses, invalid boxes.
-pub fn judge(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<BoxLedger, CullError> {
+pub fn judge(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<ListLedger, CullError> {
     let wanted: Vec<Vec<[u32; 2]>> = frames.iter().map(|boxes| meeting(boxes)).collect();
-    let mut ledger = BoxLedger {
+    let mut ledger = ListLedger {
         required: wanted.iter().map(|pairs| pairs.len() as u64).sum(),
-        ..BoxLedger::default()
+        ..ListLedger::default()
     };
-    for (cell, mode) in BoxCell::all(rotation) {
-        let mut culler = cell.culler(mode)?;
-        let mut wrong = 0;
+    for (finder, mode) in finders(rotation) {
+        let mut culler = builder(finder, mode).build()?;
         for (n, (boxes, wanted)) in frames.iter().zip(&wanted).enumerate() {
             let differing = difference(&culler.cull(boxes)?.sorted(), wanted);
-            wrong += differing.len() as u64;
+            ledger.differ += differing.len() as u64;
             if let (Some(&[i, j]), None) = (differing.first(), &ledger.failure) {
                 let [one, other] = [i, j].map(|body| boxes[body as usize]);
                 ledger.failure = Some(format!(
-                    "given boxes {i} and {j} of {}, frame {n}: {one:?} and {other:?} ({}, {}, {} threads)",
+                    "given boxes {i} and {j} of {}, frame {n}: {one:?} and {other:?} ({finder}, {}, {} threads)",
                     boxes.len(),
-                    cell.finder,
-                    cell.tier,
-                    cell.threads
+                    mode.tier,
+                    mode.threads
                 ));
             }
         }
-        ledger.cells.insert(cell, [frames.len() as u64, wrong]);
+        ledger.lists += frames.len() as u64;
+        let cell = Cell::of(Judged::Boxes(finder), mode);
+        ledger.coverage.count(cell, frames.len() as u64);
     }
     Ok(ledger)
 }

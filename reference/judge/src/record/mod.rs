@@ -13,6 +13,9 @@
 //! {"frame":n,"poses":[[qx,qy,qz,qw,tx,ty,tz]…],"pairs":[[i,j]…]}
 //! ```
 //!
+//! A record of another program may leave out `scene`, `seed`, names, balls and or-DOPs: then it is
+//! not judged by claims about these.
+//!
 //! Readers ignore keys that they don't know, so keys may be added without a new `version`; `minor`
 //! counts such additions. `version` increases only if an old reader would misread a record. Minors
 //! 1 and 2 added these keys, all optional:
@@ -42,7 +45,7 @@ use serde::{Deserialize, Serialize};
 use sdop::bodies::Bodies;
 use sdop::counters::VolumeCounters;
 use sdop::settings::CullSettings;
-use sdop::volume::{Ball, Basis, DirectionSet, OrDop, Shape};
+use sdop::volume::Shape;
 
 /// The format's name in every record's first line.
 pub const FORMAT: &str = "sdop-record";
@@ -68,8 +71,10 @@ pub struct Header<Body = BodyLine> {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frames: Option<u32>,
     /// The scene's name.
+    #[serde(default)]
     pub scene: String,
     /// The seed of all random draws.
+    #[serde(default)]
     pub seed: u64,
     /// Seconds between frames.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -102,15 +107,18 @@ pub struct EffectLine {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShapeLine {
     /// The mesh's name.
+    #[serde(default)]
     pub name: String,
     /// Body frame.
     pub vertices: Vec<[f32; 3]>,
     /// Vertex indices.
     pub triangles: Vec<[u32; 3]>,
     /// Centre and radius, body frame.
-    pub ball: [f32; 4],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ball: Option<[f32; 4]>,
     /// The oriented k-DOP.
-    pub ordop: OrDopLine,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ordop: Option<OrDopLine>,
 }
 
 /// An or-DOP as built: slabs lo ≤ d·x ≤ hi along combinations of the basis vectors.
@@ -176,39 +184,14 @@ impl ShapeLine {
             name: shape.name.clone(),
             vertices: shape.vertices.clone(),
             triangles: shape.triangles.clone(),
-            ball: [x, y, z, shape.ball.radius],
-            ordop: OrDopLine {
+            ball: Some([x, y, z, shape.ball.radius]),
+            ordop: Some(OrDopLine {
                 k: shape.ordop.directions.k(),
                 basis: [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]],
                 lo: shape.ordop.lo.clone(),
                 hi: shape.ordop.hi.clone(),
-            },
+            }),
         }
-    }
-
-    /// The shape with these numbers, nothing computed anew; `None` for a k that no or-DOP has.
-    fn shape(&self) -> Option<Shape> {
-        let vertices = self.vertices.clone();
-        let [x, y, z, radius] = self.ball;
-        let columns = [0, 3, 6].map(|at| std::array::from_fn(|i| self.ordop.basis[at + i]));
-        let mut sets = DirectionSet::ALL.iter();
-        Some(Shape {
-            name: self.name.clone(),
-            offset: [0.0; 3], // a record has the vertices as culled
-            scale: 1.0,
-            pose_offset: [0.0; 3],
-            rounding: 0.0,
-            reach: Ball::about([0.0; 3], &vertices).radius,
-            ball: Ball { centre: [x, y, z], radius },
-            ordop: OrDop {
-                directions: *sets.find(|set| set.k() == self.ordop.k)?,
-                basis: Basis { columns },
-                lo: self.ordop.lo.clone(),
-                hi: self.ordop.hi.clone(),
-            },
-            triangles: self.triangles.clone(),
-            vertices,
-        })
     }
 }
 

@@ -6,11 +6,12 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::{BodyLine, FORMAT, FrameLine, Header, RecordError, ShapeLine, VERSION};
+use super::{BodyLine, FORMAT, FrameLine, Header, OrDopLine, RecordError, ShapeLine, VERSION};
 use sdop::bodies::Bodies;
 use sdop::bodies::contract::{ContractError, check_bodies, check_pose, check_poses};
 use sdop::files::{MAX_BYTES, read_line};
-use sdop::volume::Shape;
+use sdop::mesh::TriangleMesh;
+use sdop::volume::{Ball, Basis, DirectionSet, OrDop, Origin, Shape, ShapeSpec};
 
 /// A record being read.
 #[derive(Debug)]
@@ -258,23 +259,59 @@ impl ShapeLine {
             let corners = line.triangles[at];
             return Err(format!("triangle {at} is {corners:?} of {count} vertices"));
         }
-        let [.., radius] = line.ball;
-        if !finite(&line.ball) || radius < 0.0 {
-            return Err(format!("its ball is {:?}", line.ball));
-        }
-        let ordop = &line.ordop;
-        if !finite(&ordop.basis) || !finite(&ordop.lo) || !finite(&ordop.hi) {
+        let ball = match line.ball {
+            Some(ball @ [x, y, z, radius]) if finite(&ball) && radius >= 0.0 => {
+                Some(Ball { centre: [x, y, z], radius })
+            }
+            Some(ball) => return Err(format!("its ball is {ball:?}")),
+            None => None,
+        };
+        let ordop = line.ordop.as_ref().map(OrDopLine::built).transpose()?;
+        let vertices = line.vertices.clone();
+        let (ball, ordop) = match (ball, ordop) {
+            (Some(ball), Some(ordop)) => (ball, ordop),
+            // No claim is about what isn't given; a shape has it all the same.
+            (ball, ordop) => {
+                let mesh = TriangleMesh::new(&line.name, vertices.clone(), line.triangles.clone());
+                let mesh = mesh.map_err(|e| e.problem())?;
+                let spec = ShapeSpec { origin: Origin::File, ..ShapeSpec::default() };
+                let shape = Shape::build(&mesh, &spec).map_err(|e| e.problem())?;
+                (ball.unwrap_or(shape.ball), ordop.unwrap_or(shape.ordop))
+            }
+        };
+        Ok(Shape {
+            name: line.name.clone(),
+            offset: [0.0; 3], // a record has the vertices as culled
+            scale: 1.0,
+            pose_offset: [0.0; 3],
+            rounding: 0.0,
+            reach: Ball::about([0.0; 3], &vertices).radius,
+            ball,
+            ordop,
+            triangles: line.triangles.clone(),
+            vertices,
+        })
+    }
+}
+
+impl OrDopLine {
+    fn built(&self) -> Result<OrDop, String> {
+        let Self { k, basis, lo, hi } = self;
+        if [&basis[..], lo, hi].iter().any(|all| all.iter().any(|x| !x.is_finite())) {
             return Err("its or-DOP is not finite".to_owned());
         }
-        let shape = line.shape().ok_or_else(|| format!("no or-DOP has k = {}", ordop.k))?;
-        let slabs = shape.ordop.directions.slabs();
-        if (ordop.lo.len(), ordop.hi.len()) != (slabs, slabs) {
-            let (lo, hi, k) = (ordop.lo.len(), ordop.hi.len(), ordop.k);
+        let directions = DirectionSet::ALL.iter().find(|set| set.k() == *k);
+        let directions = *directions.ok_or_else(|| format!("no or-DOP has k = {k}"))?;
+        let slabs = directions.slabs();
+        if (lo.len(), hi.len()) != (slabs, slabs) {
+            let (lo, hi) = (lo.len(), hi.len());
             return Err(format!(
                 "k = {k} takes {slabs} slabs; it has {lo} lower and {hi} upper ends"
             ));
         }
-        Ok(shape)
+        let columns = [0, 3, 6].map(|at| std::array::from_fn(|i| basis[at + i]));
+        let (lo, hi) = (lo.clone(), hi.clone());
+        Ok(OrDop { directions, basis: Basis { columns }, lo, hi })
     }
 }
 

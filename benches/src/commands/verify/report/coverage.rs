@@ -1,19 +1,17 @@
-//! The matrix of what was judged, in two projections: thousands of cells are too many to read, and
-//! a tier, a mode or a finder that was left out shows in one of them.
+//! The map of what was judged, in projections: thousands of cells are too many to read, and a tier,
+//! a mode or a finder that was left out shows in one of them.
 
 use sdop::settings::Strategy;
-use sdop_judge::ours::boxes::{BoxCell, BoxLedger};
 use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::histories::{ChangeKind, HistoryCell, HistoryLedger, WorldKind};
-use sdop_judge::ours::matrix::{Cell, Matrix, MatrixPart};
+use sdop_judge::ours::coverage::{Cell, Coverage, CoveragePart, Judged, ListLedger, strategy_name};
 use serde::Serialize;
 
 use crate::commands::output::{Listing, table};
 
-/// How full the matrix is.
+/// How full the map is.
 #[derive(Default, Serialize)]
-pub struct Coverage {
-    /// Cells that can be filled.
+pub struct CoverageReport {
+    /// Cells of cullers of meshes that can be filled.
     cells: u64,
     /// Cells that are.
     filled: u64,
@@ -56,17 +54,19 @@ struct CoverageLine {
 struct Part {
     name: String,
     #[serde(flatten)]
-    filled: MatrixPart,
+    filled: CoveragePart,
 }
 
-impl Coverage {
+impl CoverageReport {
     pub fn of(
-        matrix: &Matrix,
-        (boxes, histories): (&BoxLedger, &HistoryLedger),
+        coverage: &Coverage,
+        (boxes, histories): (&ListLedger, &ListLedger),
         rotation: &Rotation,
     ) -> Self {
-        let all = matrix.fold(rotation, |_| ());
-        let all = all.first().map_or_else(MatrixPart::default, |(_, all)| *all);
+        let cells = Cell::all(rotation);
+        let lines = |name: fn(&Cell) -> Option<[String; 2]>| rows(coverage.fold(&cells, name));
+        let of_meshes = |cell: &Cell| matches!(cell.judged, Judged::Meshes(..)).then_some(());
+        let (_, all) = coverage.fold(&cells, of_meshes).pop().unwrap_or_default();
         let unrefined =
             Strategy::ALL.iter().filter(|strategy| !strategy.scheme().has_overlap_test());
         let unrefined: Vec<&str> = unrefined.map(|strategy| strategy.name()).collect();
@@ -78,30 +78,31 @@ impl Coverage {
                 "{} have no overlap test: one row instead of three",
                 unrefined.join(", ")
             ),
-            by_strategy: rows(
-                matrix.fold(rotation, |cell| (strategy(cell), cell.finder.to_string())),
-            ),
-            by_mode: rows(matrix.fold(rotation, |cell| (mode(cell), variant(cell)))),
+            by_strategy: lines(|cell| match cell.judged {
+                Judged::Meshes(strategy, overlap, finder, ..) => {
+                    Some([strategy_name(strategy, overlap), finder.to_string()])
+                }
+                _ => None,
+            }),
+            by_mode: lines(|cell| match cell.judged {
+                Judged::Meshes(_, _, _, k, axes) => Some([cell.mode(), format!("{k} {axes}")]),
+                _ => None,
+            }),
             box_pairs: boxes.required,
-            box_wrong: boxes.wrong(),
-            boxes: rows(BoxCell::all(rotation).map(|(cell, _)| box_part(&cell, boxes))),
+            box_wrong: boxes.differ,
+            boxes: lines(|cell| match cell.judged {
+                Judged::Boxes(finder) => Some([cell.mode(), finder.to_string()]),
+                _ => None,
+            }),
             history_lists: histories.lists,
             history_pairs: histories.required,
             history_missed: histories.missed,
             history_differ: histories.differ,
-            histories: rows(history_parts(histories, rotation)),
-            empty: {
-                let unjudged = BoxCell::all(rotation).map(|(cell, _)| cell);
-                let unjudged = unjudged.filter(|cell| boxes.lists(cell) == 0);
-                let unlived = HistoryCell::all(rotation).into_iter();
-                let unlived = unlived.filter(|cell| histories.lists_in(cell) == 0);
-                let names = matrix.empty(rotation).iter().map(name).collect::<Vec<_>>();
-                names
-                    .into_iter()
-                    .chain(unjudged.map(|cell| box_name(&cell)))
-                    .chain(unlived.map(|cell| history_name(&cell)))
-                    .collect()
-            },
+            histories: lines(|cell| match cell.judged {
+                Judged::World(world, change) => Some([world.name(), change.name().to_owned()]),
+                _ => None,
+            }),
+            empty: coverage.empty(cells.iter().copied()).iter().map(Cell::to_string).collect(),
         }
     }
 
@@ -109,7 +110,7 @@ impl Coverage {
         self.empty.is_empty()
     }
 
-    /// Both projections, and the empty cells.
+    /// The projections, and the empty cells.
     pub fn tables(&self) -> String {
         let [finders, modes] = [&self.by_strategy, &self.by_mode].map(|rows| projection(rows));
         let mut text = format!(
@@ -137,15 +138,22 @@ impl Coverage {
     }
 }
 
-/// One table: filled cells of all, and the fewest lists in one.
+/// One table: filled cells of all, and the fewest lists in one. Some rows lack some columns.
 fn projection(rows: &[CoverageLine]) -> Listing {
-    let columns = rows.iter().take(1).flat_map(|row| &row.parts);
-    let columns = columns.map(|part| part.name.as_str());
-    let header: Vec<&str> = ["cells with lists"].into_iter().chain(columns).collect();
+    let mut columns: Vec<&str> = Vec::new();
+    for part in rows.iter().flat_map(|row| &row.parts) {
+        if !columns.contains(&&*part.name) {
+            columns.push(&part.name);
+        }
+    }
+    let header: Vec<&str> = ["cells with lists"].into_iter().chain(columns.clone()).collect();
     let mut printed = table(&header);
     for row in rows {
-        let parts = row.parts.iter().map(|Part { filled, .. }| {
-            format!("{}/{} ≥{}", filled.filled, filled.cells, filled.fewest)
+        let parts = columns.iter().map(|name| {
+            let part = row.parts.iter().find(|part| part.name == *name);
+            part.map_or_else(String::new, |Part { filled, .. }| {
+                format!("{}/{} ≥{}", filled.filled, filled.cells, filled.fewest)
+            })
         });
         printed.add_row([row.name.clone()].into_iter().chain(parts));
     }
@@ -153,9 +161,9 @@ fn projection(rows: &[CoverageLine]) -> Listing {
 }
 
 /// Rows and their parts in the order of their first cells.
-fn rows(folded: impl IntoIterator<Item = ((String, String), MatrixPart)>) -> Vec<CoverageLine> {
+fn rows(folded: Vec<([String; 2], CoveragePart)>) -> Vec<CoverageLine> {
     let mut rows: Vec<CoverageLine> = Vec::new();
-    for ((name, part), filled) in folded {
+    for ([name, part], filled) in folded {
         let part = Part { name: part, filled };
         match rows.iter_mut().find(|row| row.name == name) {
             Some(row) => row.parts.push(part),
@@ -163,72 +171,4 @@ fn rows(folded: impl IntoIterator<Item = ((String, String), MatrixPart)>) -> Vec
         }
     }
     rows
-}
-
-fn strategy(cell: &Cell) -> String {
-    let overlap = cell.overlap.map(|overlap| format!(" {overlap}"));
-    format!("{}{}", cell.strategy, overlap.unwrap_or_default())
-}
-
-fn variant(cell: &Cell) -> String {
-    format!("{} {}", cell.k, cell.axes)
-}
-
-fn mode(cell: &Cell) -> String {
-    format!("{} {} {}", cell.tier, cell.updates, threads(cell.threads))
-}
-
-fn threads(number: usize) -> String {
-    let plural = if number == 1 { "" } else { "s" };
-    format!("{number} thread{plural}")
-}
-
-/// The line and column of a cell of given boxes, and what it holds.
-fn box_part(cell: &BoxCell, boxes: &BoxLedger) -> ((String, String), MatrixPart) {
-    let line = format!("{} {}", cell.tier, threads(cell.threads));
-    let lists = boxes.lists(cell);
-    let filled = MatrixPart { cells: 1, filled: u64::from(lists > 0), fewest: lists };
-    ((line, cell.finder.to_string()), filled)
-}
-
-/// The cells of long-lived worlds, by world and kind of change. Given boxes lack some kinds, for
-/// which they have no cells.
-fn history_parts(
-    histories: &HistoryLedger,
-    rotation: &Rotation,
-) -> Vec<((String, String), MatrixPart)> {
-    let mut parts = Vec::new();
-    let all = HistoryCell::all(rotation);
-    let mut worlds: Vec<WorldKind> = all.iter().map(|cell| cell.world).collect();
-    worlds.dedup();
-    for world in worlds {
-        for &change in ChangeKind::ALL {
-            let of = |cell: &&HistoryCell| (cell.world, cell.change) == (world, change);
-            let lists = all.iter().filter(of).map(|cell| histories.lists_in(cell));
-            let lists: Vec<u64> = lists.collect();
-            let part = MatrixPart {
-                cells: lists.len() as u64,
-                filled: lists.iter().filter(|lists| **lists > 0).count() as u64,
-                fewest: lists.iter().copied().min().unwrap_or(0),
-            };
-            parts.push(((world.name(), change.name().to_owned()), part));
-        }
-    }
-    parts
-}
-
-fn history_name(cell: &HistoryCell) -> String {
-    let (world, change) = (cell.world.name(), cell.change.name());
-    let threads = threads(cell.threads);
-    format!("a world of {world}, {change}, {} {threads}", cell.tier)
-}
-
-fn box_name(cell: &BoxCell) -> String {
-    let threads = threads(cell.threads);
-    format!("given boxes, {}, {} {threads}", cell.finder, cell.tier)
-}
-
-fn name(cell: &Cell) -> String {
-    let (strategy, finder) = (strategy(cell), cell.finder);
-    format!("{strategy}, {finder}, k = {}, {}", variant(cell), mode(cell))
 }

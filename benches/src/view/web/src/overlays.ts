@@ -94,6 +94,7 @@ export class Overlays extends Group {
     this.addPeriods(moment);
     this.addPairs(moment);
     this.addSharedPoint(moment);
+    this.addFormerPlaces(moment);
     for (const [body, colour] of marked) {
       const ball = this.bodies.ball(body);
       const radius = 1.08 * ball.radius;
@@ -216,6 +217,24 @@ export class Overlays extends Group {
     const at: Triple = [this.space.x(x), this.space.y(y), this.space.z(z)];
     const radius = POINT_RADIUS * Math.hypot(at[0] - eye.x, at[1] - eye.y, at[2] - eye.z);
     this.marks.put(at, UPRIGHT, [radius, radius, radius], theme.states[State.Missed]);
+  }
+
+  /** For a counter-example, where its bodies were before: a box each, or one about a mesh. */
+  private addFormerPlaces({ frame, colour }: Moment): void {
+    const { run, space } = this;
+    const { focus } = run.header;
+    if (!focus || frame !== focus.frame) return;
+    for (const body of focus.bodies) {
+      const [now, tint] = [run.cubeAbout(frame, body).centre, colour(body)];
+      for (let before = frame - 1; tint && before >= 0; before--) {
+        const { centre, half } = run.cubeAbout(before, body);
+        if (centre.every((x, axis) => x === now[axis])) continue;
+        const boxes = run.boxesAt(before)?.subarray(6 * body);
+        const size = [0, 1, 2].map((axis) => (boxes ? (boxes[axis + 3] - boxes[axis]) / 2 : half) * space.scale);
+        this.images.put([space.x(centre[0]), space.y(centre[1]), space.z(centre[2])], UPRIGHT, size as Triple, tint);
+        break;
+      }
+    }
   }
 
   private line(wires: Wires, i: number, j: number, colour: Color, { eye, theme }: Moment): void {

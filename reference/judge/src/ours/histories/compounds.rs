@@ -21,8 +21,9 @@ use super::judge::{Life, Truth, culler, finder};
 use super::robots::Robots;
 use super::state::{NumberedPair, Pairs, State, in_order};
 use super::worlds::CompoundWorld;
-use super::{History, HistoryError, HistoryLedger, WorldKind};
+use super::{History, HistoryError, WorldKind};
 use crate::ours::configurations::{Mode, rows};
+use crate::ours::coverage::ListLedger;
 use crate::ours::reference_shapes::{InvalidInput, Shapes, grown};
 use sdop::rounding::down;
 use sdop::settings::{CullSettings, Overlap, Strategy};
@@ -50,12 +51,12 @@ pub fn judge_compounds(
     history: &History<Body>,
     variant: (DirectionSet, Axes),
     modes: impl Fn(usize) -> Vec<Mode>,
-) -> Result<HistoryLedger, HistoryError> {
+) -> Result<ListLedger, HistoryError> {
     let states = State::all(history)?;
     let grown = GrownParts::new(&robots.shapes)?;
     let mut exact = ExactParts::new(robots, &grown);
     let near: Vec<Vec<NearParts>> = states.iter().map(|state| exact.near(state)).collect();
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     for (number, way) in rows(variant).into_iter().enumerate() {
         if !way.strategy.scheme().culls() || way.overlap != Overlap::TwoSided {
             continue;

@@ -6,11 +6,12 @@ use super::draw::MARGINS;
 use super::places::place;
 use super::state::{NumberedPair, Pairs, State, by_number, in_order};
 use super::worlds::JudgedWorld;
-use super::{Change, ChangeKind, History, HistoryCell, HistoryError, HistoryLedger, WorldKind};
+use super::{Change, ChangeKind, History, HistoryError, WorldKind};
 use crate::ours::answers::{Answers, Predicate};
 use crate::ours::boxes::meeting;
 use crate::ours::compare::difference;
 use crate::ours::configurations::{Mode, rows};
+use crate::ours::coverage::{Cell, Judged, ListLedger};
 use crate::ours::reference_shapes::{Shapes, grown};
 use sdop::Motion;
 use sdop::bodies::{Aabb, Bodies};
@@ -124,7 +125,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
                     self.saved = Some((state, self.numbers.clone(), before));
                 }
                 Change::Restore => self.restore(frame)?,
-                Change::Detour(kind) => self.world.detour(*kind)?,
+                Change::Detour(kind) => self.is_told_wrong |= !self.world.detour(*kind)?,
             }
             state.take(change);
         }
@@ -190,7 +191,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
         kind: WorldKind,
         mode: Mode,
         truth: &Truth,
-        ledger: &mut HistoryLedger,
+        ledger: &mut ListLedger,
     ) -> Result<(), HistoryError> {
         for frame in 0..self.states.len() {
             self.change(frame)?;
@@ -201,13 +202,7 @@ impl<'a, W: JudgedWorld> Life<'a, W> {
             };
             for change in ChangeKind::ALL.iter().copied() {
                 if kinds.contains(&change) && kind.has(change) {
-                    let cell = HistoryCell {
-                        world: kind,
-                        change,
-                        tier: mode.tier.name(),
-                        threads: mode.threads,
-                    };
-                    *ledger.cells.entry(cell).or_default() += 1;
+                    ledger.coverage.count(Cell::of(Judged::World(kind, change), mode), 1);
                 }
             }
             ledger.lists += 1;
@@ -247,13 +242,10 @@ pub(super) fn box_culler(turn: usize, mode: Mode) -> BoxCullerBuilder {
 ///
 /// # Errors
 /// Threads that the system refuses, invalid boxes.
-pub fn judge_boxes(
-    history: &History<BoxBody>,
-    modes: &[Mode],
-) -> Result<HistoryLedger, HistoryError> {
+pub fn judge_boxes(history: &History<BoxBody>, modes: &[Mode]) -> Result<ListLedger, HistoryError> {
     let states = State::all(history)?;
     let truth = Truth::exact(required_boxes(&states)); // boxes are compared as they are
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     for (number, &mode) in modes.iter().enumerate() {
         let make = |turn| Ok(BoxWorld::with(&box_culler(number + turn, mode))?);
         let life = Life::new(make, history, &states)?;
@@ -287,7 +279,7 @@ pub fn judge_meshes(
     history: &History<Body>,
     variant: (DirectionSet, Axes),
     modes: impl Fn(usize) -> Vec<Mode>,
-) -> Result<HistoryLedger, HistoryError> {
+) -> Result<ListLedger, HistoryError> {
     let states = State::all(history)?;
     let rows = rows(variant).into_iter().enumerate();
     let rows = rows.map(|(number, row)| (row, modes(number)));
@@ -297,7 +289,7 @@ pub fn judge_meshes(
     let with_margins = with_margins(shapes)?;
     let answers = |state| answers(shapes, &with_margins, state, variant.0, &predicates);
     let answers = states.iter().map(answers).collect::<Result<Vec<_>, _>>()?;
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     for (way, modes) in rows {
         let required = states.iter().zip(&answers);
         let required: Vec<Pairs> =

@@ -16,19 +16,17 @@ mod state;
 mod tests;
 mod worlds;
 
-use std::collections::BTreeMap;
-
 pub use compounds::judge_compounds;
 pub use draw::{draw_boxes, draw_meshes, history_shapes};
 pub(crate) use judge::culler;
 pub use judge::{judge_boxes, judge_meshes};
 pub use periodic::{Repeated, judge_periodic_boxes, judge_periodic_meshes};
-pub(crate) use queries::Asked;
+pub(crate) use queries::{Asked, AskedWorld};
 pub use queries::{judge_queries_of_boxes, judge_queries_of_meshes};
 pub use robots::Robots;
-pub(crate) use worlds::{CompoundWorld, JudgedWorld};
+pub(crate) use worlds::{CompoundWorld, JudgedWorld, Listing, ReportedPair};
 
-use super::configurations::{Rotation, rows, variants};
+use super::coverage::strategy_name;
 use super::forms::FormError;
 use super::reference_shapes::InvalidInput;
 use sdop::ThreadsError;
@@ -192,8 +190,7 @@ impl WorldKind {
     pub fn name(self) -> String {
         match self {
             Self::Boxes => "given boxes".to_owned(),
-            Self::Meshes(strategy, None) => strategy.to_string(),
-            Self::Meshes(strategy, Some(overlap)) => format!("{strategy} {overlap}"),
+            Self::Meshes(strategy, overlap) => strategy_name(strategy, overlap),
             Self::PeriodicBoxes => "periodic boxes".to_owned(),
             Self::PeriodicMeshes(strategy) => format!("periodic {strategy}"),
             Self::Compounds(strategy) => format!("compounds {strategy}"),
@@ -203,81 +200,12 @@ impl WorldKind {
     }
 }
 
-/// Which lists: after which kind of change, and how the world is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct HistoryCell {
-    /// Which world.
-    pub world: WorldKind,
-    /// What the frame has changed.
-    pub change: ChangeKind,
-    /// The tier's name.
-    pub tier: &'static str,
-    /// The number of threads.
-    pub threads: usize,
-}
-
-impl HistoryCell {
-    /// Every cell that can be filled with these modes.
-    #[must_use]
-    pub fn all(rotation: &Rotation) -> Vec<Self> {
-        let rows = variants().next().map(rows).unwrap_or_default();
-        let worlds = [WorldKind::Boxes].into_iter();
-        let worlds = worlds.chain(rows.iter().map(WorldKind::of));
-        let worlds = worlds.chain([WorldKind::PeriodicBoxes]);
-        let worlds = worlds.chain(periodic::STRATEGIES.map(WorldKind::PeriodicMeshes));
-        let worlds = worlds.chain(compounds::strategies().map(WorldKind::Compounds));
-        let worlds = worlds.chain([WorldKind::AskedBoxes, WorldKind::AskedMeshes]);
-        let mut cells = Vec::new();
-        for world in worlds {
-            let has = |change: &ChangeKind| world.has(*change);
-            for change in ChangeKind::ALL.iter().copied().filter(has) {
-                for mode in rotation.modes() {
-                    let cell =
-                        Self { world, change, tier: mode.tier.name(), threads: mode.threads };
-                    // Modes that differ in their updates alone share a cell.
-                    if !cells.contains(&cell) {
-                        cells.push(cell);
-                    }
-                }
-            }
-        }
-        cells
-    }
-}
-
-/// What was judged: sums over frames.
-#[derive(Clone, Debug, Default)]
-pub struct HistoryLedger {
-    /// Lists by cell. A list after two kinds of changes is in two cells.
-    pub cells: BTreeMap<HistoryCell, u64>,
-    /// Lists, each counted once.
-    pub lists: u64,
-    /// Pairs that had to be reported.
-    pub required: u64,
-    /// Those that weren't.
-    pub missed: u64,
-    /// Pairs and events on which a world and a newly built one differ.
-    pub differ: u64,
-    /// The first wrong pair.
-    pub failure: Option<String>,
-}
-
-impl HistoryLedger {
-    /// Adds another one.
-    pub fn add(&mut self, other: Self) {
-        for (cell, lists) in other.cells {
-            *self.cells.entry(cell).or_default() += lists;
-        }
-        self.lists += other.lists;
-        self.required += other.required;
-        self.missed += other.missed;
-        self.differ += other.differ;
-        self.failure = self.failure.take().or(other.failure);
-    }
-
-    /// Lists judged in a cell.
-    #[must_use]
-    pub fn lists_in(&self, cell: &HistoryCell) -> u64 {
-        self.cells.get(cell).copied().unwrap_or(0)
-    }
+/// Every world that lives through histories; those of meshes cull by these rows.
+#[must_use]
+pub fn every_world(rows: &[CullSettings]) -> Vec<WorldKind> {
+    let worlds = [WorldKind::Boxes].into_iter().chain(rows.iter().map(WorldKind::of));
+    let worlds = worlds.chain([WorldKind::PeriodicBoxes]);
+    let worlds = worlds.chain(periodic::STRATEGIES.map(WorldKind::PeriodicMeshes));
+    let worlds = worlds.chain(compounds::strategies().map(WorldKind::Compounds));
+    worlds.chain([WorldKind::AskedBoxes, WorldKind::AskedMeshes]).collect()
 }

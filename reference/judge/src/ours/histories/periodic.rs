@@ -14,8 +14,9 @@ use super::judge::{Life, Truth, box_culler, culler, finder, grown_shape, with_ma
 use super::places::place;
 use super::state::{NumberedPair, Pairs, State, in_order};
 use super::worlds::Properties;
-use super::{Change, ChangeKind, History, HistoryError, HistoryLedger, WorldKind};
+use super::{Change, ChangeKind, History, HistoryError, WorldKind};
 use crate::ours::configurations::Mode;
+use crate::ours::coverage::ListLedger;
 use crate::ours::reference_shapes::{InvalidInput, Shapes};
 use sdop::boxes::BoxBody;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicWorld};
@@ -159,14 +160,14 @@ fn draw_way(below: &mut impl FnMut(u32) -> u32) -> [i32; 3] {
 pub fn judge_periodic_boxes(
     repeated: &Repeated<PeriodicBox>,
     modes: &[Mode],
-) -> Result<HistoryLedger, HistoryError> {
+) -> Result<ListLedger, HistoryError> {
     let Repeated { periods, history } = repeated;
     let states = State::all(history)?;
     let meeting = |a: &PeriodicBox, b: &PeriodicBox| {
         Ok(meeting_images([a.min, a.max], [b.min, b.max], *periods))
     };
     let truth = Truth::exact(required(&states, meeting)?);
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     for (number, &mode) in modes.iter().enumerate() {
         let make = |turn| Ok(PeriodicBoxes::with(&box_culler(number + turn, mode), *periods)?);
         let life = Life::new(make, history, &states)?;
@@ -184,7 +185,7 @@ pub fn judge_periodic_meshes(
     repeated: &Repeated<Body>,
     (k, axes): (DirectionSet, Axes),
     modes: &[Mode],
-) -> Result<HistoryLedger, HistoryError> {
+) -> Result<ListLedger, HistoryError> {
     let Repeated { periods, history } = repeated;
     let states = State::all(history)?;
     let world = |strategy, pairs, mode| {
@@ -193,7 +194,7 @@ pub fn judge_periodic_meshes(
         PeriodicWorld::with(built, &culler(&way, mode), *periods)
     };
     let grown = with_margins(shapes)?;
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     for strategy in STRATEGIES {
         let meeting = |a: &Body, b: &Body| touching_images(&grown, [a, b], *periods, strategy);
         let fresh = states.iter().map(|state| {

@@ -8,6 +8,7 @@ use std::collections::HashSet;
 use sdop::Motion;
 use sdop::bodies::Aabb;
 use sdop::boxes::{BoxBody, BoxWorld};
+use sdop::periodic::{ImageWorld, Periodic, PeriodicBox, PeriodicHit, PeriodicIndex};
 use sdop::query::{Line, QueryIndex, QueryShape, QuerySource, QueryVolume};
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
@@ -18,58 +19,103 @@ use super::judge::{
     Life, Truth, answers, box_culler, culler, required_boxes, required_of, with_margins,
 };
 use super::state::State;
-use super::worlds::{JudgedWorld, Properties, ReportedPair};
-use super::{ChangeKind, History, HistoryError, HistoryLedger, WorldKind};
+use super::worlds::{JudgedWorld, Listing, Properties, ReportedPair};
+use super::{History, HistoryError, WorldKind};
 use crate::ours::answers::Predicate;
 use crate::ours::configurations::Mode;
+use crate::ours::coverage::ListLedger;
 use crate::ours::reference_shapes::Shapes;
 
+/// Bodies that an index reports, each with its image.
+type Found = Vec<(BodyId, [i32; 3])>;
+
 /// A world that can be asked about the volumes of its own bodies.
-pub trait AskedWorld: JudgedWorld + QuerySource {
+pub trait AskedWorld: JudgedWorld + Clone {
+    /// What is asked.
+    type Index;
+
+    /// An index that follows such a world.
+    fn index(mode: Mode) -> Result<Self::Index, HistoryError>;
+    /// Whether two bodies are excluded.
     fn excludes(&self, pair: [BodyId; 2]) -> bool;
-    /// The same world with a body far away, which is of any kind.
-    fn with_far_body(&self) -> Result<Self, HistoryError>
-    where
-        Self: Sized;
-    /// A point of a body, or near it.
-    fn point(body: &Self::Body) -> [f64; 3];
     /// A body as a query. Meshes have these shapes.
     fn volume<'a>(body: &Self::Body, shapes: &'a [QueryShape]) -> QueryVolume<'a>;
+    /// What an index finds in the volumes of all bodies; none if it contradicts itself.
+    fn ask(
+        &self,
+        index: &mut Self::Index,
+        bodies: &[(BodyId, Self::Body)],
+        volumes: &[QueryVolume<'_>],
+    ) -> Result<Option<Vec<Found>>, HistoryError>;
+}
+
+/// What an index of a world finds, in volumes and in another set, if lines find the same as in a
+/// new one.
+fn ask_both<B: Copy>(
+    (index, worlds): (&mut QueryIndex, [&impl QuerySource; 2]),
+    bodies: &[(BodyId, B)],
+    point: impl Fn(&B) -> [f64; 3],
+    volumes: &[QueryVolume<'_>],
+) -> Result<Option<Vec<Found>>, HistoryError> {
+    index.update(worlds[0]);
+    let [mut new, mut other] = [QueryIndex::new(), index.clone()];
+    new.update(worlds[0]);
+    let mut is_same = new.len() == index.len();
+    for two in bodies.windows(2).step_by(bodies.len().div_ceil(4).max(1)) {
+        let [from, to] = [0, 1].map(|n: usize| point(&two[n].1));
+        let ray = Line::Ray { origin: from, direction: [1.0, -0.5, 0.25] };
+        for line in [Line::Segment { from, to }, ray] {
+            is_same &= new.along(&line)? == index.along(&line)?;
+            is_same &= new.first(&line)? == index.first(&line)?;
+        }
+    }
+    other.update(worlds[1]);
+    let both: HashSet<[BodyId; 2]> = index.pairs_with(&other)?.into_iter().collect();
+    let found = index.touching_all(volumes)?;
+    let found = bodies.iter().zip(found.iter()).map(|((id, _), found)| {
+        let in_both = found.iter().filter(|other| both.contains(&[*id, **other]));
+        in_both.map(|&other| (other, [0; 3])).collect()
+    });
+    Ok(is_same.then(|| found.collect()))
 }
 
 impl AskedWorld for BoxWorld {
+    type Index = QueryIndex;
+
+    fn index(mode: Mode) -> Result<QueryIndex, HistoryError> {
+        Ok(QueryIndex::with_threads(mode.threads)?.on_tier(mode.tier))
+    }
+
     fn excludes(&self, [a, b]: [BodyId; 2]) -> bool {
         self.is_excluded(a, b)
-    }
-
-    fn with_far_body(&self) -> Result<Self, HistoryError> {
-        let mut world = self.clone();
-        world.insert(Aabb::new([0.0, FAR_AWAY, 0.0], [1.0, FAR_AWAY, 1.0]))?;
-        Ok(world)
-    }
-
-    fn point(body: &BoxBody) -> [f64; 3] {
-        body.bounds.min.map(f64::from)
     }
 
     fn volume<'a>(body: &BoxBody, _: &'a [QueryShape]) -> QueryVolume<'a> {
         body.bounds.into()
     }
+
+    fn ask(
+        &self,
+        index: &mut QueryIndex,
+        bodies: &[(BodyId, BoxBody)],
+        volumes: &[QueryVolume<'_>],
+    ) -> Result<Option<Vec<Found>>, HistoryError> {
+        let mut other = self.clone();
+        other.insert(Aabb::new([0.0, FAR_AWAY, 0.0], [1.0, FAR_AWAY, 1.0]))?;
+        let point = |body: &BoxBody| body.bounds.min.map(f64::from);
+        ask_both((index, [self, &other]), bodies, point, volumes)
+    }
 }
 
 impl AskedWorld for World {
+    type Index = QueryIndex;
+
+    fn index(mode: Mode) -> Result<QueryIndex, HistoryError> {
+        BoxWorld::index(mode)
+    }
+
     fn excludes(&self, [a, b]: [BodyId; 2]) -> bool {
         self.is_excluded(a, b)
-    }
-
-    fn with_far_body(&self) -> Result<Self, HistoryError> {
-        let mut world = self.clone();
-        world.insert(Body::at(0, [0.0, 0.0, 0.0, 1.0], [0.0, f64::from(FAR_AWAY), 0.0]))?;
-        Ok(world)
-    }
-
-    fn point(body: &Body) -> [f64; 3] {
-        body.translation
     }
 
     fn volume<'a>(body: &Body, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
@@ -80,120 +126,124 @@ impl AskedWorld for World {
             margin: body.margin,
         }
     }
+
+    fn ask(
+        &self,
+        index: &mut QueryIndex,
+        bodies: &[(BodyId, Body)],
+        volumes: &[QueryVolume<'_>],
+    ) -> Result<Option<Vec<Found>>, HistoryError> {
+        let mut other = self.clone();
+        other.insert(Body::at(0, [0.0, 0.0, 0.0, 1.0], [0.0, f64::from(FAR_AWAY), 0.0]))?;
+        ask_both((index, [self, &other]), bodies, |body| body.translation, volumes)
+    }
+}
+
+impl<W> AskedWorld for Periodic<W>
+where
+    W: AskedWorld + ImageWorld + QuerySource,
+    Self: JudgedWorld<Body = <W as ImageWorld>::Body>,
+    <W as ImageWorld>::Body: PeriodicVolume,
+{
+    type Index = PeriodicIndex<W>;
+
+    fn index(mode: Mode) -> Result<PeriodicIndex<W>, HistoryError> {
+        Ok(PeriodicIndex::with_threads(mode.threads)?.on_tier(mode.tier))
+    }
+
+    fn excludes(&self, [a, b]: [BodyId; 2]) -> bool {
+        self.is_excluded(a, b)
+    }
+
+    fn volume<'a>(body: &<W as ImageWorld>::Body, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
+        body.volume(shapes)
+    }
+
+    fn ask(
+        &self,
+        index: &mut PeriodicIndex<W>,
+        _: &[(BodyId, <W as ImageWorld>::Body)],
+        volumes: &[QueryVolume<'_>],
+    ) -> Result<Option<Vec<Found>>, HistoryError> {
+        index.update(self);
+        let found = index.touching_all(volumes)?;
+        let hits = |hits: &[PeriodicHit]| hits.iter().map(|hit| (hit.body, hit.image)).collect();
+        Ok(Some(found.iter().map(hits).collect()))
+    }
+}
+
+/// A periodic body as a query.
+pub trait PeriodicVolume {
+    fn volume<'a>(&self, shapes: &'a [QueryShape]) -> QueryVolume<'a>;
+}
+
+impl PeriodicVolume for PeriodicBox {
+    fn volume<'a>(&self, _: &'a [QueryShape]) -> QueryVolume<'a> {
+        QueryVolume::Box { min: self.min, max: self.max }
+    }
+}
+
+impl PeriodicVolume for Body {
+    fn volume<'a>(&self, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
+        <World as AskedWorld>::volume(self, shapes)
+    }
 }
 
 /// A place that moves the origin of a set of bodies.
 const FAR_AWAY: f32 = 3.0e9;
 
 /// A world and its index.
-pub struct Asked<W> {
+pub struct Asked<W: AskedWorld> {
     pub world: W,
-    index: QueryIndex,
+    index: W::Index,
     shapes: Vec<QueryShape>,
 }
 
 impl<W: AskedWorld> Asked<W> {
     pub fn new(world: W, shapes: &[Shape], mode: Mode) -> Result<Self, HistoryError> {
-        let index = QueryIndex::with_threads(mode.threads)?;
-        Ok(Self {
-            world,
-            index: index.on_tier(mode.tier),
-            shapes: shapes.iter().map(QueryShape::new).collect(),
-        })
+        let shapes = shapes.iter().map(QueryShape::new).collect();
+        Ok(Self { world, index: W::index(mode)?, shapes })
     }
 }
 
-impl<W: AskedWorld> Asked<W> {
-    /// Whether an index that has followed the world answers about lines from body to body like a
-    /// new one.
-    fn is_as_new(&self, bodies: &[(BodyId, W::Body)]) -> Result<bool, HistoryError> {
-        let mut new = QueryIndex::new();
-        new.update(&self.world);
-        let mut is_same = new.len() == self.index.len();
-        for two in bodies.windows(2).step_by(bodies.len().div_ceil(4)) {
-            let [from, to] = [0, 1].map(|n: usize| W::point(&two[n].1));
-            let ray = Line::Ray { origin: from, direction: [1.0, -0.5, 0.25] };
-            for line in [Line::Segment { from, to }, ray] {
-                is_same &= new.along(&line)? == self.index.along(&line)?;
-                is_same &= new.first(&line)? == self.index.first(&line)?;
-            }
-        }
-        Ok(is_same)
-    }
-}
+impl<W: AskedWorld> Listing for Asked<W> {
+    type World = W;
 
-impl<W: AskedWorld> JudgedWorld for Asked<W> {
-    type Body = W::Body;
-    type Saved = W::Saved;
-
-    fn insert(&mut self, body: W::Body) -> Result<BodyId, HistoryError> {
-        self.world.insert(body)
+    fn world(&self) -> &W {
+        &self.world
     }
 
-    fn remove(&mut self, id: BodyId) -> Result<(), HistoryError> {
-        self.world.remove(id)
+    fn world_mut(&mut self) -> &mut W {
+        &mut self.world
     }
 
-    fn change(&mut self, id: BodyId, from: W::Body, to: W::Body) -> Result<(), HistoryError> {
-        self.world.change(id, from, to)
-    }
-
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError> {
-        self.world.exclude(pair, excluded)
-    }
-
-    fn interest(&mut self, _: &[BodyId]) -> Result<(), HistoryError> {
-        Ok(())
-    }
-
-    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
-        self.index.update(&self.world);
+    fn list(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
         let bodies = self.world.all();
-        let volumes = bodies.iter().map(|(_, body)| W::volume(body, &self.shapes));
-        let found = self.index.touching_all(&volumes.collect::<Vec<_>>())?;
-        let mut other = self.index.clone();
-        other.update(&self.world.with_far_body()?);
-        let both: HashSet<[BodyId; 2]> = self.index.pairs_with(&other)?.into_iter().collect();
+        let volumes: Vec<_> =
+            bodies.iter().map(|(_, body)| W::volume(body, &self.shapes)).collect();
         let mut pairs = Vec::new();
-        for (&(id, mut body), found) in bodies.iter().zip(found.iter()) {
-            for &other in found.iter().filter(|&&other| id < other) {
-                let at = bodies.binary_search_by_key(&other, |&(id, _)| id);
-                let counts = at.is_ok_and(|at| {
-                    let mut partner = bodies[at].1;
-                    let motions = [*body.motion(), *partner.motion()];
-                    motions != [Motion::Fixed; 2]
-                        && body.groups().collide(*partner.groups())
-                        && !self.world.excludes([id, other])
-                });
-                let counts = counts && both.contains(&[id, other]);
-                pairs.extend(counts.then(|| ReportedPair::of([id, other], None)));
+        match self.world.ask(&mut self.index, &bodies, &volumes)? {
+            Some(found) => {
+                for (&(id, mut body), found) in bodies.iter().zip(found) {
+                    for (other, image) in found.into_iter().filter(|found| id < found.0) {
+                        let at = bodies.binary_search_by_key(&other, |&(id, _)| id);
+                        let counts = at.is_ok_and(|at| {
+                            let mut partner = bodies[at].1;
+                            let motions = [*body.motion(), *partner.motion()];
+                            motions != [Motion::Fixed; 2]
+                                && body.groups().collide(*partner.groups())
+                                && !self.world.excludes([id, other])
+                        });
+                        let pair = ReportedPair { image, ..ReportedPair::of([id, other], None) };
+                        pairs.extend(counts.then_some(pair));
+                    }
+                }
             }
-        }
-        if let (Some((id, _)), false) = (bodies.first(), self.is_as_new(&bodies)?) {
-            pairs.insert(0, ReportedPair::of([*id; 2], None)); // no pair that there can be
+            // No pair that there can be.
+            None => pairs.extend(bodies.first().map(|(id, _)| ReportedPair::of([*id; 2], None))),
         }
         self.world.cull()?; // from then on, slots of removed bodies are given again
         Ok(pairs)
-    }
-
-    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
-        None
-    }
-
-    fn all(&self) -> Vec<(BodyId, W::Body)> {
-        self.world.all()
-    }
-
-    fn save(&self) -> W::Saved {
-        self.world.save()
-    }
-
-    fn restore(&mut self, saved: &W::Saved) -> Result<(), HistoryError> {
-        self.world.restore(saved)
-    }
-
-    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
-        self.world.detour(kind)
     }
 }
 
@@ -204,10 +254,10 @@ impl<W: AskedWorld> JudgedWorld for Asked<W> {
 pub fn judge_queries_of_boxes(
     history: &History<BoxBody>,
     modes: &[Mode],
-) -> Result<HistoryLedger, HistoryError> {
+) -> Result<ListLedger, HistoryError> {
     let states = State::all(history)?;
     let truth = Truth::exact(required_boxes(&states)); // boxes are compared as they are
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     for &mode in modes {
         let make = |turn| Asked::new(BoxWorld::with(&box_culler(turn, mode))?, &[], mode);
         let life = Life::new(make, history, &states)?;
@@ -227,7 +277,7 @@ pub fn judge_queries_of_meshes(
     history: &History<Body>,
     (k, axes): (DirectionSet, Axes),
     modes: &[Mode],
-) -> Result<HistoryLedger, HistoryError> {
+) -> Result<ListLedger, HistoryError> {
     let way = CullSettings {
         strategy: Strategy::SDopSequential,
         pairs: Finder::AllPairs,
@@ -259,7 +309,7 @@ pub fn judge_queries_of_meshes(
     let fresh = states.iter().map(|state| state.fresh(asked(Mode::plain(Tier::SCALAR))?));
     let truth =
         Truth { required, fresh: fresh.collect::<Result<_, _>>()?, may_lack: false, allowed: None };
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     for &mode in modes {
         let life = Life::new(|_| asked(mode), history, &states)?;
         life.live(WorldKind::AskedMeshes, mode, &truth, &mut ledger)?;

@@ -187,7 +187,7 @@ fn slots<B>(history: &History<B>) -> Result<Vec<usize>, HistoryError> {
                 Change::Remove(number) => world.remove(ids[*number])?,
                 Change::Save => saved = world.clone(),
                 Change::Restore => world = saved.clone(),
-                Change::Detour(kind) => world.detour(*kind)?,
+                Change::Detour(kind) => drop(world.detour(*kind)?),
                 _ => {}
             }
         }

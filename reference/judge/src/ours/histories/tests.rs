@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::collections::BTreeMap;
+
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
@@ -10,6 +12,7 @@ use super::state::State;
 use super::worlds::{JudgedWorld, ReportedPair};
 use super::*;
 use crate::ours::configurations::Mode;
+use crate::ours::coverage::ListLedger;
 use sdop::boxes::{BoxBody, BoxWorld};
 use sdop::simd::Tier;
 use sdop::world::BodyId;
@@ -114,14 +117,14 @@ impl JudgedWorld for Blind {
         Ok(())
     }
 
-    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
+    fn detour(&mut self, kind: ChangeKind) -> Result<bool, HistoryError> {
         self.world.detour(kind)
     }
 }
 
 /// What a world that is blind to a kind of change gets wrong over some histories.
 fn wrong(to: Option<ChangeKind>) -> u64 {
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     for seed in 0..20 {
         let history = drawn(seed);
         let states = State::all(&history).unwrap();

@@ -82,8 +82,8 @@ pub trait JudgedWorld {
     fn save(&self) -> Self::Saved;
     /// Goes back to a state, of this world or of another.
     fn restore(&mut self, saved: &Self::Saved) -> Result<(), HistoryError>;
-    /// Does what changes no pair, if it can.
-    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError>;
+    /// Does what changes no pair, if it can. Whether what it was told then is right.
+    fn detour(&mut self, kind: ChangeKind) -> Result<bool, HistoryError>;
 }
 
 /// The calls that all worlds have alike.
@@ -134,16 +134,22 @@ macro_rules! unrepeated {
             Ok(self.restore(saved)?)
         }
 
-        fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
+        fn detour(&mut self, kind: ChangeKind) -> Result<bool, HistoryError> {
             match kind {
                 ChangeKind::Cloned => *self = self.clone(),
                 ChangeKind::Shrunk => self.shrink_to_fit(),
                 _ => {
-                    self.cull_in_portions(|_| ())?;
-                    drop(self.cull_up_to(3).map(|pairs| pairs.len())); // the limit may be too low
+                    let mut portions = Vec::new();
+                    let told = self.cull_in_portions(|portion| portions.extend(portion))?;
+                    portions.sort_unstable();
+                    let is_all = told == portions.len() as u64 && self.pairs().len() == 0;
+                    let is_listed = self.cull_up_to(portions.len())?.sorted() == portions;
+                    let less = portions.len().checked_sub(1);
+                    let is_beyond = less.is_none_or(|less| self.cull_up_to(less).is_err());
+                    return Ok(is_all && is_listed && is_beyond);
                 }
             }
-            Ok(())
+            Ok(true)
         }
     };
 }
@@ -227,44 +233,93 @@ where
         Ok(())
     }
 
-    fn detour(&mut self, _: ChangeKind) -> Result<(), HistoryError> {
+    fn detour(&mut self, _: ChangeKind) -> Result<bool, HistoryError> {
         *self = self.clone();
-        Ok(())
+        Ok(true)
     }
 }
 
-/// A world of compounds with a culler of their parts, which has followed it from the start.
+/// A world that goes on as another one does, but lists pairs in its own way and has no events.
+pub trait Listing {
+    /// The other one.
+    type World: JudgedWorld;
+    /// The other one.
+    fn world(&self) -> &Self::World;
+    /// The other one.
+    fn world_mut(&mut self) -> &mut Self::World;
+    /// Finds the pairs.
+    fn list(&mut self) -> Result<Vec<ReportedPair>, HistoryError>;
+}
+
+impl<L: Listing> JudgedWorld for L {
+    type Body = <L::World as JudgedWorld>::Body;
+    type Saved = <L::World as JudgedWorld>::Saved;
+
+    fn insert(&mut self, body: Self::Body) -> Result<BodyId, HistoryError> {
+        self.world_mut().insert(body)
+    }
+
+    fn remove(&mut self, id: BodyId) -> Result<(), HistoryError> {
+        self.world_mut().remove(id)
+    }
+
+    fn change(&mut self, id: BodyId, from: Self::Body, to: Self::Body) -> Result<(), HistoryError> {
+        self.world_mut().change(id, from, to)
+    }
+
+    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError> {
+        self.world_mut().exclude(pair, excluded)
+    }
+
+    fn interest(&mut self, ids: &[BodyId]) -> Result<(), HistoryError> {
+        self.world_mut().interest(ids)
+    }
+
+    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
+        self.list()
+    }
+
+    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
+        None
+    }
+
+    fn all(&self) -> Vec<(BodyId, Self::Body)> {
+        self.world().all()
+    }
+
+    fn save(&self) -> Self::Saved {
+        self.world().save()
+    }
+
+    fn restore(&mut self, saved: &Self::Saved) -> Result<(), HistoryError> {
+        self.world_mut().restore(saved)
+    }
+
+    fn detour(&mut self, kind: ChangeKind) -> Result<bool, HistoryError> {
+        self.world_mut().detour(kind)
+    }
+}
+
+/// A world of compounds with a culler of their parts, which has followed it from the start. Events
+/// are of the world's pairs, of which some may have no pairs of parts.
 pub struct CompoundWorld {
     pub world: World,
     pub parts: PartCuller,
 }
 
-impl JudgedWorld for CompoundWorld {
-    type Body = Body;
-    type Saved = WorldSnapshot;
+impl Listing for CompoundWorld {
+    type World = World;
 
-    fn insert(&mut self, body: Body) -> Result<BodyId, HistoryError> {
-        JudgedWorld::insert(&mut self.world, body)
+    fn world(&self) -> &World {
+        &self.world
     }
 
-    fn remove(&mut self, id: BodyId) -> Result<(), HistoryError> {
-        JudgedWorld::remove(&mut self.world, id)
-    }
-
-    fn change(&mut self, id: BodyId, from: Body, to: Body) -> Result<(), HistoryError> {
-        self.world.change(id, from, to)
-    }
-
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError> {
-        JudgedWorld::exclude(&mut self.world, pair, excluded)
-    }
-
-    fn interest(&mut self, ids: &[BodyId]) -> Result<(), HistoryError> {
-        self.world.interest(ids)
+    fn world_mut(&mut self) -> &mut World {
+        &mut self.world
     }
 
     /// The pairs of parts, each pair of bodies before those of its parts.
-    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
+    fn list(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
         self.world.cull()?;
         self.parts.cull(&self.world)?;
         let mut listed: Vec<ReportedPair> = Vec::new();
@@ -277,26 +332,5 @@ impl JudgedWorld for CompoundWorld {
         }
         listed.extend(bodies.map(|ids| ReportedPair::of(ids, None)));
         Ok(listed)
-    }
-
-    /// Events are of the world's pairs, of which some may have no pairs of parts.
-    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
-        None
-    }
-
-    fn all(&self) -> Vec<(BodyId, Body)> {
-        self.world.all()
-    }
-
-    fn save(&self) -> WorldSnapshot {
-        self.world.save()
-    }
-
-    fn restore(&mut self, saved: &WorldSnapshot) -> Result<(), HistoryError> {
-        JudgedWorld::restore(&mut self.world, saved)
-    }
-
-    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
-        self.world.detour(kind)
     }
 }

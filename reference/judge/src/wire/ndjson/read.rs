@@ -70,7 +70,13 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
     let (there, wanted) = (frames.len(), header.frames.unwrap_or(0).max(next) as usize);
     let lacks = (there == 0 || there < wanted)
         .then(|| format!("the record has {there} of its {} frames", wanted.max(1)));
-    let case = fields.case(header.scene, shapes, frames);
+    let mut case = fields.case(header.scene, shapes, frames);
+    let has = |claim: &Claim| match claim {
+        Claim::Sphere => header.shapes.iter().all(|shape| shape.ball.is_some()),
+        Claim::OrDop => header.shapes.iter().all(|shape| shape.ordop.is_some()),
+        _ => true,
+    };
+    case.claims.retain(has);
     Ok(StoredCase { case, pairs, lacks })
 }
 

@@ -7,9 +7,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::ours::configurations::variants;
-use crate::ours::histories::worlds::{JudgedWorld, ReportedPair};
-use crate::ours::histories::{ChangeKind, history_shapes};
-use sdop::world::{BodyId, WorldSnapshot};
+use crate::ours::histories::history_shapes;
+use crate::ours::histories::worlds::{Listing, ReportedPair};
 
 /// What a world does wrong to its list.
 type Fault = fn(&CompoundWorld, &mut Vec<ReportedPair>);
@@ -17,60 +16,27 @@ type Fault = fn(&CompoundWorld, &mut Vec<ReportedPair>);
 /// A world that is wrong on purpose.
 struct WrongWorld(CompoundWorld, Fault);
 
-impl JudgedWorld for WrongWorld {
-    type Body = Body;
-    type Saved = WorldSnapshot;
+impl Listing for WrongWorld {
+    type World = CompoundWorld;
 
-    fn insert(&mut self, body: Body) -> Result<BodyId, HistoryError> {
-        self.0.insert(body)
+    fn world(&self) -> &CompoundWorld {
+        &self.0
     }
 
-    fn remove(&mut self, id: BodyId) -> Result<(), HistoryError> {
-        self.0.remove(id)
+    fn world_mut(&mut self) -> &mut CompoundWorld {
+        &mut self.0
     }
 
-    fn change(&mut self, id: BodyId, from: Body, to: Body) -> Result<(), HistoryError> {
-        self.0.change(id, from, to)
-    }
-
-    fn exclude(&mut self, pair: [BodyId; 2], excluded: bool) -> Result<bool, HistoryError> {
-        self.0.exclude(pair, excluded)
-    }
-
-    fn interest(&mut self, ids: &[BodyId]) -> Result<(), HistoryError> {
-        self.0.interest(ids)
-    }
-
-    fn cull(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
-        let mut listed = self.0.cull()?;
+    fn list(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
+        let mut listed = self.0.list()?;
         (self.1)(&self.0, &mut listed);
         listed.sort_unstable();
         Ok(listed)
     }
-
-    fn events(&mut self) -> Option<[Vec<ReportedPair>; 3]> {
-        None
-    }
-
-    fn all(&self) -> Vec<(BodyId, Body)> {
-        self.0.all()
-    }
-
-    fn save(&self) -> WorldSnapshot {
-        self.0.save()
-    }
-
-    fn restore(&mut self, saved: &WorldSnapshot) -> Result<(), HistoryError> {
-        self.0.restore(saved)
-    }
-
-    fn detour(&mut self, kind: ChangeKind) -> Result<(), HistoryError> {
-        self.0.detour(kind)
-    }
 }
 
 /// What is wrong in a history of a world with a fault, which newly built worlds have, too.
-fn judged(fault: Fault) -> HistoryLedger {
+fn judged(fault: Fault) -> ListLedger {
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let mut below = |n| rng.random_range(0..n);
     let variant = variants().next().unwrap();
@@ -85,7 +51,7 @@ fn judged(fault: Fault) -> HistoryLedger {
     let mode = Mode::plain(Tier::SCALAR);
     let new = || WrongWorld(world(&robots, &way, mode).unwrap(), fault);
     truth.fresh = states.iter().map(|state| state.fresh(new()).unwrap()).collect();
-    let mut ledger = HistoryLedger::default();
+    let mut ledger = ListLedger::default();
     let life = Life::new(|_| Ok(new()), &history, &states).unwrap();
     life.live(WorldKind::Compounds(way.strategy), mode, &truth, &mut ledger).unwrap();
     ledger
@@ -95,19 +61,19 @@ fn judged(fault: Fault) -> HistoryLedger {
 #[test]
 fn wrong_parts_are_seen() {
     assert_eq!(judged(|_, _| {}).failure, None);
-    let HistoryLedger { missed, differ, .. } = judged(|_, list| {
+    let ListLedger { missed, differ, .. } = judged(|_, list| {
         list.retain(|pair| pair.parts.is_none_or(|parts| parts[1] == 0));
     });
     assert!(missed > 0 && differ == 0, "parts are lost");
-    let HistoryLedger { missed, differ, .. } =
+    let ListLedger { missed, differ, .. } =
         judged(|_, list| list.retain(|pair| pair.parts.is_some()));
     assert!(missed > 0 && differ == 0, "pairs of bodies are lost");
-    let HistoryLedger { missed, differ, .. } = judged(|world, list| {
+    let ListLedger { missed, differ, .. } = judged(|world, list| {
         let body = world.world.ids().next();
         list.extend(body.map(|id| ReportedPair::of([id; 2], Some([0, 1]))));
     });
     assert!(missed == 0 && differ > 0, "pairs within a body are listed");
-    let HistoryLedger { missed, differ, .. } = judged(|world, list| {
+    let ListLedger { missed, differ, .. } = judged(|world, list| {
         let all = world.world.pairs();
         list.extend(all.map(|ids| ReportedPair::of(ids, Some([0, 0]))));
         list.sort_unstable();
