@@ -193,7 +193,14 @@ resource.setrlimit(resource.RLIMIT_AS, (1_500_000 * 1024,) * 2)
 world = sdop.BoxWorld()
 for box in crowd:
     world.insert(box)
-for call in [lambda: sdop.box_pairs(crowd), world.cull, lambda: world.cull(limit=9)]:
+shape = sdop.Shape(numpy.float32([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+many = sdop.Compound([shape], [0] * 7_000, [[0, 0, 0, 1]] * 7_000, numpy.zeros((7_000, 3)))
+bodies, parts = sdop.World([many.shape]), sdop.PartCuller()
+parts.set_parts(0, many)
+for x in range(2):
+    bodies.insert(0, [0, 0, 0, 1], [0, 0, 0])
+assert len(bodies.cull()) == 1
+for call in [lambda: sdop.box_pairs(crowd), world.cull, lambda: world.cull(limit=9), lambda: parts.cull(bodies)]:
     try:
         call()
     except sdop.SdopError as error:
@@ -206,6 +213,7 @@ def test_pairs_beyond_memory_or_limit_are_an_error():
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("there is no memory for the frame's pairs\nhelp: ") == 2
     assert "the frame has 199990000 pairs, but at most 9 are allowed" in done.stdout
+    assert "there is no memory for the pairs of parts" in done.stdout
     with pytest.raises(sdop.SdopError, match="at most 3 are allowed"):
         sdop.box_pairs(boxes(1000), limit=3)
     cell, world, index = sdop.PeriodicBoxes([50, 50, 50]), sdop.BoxWorld(), sdop.QueryIndex(limit=2)

@@ -72,9 +72,14 @@ impl PartCuller {
     /// # Errors
     /// The world's pairs are not those of its present bodies, because it was changed, restored or
     /// culled in portions since its last cull; or a shape of the world isn't that of its compound.
-    /// [`Self::pairs`] are those of the call before.
+    /// [`Self::pairs`] are those of the call before. Or there is no memory for the pairs: then
+    /// there are none.
     pub fn cull(&mut self, world: &World) -> Result<&[PartPair], CompoundError> {
-        in_default_mode(|| self.bring_shapes(world).map(|()| self.find(world)))?;
+        let is_full = in_default_mode(|| self.bring_shapes(world).map(|()| self.find(world)))?;
+        if is_full {
+            (self.pairs, self.bodies, self.are_found) = (Vec::new(), Vec::new(), false);
+            return Err(CompoundError::OutOfMemory);
+        }
         Ok(&self.pairs)
     }
 
@@ -121,8 +126,8 @@ impl PartCuller {
     }
 
     /// Finds the pairs of parts of all pairs of bodies. Pairs of bodies that have not changed keep
-    /// theirs: both lists are sorted by slots.
-    fn find(&mut self, world: &World) {
+    /// theirs: both lists are sorted by slots. Returns whether memory didn't suffice.
+    fn find(&mut self, world: &World) -> bool {
         std::mem::swap(&mut self.bodies, &mut self.former.0);
         std::mem::swap(&mut self.pairs, &mut self.former.1);
         self.bodies.clear();
@@ -131,7 +136,11 @@ impl PartCuller {
         let mut former = former_bodies.iter().peekable();
         let mut start = 0;
         let (mut first, mut second, mut placed) = (None, None, None);
+        let mut is_full = self.bodies.try_reserve(world.pairs().len()).is_err();
         for ids in world.pairs() {
+            if is_full {
+                break;
+            }
             let [Ok(a), Ok(b)] = ids.map(|id| world.body(id)) else {
                 continue; // removed since the cull
             };
@@ -142,11 +151,19 @@ impl PartCuller {
             let range = start..known.map_or(start, |pair| pair.end);
             start = range.end;
             if known.is_some_and(|pair| pair.bodies == [a, b]) {
-                self.pairs.extend_from_slice(&former_pairs[range]);
+                is_full = self.pairs.try_reserve(range.len()).is_err();
+                if !is_full {
+                    self.pairs.extend_from_slice(&former_pairs[range]);
+                }
             } else if let [Some(set), Some(other)] =
                 [a, b].map(|body| self.sets[body.shape as usize].as_ref())
             {
-                let mut take = |parts| self.pairs.push(PartPair { bodies: ids, parts });
+                let mut take = |parts| {
+                    is_full = is_full || self.pairs.try_reserve(1).is_err();
+                    if !is_full {
+                        self.pairs.push(PartPair { bodies: ids, parts });
+                    }
+                };
                 if set.len() == 1 && other.len() == 1 {
                     take([0, 0]);
                 } else {
@@ -163,6 +180,7 @@ impl PartCuller {
             let end = self.pairs.len();
             self.bodies.push(BodyPair { ids, bodies: [a, b], end });
         }
+        is_full
     }
 }
 

@@ -30,6 +30,9 @@ pub enum CompoundError {
     /// The world's pairs are not those of its present bodies.
     #[error("the world has changed since its last cull, or was culled in portions; {help}", help = self.help())]
     NotCulled,
+    /// The system refuses memory for the pairs of parts.
+    #[error("there is no memory for the pairs of parts; {help}", help = self.help())]
+    OutOfMemory,
     /// The world has another shape under the number, or none.
     #[error("shape {shape} of the world is not the shape of compound `{compound}`; {help}", help = self.help())]
     OtherShape {
@@ -54,6 +57,7 @@ impl CompoundError {
             Self::NotCulled => {
                 "call `World::cull` first: before the first call, and after each change, `restore` and `cull_in_portions`"
             }
+            Self::OutOfMemory => "put fewer compounds into one another, or give them fewer parts",
             Self::OtherShape { .. } => {
                 "give the world `compound.shape()` under this number, or call `remove_parts`, or `set_parts` with the new compound"
             }
