@@ -124,7 +124,7 @@ fn imports(source: &str) -> Vec<String> {
 /// What a module names in its crate, from the crate's root on; its unit tests left out.
 fn names(module: &[String], source: &str) -> Vec<Names> {
     let code = code(source);
-    let code = code.split("#[cfg(test)]\nmod tests").next().unwrap();
+    let code = code.split("#[cfg(test)]\nmod tests {").next().unwrap();
     let mut found: Vec<Names> = code.split("crate::").skip(1).flat_map(paths).collect();
     for start in ["self::", "super::"] {
         for (at, _) in code.match_indices(start) {

@@ -137,7 +137,6 @@ impl QueryIndex {
     /// array of uint64, shape (m, 2)
     ///     Rows of a pose's number and a body's id, sorted by both.
     #[pyo3(signature = (shape, rotations, translations, *, margin=0.0, exact=false))]
-    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn touching_shapes<'py>(
         &self,
         py: Python<'py>,

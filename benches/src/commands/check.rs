@@ -54,10 +54,8 @@ impl Subject for StoredAnswers {
 /// A file that can't be read.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let read = read_case(&args.record, args.files.max_bytes())?;
-    if let Some(claim @ (Claim::Sphere | Claim::OrDop)) = args.claims
-        && !read.case.claims.contains(&claim)
-        && args.pairs.is_none()
-    {
+    let claim = args.claims.unwrap_or(read.case.claim);
+    if read.without.contains(&claim) {
         return Err(miette!(
             help = "give each shape its `ball` or `ordop` in body coordinates, or claim mesh",
             "{} can't be judged by the claim {claim}: shapes don't have that volume",
@@ -65,7 +63,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         ));
     }
     let options = Options {
-        claim: args.claims.unwrap_or(read.case.claim),
+        claim,
         // The answers stand; no smaller case has any.
         shrink_time: std::time::Duration::ZERO,
         ..Options::default()

@@ -171,8 +171,7 @@ pub fn read_case(path: &Path, most: u64) -> miette::Result<ndjson::StoredCase> {
             .wrap_err_with(|| format!("cannot read {}", path.display()))?;
         let case = broadmark::read(&bytes).into_diagnostic()?;
         let pairs = vec![None; case.frames.len()];
-        let lacks = None;
-        return Ok(ndjson::StoredCase { case, pairs, lacks });
+        return Ok(ndjson::StoredCase { case, pairs, lacks: None, without: Vec::new() });
     }
     let file = File::open(path)
         .into_diagnostic()

@@ -7,7 +7,8 @@ use sdop_judge::Conclusion;
 use sdop_judge::every_way::{Ledger, LedgerKey};
 use sdop_judge::ours::Predicate;
 use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::coverage::{Coverage, ListLedger, strategy_name};
+use sdop_judge::ours::coverage::{Coverage, ListLedger};
+use sdop_judge::ours::world_kind::strategy_name;
 use serde::Serialize;
 
 use crate::commands::output::table;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use super::configurations::{Mode, Rotation, rows, variants, ways};
-use super::histories::{ChangeKind, WorldKind, every_world};
+use super::configurations::{Mode, Rotation, variants, ways};
+use super::world_kind::{ChangeKind, WorldKind, every_world, strategy_name};
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy, Updates};
 use sdop::volume::{Axes, DirectionSet};
 
@@ -64,8 +64,7 @@ impl Cell {
     pub fn all(rotation: &Rotation) -> Vec<Self> {
         let modes = || rotation.modes().iter().filter(|mode| mode.updates == Updates::Eager);
         let finders = Finder::ALL.iter().map(|&finder| Judged::Boxes(finder));
-        let of_rows = variants().next().map(rows).unwrap_or_default();
-        let worlds = every_world(&of_rows).into_iter().flat_map(|world| {
+        let worlds = every_world().into_iter().flat_map(|world| {
             let changes = ChangeKind::ALL.iter().filter(move |change| world.has(**change));
             changes.map(move |&change| Judged::World(world, change))
         });
@@ -86,12 +85,6 @@ impl Cell {
             Judged::Boxes(_) | Judged::World(..) => format!("{} {threads}", self.tier),
         }
     }
-}
-
-/// A strategy with its overlap test, as tables call it.
-#[must_use]
-pub fn strategy_name(strategy: Strategy, overlap: Option<Overlap>) -> String {
-    overlap.map_or_else(|| strategy.to_string(), |overlap| format!("{strategy} {overlap}"))
 }
 
 impl fmt::Display for Cell {

@@ -22,6 +22,7 @@ pub mod naive;
 pub mod random;
 pub mod reference_shapes;
 pub mod seeded_draws;
+pub mod world_kind;
 
 pub use answers::{Answers, Predicate};
 pub use compare::{ListCount, compare};

@@ -3,7 +3,8 @@
 
 use sdop::settings::Strategy;
 use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::coverage::{Cell, Coverage, CoveragePart, Judged, ListLedger, strategy_name};
+use sdop_judge::ours::coverage::{Cell, Coverage, CoveragePart, Judged, ListLedger};
+use sdop_judge::ours::world_kind::strategy_name;
 use serde::Serialize;
 
 use crate::commands::output::{Listing, table};

@@ -26,7 +26,7 @@ use crate::ours::configurations::{Mode, rows};
 use crate::ours::coverage::ListLedger;
 use crate::ours::reference_shapes::{InvalidInput, Shapes, grown};
 use sdop::rounding::down;
-use sdop::settings::{CullSettings, Overlap, Strategy};
+use sdop::settings::{CullSettings, Overlap};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop::world::{Body, World};
@@ -34,12 +34,6 @@ use sdop::{Groups, Motion};
 
 /// Balls that are farther apart than this, in f64, certainly do not touch.
 const NEAR: f64 = 1.0e-4;
-
-/// The strategies of compounds' worlds.
-pub(super) fn strategies() -> impl Iterator<Item = Strategy> {
-    let all = Strategy::ALL.iter().copied();
-    all.filter(|strategy| strategy.scheme().culls())
-}
 
 /// A history of compounds by every strategy that has a mode: `modes(n)` are those of row number `n`
 /// of [`rows`].

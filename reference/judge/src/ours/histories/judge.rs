@@ -60,7 +60,8 @@ pub(super) struct Life<'a, W: JudgedWorld> {
     numbers: HashMap<BodyId, u32>,
     /// The bodies of the pairs when events were last read.
     before: Pairs,
-    /// Whether a world says that nothing changes when two bodies are excluded, or included again.
+    /// Whether a world says that nothing changes when two bodies are excluded or included again, or
+    /// gives other pairs in portions or up to a limit.
     is_told_wrong: bool,
     /// With the numbers of bodies and the pairs of that time.
     saved: Option<(W::Saved, HashMap<BodyId, u32>, Pairs)>,

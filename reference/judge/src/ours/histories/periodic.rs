@@ -18,16 +18,13 @@ use super::{Change, ChangeKind, History, HistoryError, WorldKind};
 use crate::ours::configurations::Mode;
 use crate::ours::coverage::ListLedger;
 use crate::ours::reference_shapes::{InvalidInput, Shapes};
+use crate::ours::world_kind::PERIODIC;
 use sdop::boxes::BoxBody;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicWorld};
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop::world::Body;
-
-/// The strategies of periodic worlds of meshes. Their images are bodies like others, so that the
-/// rest follow from worlds without periods.
-pub(super) const STRATEGIES: [Strategy; 2] = [Strategy::Sphere, Strategy::SDopSequential];
 
 /// The least period that is drawn: more than twice the widest box, or ball with its margin.
 const LEAST_OF_BOXES: f64 = 17.0;
@@ -195,7 +192,7 @@ pub fn judge_periodic_meshes(
     };
     let grown = with_margins(shapes)?;
     let mut ledger = ListLedger::default();
-    for strategy in STRATEGIES {
+    for strategy in PERIODIC {
         let meeting = |a: &Body, b: &Body| touching_images(&grown, [a, b], *periods, strategy);
         let fresh = states.iter().map(|state| {
             let spheres = world(Strategy::Sphere, Finder::AllPairs, Mode::plain(Tier::SCALAR))?;

@@ -29,8 +29,36 @@ use crate::ours::reference_shapes::Shapes;
 /// Bodies that an index reports, each with its image.
 type Found = Vec<(BodyId, [i32; 3])>;
 
+/// A body as a query. Meshes have these shapes.
+pub trait AskedBody {
+    fn volume<'a>(&self, shapes: &'a [QueryShape]) -> QueryVolume<'a>;
+}
+
+impl AskedBody for BoxBody {
+    fn volume<'a>(&self, _: &'a [QueryShape]) -> QueryVolume<'a> {
+        self.bounds.into()
+    }
+}
+
+impl AskedBody for PeriodicBox {
+    fn volume<'a>(&self, _: &'a [QueryShape]) -> QueryVolume<'a> {
+        QueryVolume::Box { min: self.min, max: self.max }
+    }
+}
+
+impl AskedBody for Body {
+    fn volume<'a>(&self, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
+        QueryVolume::Shape {
+            shape: &shapes[self.shape as usize],
+            rotation: self.rotation,
+            translation: self.translation,
+            margin: self.margin,
+        }
+    }
+}
+
 /// A world that can be asked about the volumes of its own bodies.
-pub trait AskedWorld: JudgedWorld + Clone {
+pub trait AskedWorld: JudgedWorld<Body: AskedBody> + Clone {
     /// What is asked.
     type Index;
 
@@ -38,8 +66,6 @@ pub trait AskedWorld: JudgedWorld + Clone {
     fn index(mode: Mode) -> Result<Self::Index, HistoryError>;
     /// Whether two bodies are excluded.
     fn excludes(&self, pair: [BodyId; 2]) -> bool;
-    /// A body as a query. Meshes have these shapes.
-    fn volume<'a>(body: &Self::Body, shapes: &'a [QueryShape]) -> QueryVolume<'a>;
     /// What an index finds in the volumes of all bodies; none if it contradicts itself.
     fn ask(
         &self,
@@ -90,10 +116,6 @@ impl AskedWorld for BoxWorld {
         self.is_excluded(a, b)
     }
 
-    fn volume<'a>(body: &BoxBody, _: &'a [QueryShape]) -> QueryVolume<'a> {
-        body.bounds.into()
-    }
-
     fn ask(
         &self,
         index: &mut QueryIndex,
@@ -118,15 +140,6 @@ impl AskedWorld for World {
         self.is_excluded(a, b)
     }
 
-    fn volume<'a>(body: &Body, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
-        QueryVolume::Shape {
-            shape: &shapes[body.shape as usize],
-            rotation: body.rotation,
-            translation: body.translation,
-            margin: body.margin,
-        }
-    }
-
     fn ask(
         &self,
         index: &mut QueryIndex,
@@ -143,7 +156,7 @@ impl<W> AskedWorld for Periodic<W>
 where
     W: AskedWorld + ImageWorld + QuerySource,
     Self: JudgedWorld<Body = <W as ImageWorld>::Body>,
-    <W as ImageWorld>::Body: PeriodicVolume,
+    <W as ImageWorld>::Body: AskedBody,
 {
     type Index = PeriodicIndex<W>;
 
@@ -153,10 +166,6 @@ where
 
     fn excludes(&self, [a, b]: [BodyId; 2]) -> bool {
         self.is_excluded(a, b)
-    }
-
-    fn volume<'a>(body: &<W as ImageWorld>::Body, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
-        body.volume(shapes)
     }
 
     fn ask(
@@ -169,23 +178,6 @@ where
         let found = index.touching_all(volumes)?;
         let hits = |hits: &[PeriodicHit]| hits.iter().map(|hit| (hit.body, hit.image)).collect();
         Ok(Some(found.iter().map(hits).collect()))
-    }
-}
-
-/// A periodic body as a query.
-pub trait PeriodicVolume {
-    fn volume<'a>(&self, shapes: &'a [QueryShape]) -> QueryVolume<'a>;
-}
-
-impl PeriodicVolume for PeriodicBox {
-    fn volume<'a>(&self, _: &'a [QueryShape]) -> QueryVolume<'a> {
-        QueryVolume::Box { min: self.min, max: self.max }
-    }
-}
-
-impl PeriodicVolume for Body {
-    fn volume<'a>(&self, shapes: &'a [QueryShape]) -> QueryVolume<'a> {
-        <World as AskedWorld>::volume(self, shapes)
     }
 }
 
@@ -219,8 +211,7 @@ impl<W: AskedWorld> Listing for Asked<W> {
 
     fn list(&mut self) -> Result<Vec<ReportedPair>, HistoryError> {
         let bodies = self.world.all();
-        let volumes: Vec<_> =
-            bodies.iter().map(|(_, body)| W::volume(body, &self.shapes)).collect();
+        let volumes: Vec<_> = bodies.iter().map(|(_, body)| body.volume(&self.shapes)).collect();
         let mut pairs = Vec::new();
         match self.world.ask(&mut self.index, &bodies, &volumes)? {
             Some(found) => {

@@ -23,6 +23,8 @@ pub struct StoredCase {
     pub pairs: Vec<Option<Vec<[u32; 2]>>>,
     /// Which frames are missing, in words, if some are.
     pub lacks: Option<String>,
+    /// Claims about volumes that its shapes lack.
+    pub without: Vec<Claim>,
 }
 
 /// Reads a case or a record whose lines have at most `most` bytes.
@@ -70,14 +72,11 @@ pub fn read(mut input: impl BufRead, most: u64) -> Result<StoredCase, String> {
     let (there, wanted) = (frames.len(), header.frames.unwrap_or(0).max(next) as usize);
     let lacks = (there == 0 || there < wanted)
         .then(|| format!("the record has {there} of its {} frames", wanted.max(1)));
-    let mut case = fields.case(header.scene, shapes, frames);
-    let has = |claim: &Claim| match claim {
-        Claim::Sphere => header.shapes.iter().all(|shape| shape.ball.is_some()),
-        Claim::OrDop => header.shapes.iter().all(|shape| shape.ordop.is_some()),
-        _ => true,
-    };
-    case.claims.retain(has);
-    Ok(StoredCase { case, pairs, lacks })
+    let case = fields.case(header.scene, shapes, frames);
+    let mut without = Vec::new();
+    without.extend(header.shapes.iter().any(|shape| shape.ball.is_none()).then_some(Claim::Sphere));
+    without.extend(header.shapes.iter().any(|shape| shape.ordop.is_none()).then_some(Claim::OrDop));
+    Ok(StoredCase { case, pairs, lacks, without })
 }
 
 fn parse<T: for<'a> Deserialize<'a>>(number: usize, line: &[u8]) -> Result<T, String> {
