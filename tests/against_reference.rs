@@ -12,7 +12,7 @@ use sdop::pairs::PairList;
 use sdop::settings::{Axes, Budget, CullSettings, Flow, Interest, Overlap, Strategy, Updates};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
-use sdop_judge::ours::{Shapes, reference_shapes};
+use sdop_judge::truth::{Shapes, reference_shapes};
 use sdop_reference as reference;
 use support::{random_bodies, shapes};
 

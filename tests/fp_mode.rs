@@ -10,7 +10,7 @@ use sdop::simd::FpMode;
 use sdop::volume::{DirectionSet, Shape, ShapeSpec};
 use sdop::world::{Body, PairTest, World};
 use sdop::{Aabb, BoxCuller, BoxWorld, Culler, Finder, Strategy};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 const FRAMES: usize = 4;
 

@@ -11,15 +11,15 @@ use sdop::mesh::ReadOptions;
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
-use sdop_judge::every_way::rounds::group;
-use sdop_judge::every_way::{Ledger, Run};
-use sdop_judge::ours::compare::{culler, settings};
-use sdop_judge::ours::configurations::{Mode, Rotation, variants, ways};
-use sdop_judge::ours::coverage::Cell;
-use sdop_judge::ours::hard::{
+use sdop_judge::configuration::coverage::Cell;
+use sdop_judge::configuration::cullers::{culler, settings};
+use sdop_judge::configuration::{Mode, Rotation, variants, ways};
+use sdop_judge::draw::hard::{
     FILES, HardCaseError, HardCaseGroup, HardCases, naive_misses, page, spell, variant_name,
 };
-use sdop_judge::ours::{Answers, Predicate};
+use sdop_judge::truth::{Answers, Predicate};
+use sdop_judge::verify::rounds::group;
+use sdop_judge::verify::{Ledger, Run};
 
 type OrDopChoice = (DirectionSet, Axes);
 
@@ -77,7 +77,7 @@ fn lists(
     mode: Mode,
 ) -> (Vec<Vec<[u32; 2]>>, sdop::counters::Counters) {
     let settings = settings(way.strategy, way, frames[0].len());
-    let mut culler = culler(&cases.shapes.built, &frames[0], &settings, mode).unwrap();
+    let mut culler = culler(&settings, mode).build(&cases.shapes.built, &frames[0]).unwrap();
     let lists = frames.iter().map(|frame| culler.cull(frame).unwrap().iter().collect()).collect();
     (lists, *culler.counters())
 }

@@ -13,14 +13,14 @@ use sdop::bodies::Bodies;
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
-use sdop_judge::every_way::{Ledger, Run};
-use sdop_judge::ours::arbitrary;
-use sdop_judge::ours::configurations::{Mode, Rotation, variants, ways};
-use sdop_judge::ours::contact::{Contact, PlacedShape};
-use sdop_judge::ours::coverage::Cell;
-use sdop_judge::ours::forms::{self, Form};
-use sdop_judge::ours::seeded_draws::add;
-use sdop_judge::ours::{Answers, Predicate, Shapes, compare};
+use sdop_judge::configuration::coverage::Cell;
+use sdop_judge::configuration::{Mode, Rotation, cullers, variants, ways};
+use sdop_judge::draw::arbitrary;
+use sdop_judge::draw::bodies::add;
+use sdop_judge::draw::contact::{Contact, PlacedShape};
+use sdop_judge::draw::forms::{self, Form};
+use sdop_judge::truth::{Answers, Predicate, Shapes, compare};
+use sdop_judge::verify::{Ledger, Run};
 
 /// Forms and sizes that the draws choose from: round and flat, long and short, centred and not.
 static SHAPES: LazyLock<Vec<((DirectionSet, Axes), Shapes)>> = LazyLock::new(|| {
@@ -168,13 +168,13 @@ fn suite_covers_every_tier() {
 fn missing_pair_is_caught() {
     let (variant, shapes) = &SHAPES[0];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let spec = sdop_judge::ours::seeded_draws::ContactSpec::default();
-    let bodies = sdop_judge::ours::seeded_draws::probe(shapes, &spec, 0, 32, &mut rng);
+    let spec = sdop_judge::draw::bodies::ContactSpec::default();
+    let bodies = sdop_judge::draw::bodies::probe(shapes, &spec, 0, 32, &mut rng);
     let answers = Answers::judge(shapes, &bodies, variant.0, &Predicate::ALL).unwrap();
     for way in ways(variant.0, variant.1) {
-        let settings = compare::settings(way.strategy, &way, bodies.len());
+        let settings = cullers::settings(way.strategy, &way, bodies.len());
         let mode = Mode::plain(Tier::SCALAR);
-        let mut culler = compare::culler(&shapes.built, &bodies, &settings, mode).unwrap();
+        let mut culler = cullers::culler(&settings, mode).build(&shapes.built, &bodies).unwrap();
         let list = culler.cull(&bodies).unwrap().sorted();
         let (count, missed, _) = compare(&answers, &settings, &list);
         assert_eq!((count.missed, missed), (0, vec![]));

@@ -34,7 +34,19 @@ const LIBRARY: &[&str] = &[
     "periodic",
     "c",
 ];
-const JUDGE: &[&str] = &["contestant", "json", "record", "ours", REST, "every_way"];
+const JUDGE: &[&str] = &[
+    "claim",
+    "contestant",
+    "json",
+    "record",
+    "case",
+    "truth",
+    "configuration",
+    "draw",
+    "history",
+    REST,
+    "verify",
+];
 const BENCH: &[&str] = &[
     "number",
     "percentiles",
@@ -305,8 +317,8 @@ fn upward_imports_are_found() {
     }
     assert!(!wrong(BENCH, "sweep", "use crate::{number, scene};").is_empty());
     assert!(wrong(BENCH, "commands", "use crate::{number, scene};").is_empty());
-    assert!(!wrong(JUDGE, "ours", "use crate::case::Case;").is_empty());
-    assert!(wrong(JUDGE, "case", "use crate::{ours::Shapes, claim::Claim};").is_empty());
+    assert!(!wrong(JUDGE, "truth", "use crate::draw::Contact;").is_empty());
+    assert!(wrong(JUDGE, "score", "use crate::{truth::Shapes, claim::Claim};").is_empty());
     let below = "// see crate::world\nuse crate::volume::Shape;";
     assert!(wrong(LIBRARY, "bodies", below).is_empty());
     assert_eq!(wrong(LIBRARY, "update", "use crate::tools::trick;").len(), 1);

@@ -10,12 +10,12 @@ use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop_bench::scene::SceneFile;
 use sdop_bench::verify::shrink::SmallestScene;
-use sdop_judge::every_way::rounds::judge_and_check;
-use sdop_judge::every_way::{Failure, Ledger};
-use sdop_judge::ours::configurations::{Mode, Rotation};
-use sdop_judge::ours::forms::{self, Form};
-use sdop_judge::ours::seeded_draws::crowd;
-use sdop_judge::ours::{Predicate, Shapes};
+use sdop_judge::configuration::{Mode, Rotation};
+use sdop_judge::draw::bodies::crowd;
+use sdop_judge::draw::forms::{self, Form};
+use sdop_judge::truth::{Predicate, Shapes};
+use sdop_judge::verify::rounds::judge_and_check;
+use sdop_judge::verify::{Failure, Ledger};
 use sdop_judge::{Case, Frame};
 
 fn lying_crowd() -> (Shapes, Ledger) {

@@ -2,7 +2,7 @@
 //! finder_borders -- SCENES`.
 //!
 //! Runs one search per thread, each with its own seeds, over the scenes of
-//! `sdop_judge::ours::borders`. Prints a Markdown table, and fails if a finder's list differs from
+//! `sdop_judge::draw::borders`. Prints a Markdown table, and fails if a finder's list differs from
 //! that of all pairs or a finder panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::simd::Tier;
-use sdop_judge::ours::borders::{Borders, bar};
+use sdop_judge::draw::borders::{Borders, bar};
 
 /// The default number of scenes.
 const SCENES: u64 = 1_000_000;

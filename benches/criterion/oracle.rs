@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use sdop_bench::measure::turns::median;
-use sdop_judge::ours::Shapes;
+use sdop_judge::truth::Shapes;
 use sdop_reference::Pose;
 use sdop_reference::exact::view::View;
 use sdop_reference::exact::{Path, judge, mesh::Mesh};

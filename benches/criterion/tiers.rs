@@ -14,7 +14,7 @@ use criterion::Criterion;
 use sdop::culler::Culler;
 use sdop::simd::Tier;
 use sdop_bench::measure::turns::median;
-use sdop_judge::ours::{Shapes, reference_shapes};
+use sdop_judge::truth::{Shapes, reference_shapes};
 use sdop_reference as reference;
 
 /// Seconds an iteration, sample by sample.

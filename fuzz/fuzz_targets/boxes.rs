@@ -4,8 +4,8 @@
 
 use libfuzzer_sys::fuzz_target;
 use sdop::Tier;
-use sdop_judge::ours::boxes::{draw, judge};
-use sdop_judge::ours::configurations::Rotation;
+use sdop_judge::draw::boxes::{draw, judge};
+use sdop_judge::configuration::Rotation;
 
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {

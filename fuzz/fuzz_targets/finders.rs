@@ -5,7 +5,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use sdop::Tier;
-use sdop_judge::ours::borders::{Borders, bar};
+use sdop_judge::draw::borders::{Borders, bar};
 
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {

@@ -9,9 +9,9 @@ use std::sync::OnceLock;
 use libfuzzer_sys::fuzz_target;
 use sdop::Tier;
 use sdop::settings::{CullSettings, Overlap};
-use sdop_judge::ours::Shapes;
-use sdop_judge::ours::configurations::{Mode, rows, variants};
-use sdop_judge::ours::histories::{
+use sdop_judge::truth::Shapes;
+use sdop_judge::configuration::{Mode, rows, variants};
+use sdop_judge::history::{
     Repeated, Robots, draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_compounds,
     judge_meshes, judge_periodic_boxes, judge_periodic_meshes,
 };

@@ -7,7 +7,7 @@ use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use sdop::mesh::ReadOptions;
 use sdop::{Axes, DirectionSet, Origin, ShapeSpec, TriangleMesh};
-use sdop_judge::ours::reference_shapes::Shapes;
+use sdop_judge::truth::reference_shapes::Shapes;
 use sdop_reference as reference;
 
 use super::arrays::{matrix, whole_rows, wide_rows};

@@ -8,7 +8,7 @@ use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Motion, Tier, WorldError};
 use crate::boxes::lives::{drawn, pairs};
 use crate::boxes::misuse::wrong;
 use crate::boxes::scenes::{Kind, boxes, moved};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 /// More boxes than are checked at once, so many that columns end within a vector.
 const COUNT: usize = 1203;

@@ -7,7 +7,7 @@ use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Finder, Groups, Motion};
 
 use crate::boxes::scenes::{Kind, boxes, expected};
 use crate::histories::{HistoryKind, live};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 pub fn drawn(random: &mut Random, kind: Kind) -> BoxBody {
     let bounds = boxes(kind, 8, random)[random.below(8)];

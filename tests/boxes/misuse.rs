@@ -11,7 +11,7 @@
 use sdop::{Aabb, BoxCuller, BoxWorld, CullError, Finder, Groups, WorldError};
 
 use crate::boxes::scenes::{Kind, boxes, expected};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 /// Invalid boxes.
 pub fn wrong() -> Vec<Aabb> {

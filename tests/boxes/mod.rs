@@ -12,7 +12,7 @@ use sdop::boxes::BoxCullerBuilder;
 use sdop::{Aabb, BoxCuller, Finder, Groups, Tier};
 
 use scenes::{Kind, boxes, expected, moved};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 /// Every way to find the same pairs: finders, tiers, threads.
 fn ways() -> Vec<(String, BoxCuller)> {

@@ -5,7 +5,7 @@ use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, BoxWorld, Groups, Motion};
 
 use crate::boxes::scenes::{Kind, boxes, expected, moved};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 fn cube(x: f32) -> Aabb {
     Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0])

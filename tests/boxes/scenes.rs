@@ -2,7 +2,7 @@
 
 use sdop::{Aabb, Groups};
 
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 /// What boxes are like.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@ use sdop::compound::{Compound, Part, PartCuller, PartPair};
 use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{Body, BodyId, ProceduralShape, Shape, World};
 
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 

@@ -5,7 +5,7 @@ use sdop::mesh::shapes::ProceduralShape;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_bench::tradeoff::truth::ExactJudge;
-use sdop_judge::ours::compare::settings;
+use sdop_judge::configuration::cullers::settings;
 
 use crate::domain::{pairs_alone, pairs_on, support};
 

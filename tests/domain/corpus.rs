@@ -2,8 +2,8 @@
 
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet};
-use sdop_judge::ours::compare::settings;
-use sdop_judge::ours::hard::{FILES, HardCaseGroup};
+use sdop_judge::configuration::cullers::settings;
+use sdop_judge::draw::hard::{FILES, HardCaseGroup};
 
 use crate::domain::{pairs_alone, pairs_on};
 

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
 use sdop::settings::{Finder, Strategy};
 use sdop::simd::Tier;
-use sdop_judge::ours::borders::{Borders, bar};
+use sdop_judge::draw::borders::{Borders, bar};
 
 use super::scenes::Scene;
 use super::{compare, run, settings};

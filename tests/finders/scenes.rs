@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{DirectionSet, Origin, Shape, ShapeSpec};
-use sdop_judge::ours::seeded_draws::rotation;
+use sdop_judge::draw::bodies::rotation;
 
 use crate::finders::support::{self, shapes};
 

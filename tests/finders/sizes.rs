@@ -5,7 +5,7 @@ use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{Origin, Shape, ShapeSpec};
 use sdop::{Aabb, BoxCuller, Culler, Finder, Strategy};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 /// Frames: the first ones, and those in which lists are tried again.
 const FRAMES: usize = 20;

@@ -11,9 +11,9 @@ use pairs::{grown, is_seen, listed};
 use sdop::rounding::pose::{rotation, transform};
 use sdop::settings::Overlap;
 use sdop_judge::answer::{Answer, StopReason};
-use sdop_judge::ours::answers::Predicate;
-use sdop_judge::ours::naive::naive_overlap;
-use sdop_judge::ours::reference_shapes::Shapes;
+use sdop_judge::truth::answers::Predicate;
+use sdop_judge::truth::naive::naive_overlap;
+use sdop_judge::truth::reference_shapes::Shapes;
 use sdop_judge::truth::{Truth, boxes_meet, boxes_near, images};
 use sdop_judge::{Bodies, BodyPart, Case, Claim, Frame, Subject, WorldBox};
 

@@ -1,15 +1,15 @@
 //! Our cullers, worlds and indexes keep every claim, in each of their configurations.
 
 use sdop::simd::Tier;
-use sdop_judge::every_way::subject::EveryWay;
-use sdop_judge::ours::configurations::Rotation;
+use sdop_judge::configuration::Rotation;
+use sdop_judge::verify::subject::OwnCullers;
 use sdop_judge::{Claim, Conclusion, JudgeError, Options, PairCounts, examine};
 
 /// `sdop verify --claims X` runs all cases; here are those in which most of them differ.
 #[test]
 fn our_configurations_pass_every_claim() {
     let tiers = [Tier::available(), vec![Tier::SCALAR_FLUSH]].concat();
-    let ours = EveryWay::new(Rotation::new(&tiers));
+    let ours = OwnCullers::new(Rotation::new(&tiers));
     for &claim in Claim::ALL {
         let own = format!("{claim}/*");
         let patterns: &[&str] = match claim {

@@ -14,7 +14,7 @@ use crate::forms;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicPair, PeriodicWorld};
 use sdop::{Body, BodyId, Groups, Motion};
 
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 

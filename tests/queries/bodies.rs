@@ -9,7 +9,7 @@ use sdop_reference::exact::query::{ExactLine, ball_meets_mesh, is_no_later, line
 
 use crate::queries::forms::BOX_FACES;
 use crate::queries::{UNTURNED, contains, cube, mesh, reference, shapes, tiers};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 fn pose_of(body: &Body) -> Pose {
     Pose::from_f64(body.rotation, body.translation).unwrap()

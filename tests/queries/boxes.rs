@@ -6,7 +6,7 @@ use sdop_reference::exact::query::{ExactLine, ball_meets_box, is_no_later, line_
 
 use crate::queries::scenes::{Kind, boxes};
 use crate::queries::tiers;
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 /// Closer than that, relative to the coordinates, rounding may report what only nearly touches.
 const NEAR: f64 = 1e-12;

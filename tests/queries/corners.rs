@@ -6,7 +6,7 @@ use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{Body, Line, QueryIndex, Shape, TriangleMesh, World};
 
 use crate::queries::UNTURNED;
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 /// A step of all places.
 const STEP: f64 = 1.0 / 1024.0;

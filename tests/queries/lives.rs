@@ -5,7 +5,7 @@ use sdop::{Aabb, Body, BodyId, BoxWorld, Line, QueryIndex, QueryVolume, World};
 
 use crate::histories::{HistoryKind, live};
 use crate::queries::{UNTURNED, cube};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random) {
     let mut fresh = QueryIndex::new();

@@ -9,7 +9,7 @@ use sdop_reference::exact::meeting::meet;
 
 use crate::queries::scenes::{Kind, boxes};
 use crate::queries::{UNTURNED, cube, reference, shapes, tiers};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 fn box_world(boxes: &[Aabb]) -> BoxWorld {
     let mut world = BoxWorld::new();

@@ -4,10 +4,10 @@
 use std::ops::Range;
 
 use sdop::Tier;
-use sdop_judge::every_way::rounds::history;
-use sdop_judge::ours::configurations::{Rotation, variants};
+use sdop_judge::configuration::{Rotation, variants};
+use sdop_judge::verify::rounds::history;
 
-pub use sdop_judge::every_way::rounds::HistoryKind;
+pub use sdop_judge::verify::rounds::HistoryKind;
 
 /// Long-lived sets of a kind live through the histories of each seed, for each or-DOP.
 pub fn live(kind: HistoryKind, seeds: Range<u64>) {

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use sdop::bodies::Bodies;
 use sdop::mesh::shapes::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
-use sdop_judge::ours::seeded_draws::rotation;
+use sdop_judge::draw::bodies::rotation;
 
 /// Every procedural shape at bounding radius 1, and an L-shape about its file's own origin, far off
 /// its ball's centre.

@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, OrDop, Origin, Shape, ShapeSpec};
-use sdop_judge::ours::configurations::variants;
+use sdop_judge::configuration::variants;
 
 use super::exact::{dot, integer, point};
 

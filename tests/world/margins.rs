@@ -6,7 +6,7 @@ use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Strategy};
 use sdop::volume::{Axes, DirectionSet, Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Motion, World};
-use sdop_judge::ours::configurations::{variants, ways};
+use sdop_judge::configuration::{variants, ways};
 
 /// A cube of edge 2.
 fn cube(directions: DirectionSet, axes: Axes) -> Shape {

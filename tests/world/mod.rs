@@ -18,7 +18,7 @@ mod turned;
 
 use crate::forms;
 use crate::histories::{HistoryKind, live};
-use sdop_judge::ours::random::Random;
+use sdop_judge::draw::random::Random;
 
 use sdop::culler::Culler;
 use sdop::mesh::ProceduralShape;

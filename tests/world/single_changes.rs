@@ -5,7 +5,7 @@ use sdop::mesh::ProceduralShape;
 use sdop::settings::{Budget, CullSettings, Strategy};
 use sdop::volume::{Shape, ShapeSpec};
 use sdop::world::{Body, BodyId, Groups, Motion, World};
-use sdop_judge::ours::configurations::{variants, ways as judged_ways};
+use sdop_judge::configuration::{variants, ways as judged_ways};
 
 use super::{Random, shapes, world_of};
 

@@ -5,7 +5,7 @@ use sdop::mesh::TriangleMesh;
 use sdop::periodic::PeriodicWorld;
 use sdop::query::QueryShape;
 use sdop::{QueryIndex, QueryVolume};
-use sdop_judge::ours::reference_shapes::Shapes;
+use sdop_judge::truth::reference_shapes::Shapes;
 use sdop_reference::{WidePose, wide};
 
 use super::*;

@@ -15,10 +15,10 @@ use sdop_bench::sweep::MergedUnits;
 use sdop_bench::verify::shrink::SmallestScene;
 pub use sdop_bench::verify::units::NAME;
 use sdop_bench::verify::units::{Settings, UnitOrigin, Verification};
-use sdop_judge::every_way::subject::EveryWay;
-use sdop_judge::every_way::{Failure, Ledger};
-use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::hard::{FILES, HardCaseGroup, page};
+use sdop_judge::configuration::Rotation;
+use sdop_judge::draw::hard::{FILES, HardCaseGroup, page};
+use sdop_judge::verify::subject::OwnCullers;
+use sdop_judge::verify::{Failure, Ledger};
 use sdop_judge::{Claim, Options, examine};
 
 use super::files::{self, ReadArgs};
@@ -123,7 +123,7 @@ fn judged(args: &Args, claim: Claim) -> miette::Result<Outcome> {
         time: args.time.map(Duration::from_secs),
         ..Options::default()
     };
-    let ours = EveryWay::new(Rotation::new(&tiers(args)));
+    let ours = OwnCullers::new(Rotation::new(&tiers(args)));
     let verdict = examine(&ours, &options, |_, _| {}).into_diagnostic()?;
     emit_verdict(args.format.into(), &verdict)?;
     Ok(Outcome::from(&verdict))

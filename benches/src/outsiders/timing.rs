@@ -28,9 +28,9 @@ use sdop_judge::answer::{Answer, StopReason};
 use sdop_judge::case::{Case, Frame};
 use sdop_judge::claim::Claim;
 use sdop_judge::contestant::WorldBox;
-use sdop_judge::ours::reference_shapes::InvalidInput;
 use sdop_judge::score::{Outcome, judge_answers};
 use sdop_judge::subject::Subject;
+use sdop_judge::truth::reference_shapes::InvalidInput;
 
 /// Why nothing was timed.
 #[derive(Debug, thiserror::Error)]

@@ -1,4 +1,4 @@
-//! Verifies the optimised culler by the exact reference ([`sdop_judge::ours`]) on scenes, and
+//! Verifies the optimised culler by the exact reference ([`sdop_judge::truth`]) on scenes, and
 //! divides the work among processes.
 //!
 //! If a pair is missed, [`shrink`] makes the smallest scene that shows it.

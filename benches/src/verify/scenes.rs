@@ -10,10 +10,10 @@ use thiserror::Error;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
 use sdop::bodies::Bodies;
-use sdop_judge::every_way::{Ledger, RoundError, Run};
-use sdop_judge::ours::answers::{Answers, Predicate};
-use sdop_judge::ours::configurations::{Rotation, rows};
-use sdop_judge::ours::reference_shapes::Shapes;
+use sdop_judge::configuration::{Rotation, rows};
+use sdop_judge::truth::answers::{Answers, Predicate};
+use sdop_judge::truth::reference_shapes::Shapes;
+use sdop_judge::verify::{Ledger, RoundError, Run};
 
 /// Frames that are judged at once, to bound memory. A culler is used for one block, and each block
 /// takes the next modes of the rotation: a hundred frames test every configuration in twenty modes.

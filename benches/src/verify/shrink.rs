@@ -9,10 +9,10 @@ use crate::scene::SceneFile;
 use sdop::files;
 use sdop::settings::CullSettings;
 use sdop_judge::Frame;
-use sdop_judge::every_way::Failure;
-use sdop_judge::ours::compare::settings;
+use sdop_judge::configuration::cullers::settings;
 use sdop_judge::report::{case_file, scene};
 use sdop_judge::shrink;
+use sdop_judge::verify::Failure;
 
 /// How long a failure is made smaller.
 const SHRINK_TIME: Duration = Duration::from_secs(60);

@@ -14,13 +14,13 @@ use crate::scene::Scene;
 use crate::sweep::{Header, Sweep, digest};
 use sdop::settings::{Axes, DirectionSet, Overlap, Strategy};
 use sdop::simd::Tier;
-use sdop_judge::every_way::rounds::{SeedSource, boxes, group, histories, round};
-use sdop_judge::every_way::{Ledger, LedgerKey};
-use sdop_judge::ours::answers::Predicate;
-use sdop_judge::ours::compare::ListCount;
-use sdop_judge::ours::configurations::{Rotation, variants};
-use sdop_judge::ours::coverage::{Cell, Coverage, ListLedger};
-use sdop_judge::ours::hard::{FILES, HardCaseGroup};
+use sdop_judge::configuration::coverage::{Cell, Coverage, ListLedger};
+use sdop_judge::configuration::{Rotation, variants};
+use sdop_judge::draw::hard::{FILES, HardCaseGroup};
+use sdop_judge::truth::answers::Predicate;
+use sdop_judge::truth::compare::ListCount;
+use sdop_judge::verify::rounds::{SeedSource, boxes, group, histories, round};
+use sdop_judge::verify::{Ledger, LedgerKey};
 
 /// The name in its files.
 pub const NAME: &str = "verify";

@@ -2,14 +2,13 @@
 
 use super::claim::Claim;
 use crate::contestant::{BodyPart, Filter, WorldBox};
-use crate::ours::reference_shapes::InvalidInput;
 use sdop::Motion;
 use sdop::bodies::Bodies;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicError};
 use sdop::rounding::pose::{COORDINATE_ERROR, rotation, transform};
 use sdop::rounding::{down, up};
 use sdop::volume::Shape;
-use sdop_reference::WidePose;
+use sdop_reference::{InvalidInput, WidePose};
 
 /// One frame.
 #[derive(Clone, Debug, Default, PartialEq)]

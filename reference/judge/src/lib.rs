@@ -35,12 +35,13 @@ pub mod broadmark;
 pub mod case;
 pub mod catalogue;
 pub mod claim;
+pub mod configuration;
 pub mod contestant;
 pub mod counter_example;
-pub mod every_way;
+pub mod draw;
+pub mod history;
 #[cfg(feature = "programs")]
 pub mod json;
-pub mod ours;
 #[cfg(feature = "programs")]
 pub mod process;
 #[cfg(feature = "programs")]
@@ -55,6 +56,7 @@ pub mod truth;
 #[cfg(feature = "programs")]
 pub mod vectors;
 pub mod verdict;
+pub mod verify;
 #[cfg(feature = "programs")]
 pub mod wire;
 pub mod witness;

@@ -18,7 +18,7 @@ use super::shrink::shrink_some;
 use super::subject::{ContestantFactory, CullFunction, PairwiseTest, Scene, Subject};
 use super::verdict::{CaseVerdict, Verdict};
 use crate::contestant::Contestant;
-use crate::ours::reference_shapes::InvalidInput;
+use crate::truth::reference_shapes::InvalidInput;
 
 /// The error if nothing could be judged.
 #[derive(Debug, thiserror::Error)]

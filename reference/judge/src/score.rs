@@ -10,7 +10,7 @@ use super::claim::Claim;
 use super::subject::Subject;
 use super::truth::{Truth, boxes_meet, images};
 use crate::contestant::WorldBox;
-use crate::ours::reference_shapes::InvalidInput;
+use crate::truth::reference_shapes::InvalidInput;
 use sdop::rounding::period::wrap;
 
 /// Pairs counted.

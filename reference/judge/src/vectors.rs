@@ -10,8 +10,8 @@ use super::catalogue::{CaseGroup, CatalogueError, groups};
 use super::report::NamedFile;
 use super::truth::Truth;
 use crate::json;
-use crate::ours::reference_shapes::InvalidInput;
 use crate::record::ShapeLine;
+use crate::truth::reference_shapes::InvalidInput;
 
 /// What the files' versions count.
 pub const VERSION: u32 = 1;

@@ -4,11 +4,11 @@
 mod coverage;
 
 use sdop_judge::Conclusion;
-use sdop_judge::every_way::{Ledger, LedgerKey};
-use sdop_judge::ours::Predicate;
-use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::coverage::{Coverage, ListLedger};
-use sdop_judge::ours::world_kind::strategy_name;
+use sdop_judge::configuration::Rotation;
+use sdop_judge::configuration::coverage::{Coverage, ListLedger};
+use sdop_judge::configuration::world_kind::strategy_name;
+use sdop_judge::truth::Predicate;
+use sdop_judge::verify::{Ledger, LedgerKey};
 use serde::Serialize;
 
 use crate::commands::output::table;
@@ -211,7 +211,7 @@ impl Report {
     }
 }
 
-fn strategy((row, count): (&LedgerKey, &sdop_judge::ours::ListCount)) -> StrategyReport {
+fn strategy((row, count): (&LedgerKey, &sdop_judge::truth::ListCount)) -> StrategyReport {
     let rate = |part: u64, of: u64| (of > 0).then(|| 1e6 * part as f64 / of as f64);
     // What a budget leaves untested is no rounding margin.
     let budgeted = row.strategy.scheme().has_budget();

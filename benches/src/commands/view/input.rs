@@ -9,7 +9,7 @@ use sdop::Tier;
 use sdop_bench::remedy::OrReport as _;
 use sdop_bench::view::ShownRun;
 use sdop_judge::answer::{Answer, StopReason, sorted};
-use sdop_judge::ours::hard::HardCaseGroup;
+use sdop_judge::draw::hard::HardCaseGroup;
 use sdop_judge::record::RecordError;
 use sdop_judge::wire::{Wire, ndjson::StoredCase};
 use sdop_judge::{Case, Claim};

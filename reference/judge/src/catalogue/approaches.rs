@@ -5,7 +5,7 @@ use rand::{Rng, RngExt};
 
 use super::DrawnCase;
 use crate::case::Frame;
-use crate::ours::forms::{self, Form, FormError};
+use crate::draw::forms::{self, Form, FormError};
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet};
 

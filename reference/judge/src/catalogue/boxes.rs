@@ -6,7 +6,7 @@ use super::exact_touches::WholeTurn;
 use super::{CatalogueError, DrawnCase};
 use crate::case::Frame;
 use crate::contestant::WorldBox;
-use crate::ours::forms::Form;
+use crate::draw::forms::Form;
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet, Shape};
 

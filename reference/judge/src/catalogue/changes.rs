@@ -9,7 +9,7 @@ use rand::{Rng, RngExt};
 use super::crowds::CrowdKind;
 use super::{CatalogueError, DrawnCase};
 use crate::case::{Frame, picked};
-use crate::ours::forms::Form;
+use crate::draw::forms::Form;
 use glam::Vec3;
 use sdop::bodies::Bodies;
 use sdop::mesh::TriangleMesh;

@@ -6,9 +6,9 @@ use rand::{Rng, RngExt};
 
 use super::DrawnCase;
 use crate::case::Frame;
-use crate::ours::contact::ContactKind;
-use crate::ours::forms::{self, Form, FormError};
-use crate::ours::seeded_draws::{ContactSpec, TurnKind, probe};
+use crate::draw::bodies::{ContactSpec, TurnKind, probe};
+use crate::draw::contact::ContactKind;
+use crate::draw::forms::{self, Form, FormError};
 use sdop::volume::{Axes, DirectionSet};
 
 /// Small forms, flat ones among them.

@@ -5,9 +5,9 @@ use rand::{Rng, RngExt};
 use super::DrawnCase;
 use super::contacts::forms;
 use crate::case::{Frame, picked};
-use crate::ours::forms::{self, Form, FormError};
-use crate::ours::reference_shapes::Shapes;
-use crate::ours::seeded_draws::{crowd as uniform, rotation};
+use crate::draw::bodies::{crowd as uniform, rotation};
+use crate::draw::forms::{self, Form, FormError};
+use crate::truth::reference_shapes::Shapes;
 use sdop::bodies::Bodies;
 use sdop::volume::{Axes, DirectionSet, Shape};
 

@@ -25,11 +25,11 @@ use rand_chacha::ChaCha8Rng;
 
 use super::case::{Case, Frame, matches};
 use super::claim::Claim;
-use crate::ours::contact::ContactKind;
-use crate::ours::forms::FormError;
-use crate::ours::hard::{self, HardCaseError, Recipe};
-use crate::ours::reference_shapes::InvalidInput;
-use crate::ours::seeded_draws::TurnKind;
+use crate::draw::bodies::TurnKind;
+use crate::draw::contact::ContactKind;
+use crate::draw::forms::FormError;
+use crate::draw::hard::{self, HardCaseError, Recipe};
+use crate::truth::reference_shapes::InvalidInput;
 use sdop::mesh::MeshError;
 use sdop::volume::{Axes, DirectionSet, Shape, VolumeError};
 

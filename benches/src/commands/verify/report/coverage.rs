@@ -2,9 +2,9 @@
 //! a mode or a finder that was left out shows in one of them.
 
 use sdop::settings::Strategy;
-use sdop_judge::ours::configurations::Rotation;
-use sdop_judge::ours::coverage::{Cell, Coverage, CoveragePart, Judged, ListLedger};
-use sdop_judge::ours::world_kind::strategy_name;
+use sdop_judge::configuration::Rotation;
+use sdop_judge::configuration::coverage::{Cell, Coverage, CoveragePart, Judged, ListLedger};
+use sdop_judge::configuration::world_kind::strategy_name;
 use serde::Serialize;
 
 use crate::commands::output::{Listing, table};
