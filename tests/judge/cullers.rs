@@ -1,14 +1,11 @@
 //! Cullers with one flaw each, and some without.
 
-use std::collections::HashMap;
-
 use sdop::bodies::Bodies;
-use sdop::boxes::BoxBody;
 use sdop::culler::Culler;
 use sdop::rounding::pose::{rotation, transform};
 use sdop::settings::Strategy;
 use sdop::volume::Shape;
-use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Groups, Motion};
+use sdop::{Aabb, BoxCuller};
 use sdop_judge::{Contestant, Frame, Scene, WorldBox};
 
 /// Our own culler.
@@ -33,11 +30,6 @@ impl Contestant for Ours {
     }
 }
 
-/// Corners as the judge has them.
-fn aabb(&[x0, y0, z0, x1, y1, z1]: &WorldBox) -> Aabb {
-    Aabb::new([x0, y0, z0], [x1, y1, z1])
-}
-
 /// Our culler of given boxes, which all may move for it.
 #[derive(Default)]
 pub struct Boxes {
@@ -50,57 +42,13 @@ impl Contestant for Boxes {
         self.culler.cull(&self.boxes).unwrap();
     }
     fn boxes(&mut self, boxes: &[WorldBox]) {
+        let aabb = |&[x0, y0, z0, x1, y1, z1]: &WorldBox| Aabb::new([x0, y0, z0], [x1, y1, z1]);
         self.boxes = boxes.iter().map(aabb).collect();
     }
     fn pairs(&self) -> Vec<[u32; 2]> {
         self.culler.pairs().iter().collect()
     }
     fn change(&mut self, _bodies: &Bodies, _was: &[Option<u32>]) -> bool {
-        true
-    }
-}
-
-/// Our world of given boxes.
-#[derive(Default)]
-pub struct BoxesOfAWorld {
-    world: BoxWorld,
-    boxes: Vec<Aabb>,
-    /// Who is which body; those to come have none yet.
-    ids: Vec<Option<BodyId>>,
-}
-
-impl Contestant for BoxesOfAWorld {
-    fn frame(&mut self, bodies: &Bodies) {
-        self.ids.resize(bodies.len(), None);
-        for (i, id) in self.ids.iter_mut().enumerate() {
-            let body = BoxBody {
-                bounds: self.boxes[i],
-                motion: if bodies.dynamic[i] { Motion::Dynamic } else { Motion::Fixed },
-                groups: Groups::ALL,
-            };
-            match *id {
-                Some(id) => self.world.set(id, body).unwrap(),
-                None => *id = Some(self.world.insert(body).unwrap()),
-            }
-        }
-        self.world.cull().unwrap();
-    }
-    fn boxes(&mut self, boxes: &[WorldBox]) {
-        self.boxes = boxes.iter().map(aabb).collect();
-    }
-    fn pairs(&self) -> Vec<[u32; 2]> {
-        let numbers: HashMap<_, u32> = self.ids.iter().copied().zip(0..).collect();
-        let number = |id| numbers[&Some(id)];
-        let pairs = self.world.pairs().map(|pair| pair.map(number));
-        pairs.map(|[i, j]| [i.min(j), i.max(j)]).collect()
-    }
-    fn change(&mut self, _bodies: &Bodies, was: &[Option<u32>]) -> bool {
-        let stay: Vec<_> =
-            was.iter().map(|was| was.and_then(|was| self.ids[was as usize])).collect();
-        for id in self.ids.iter().filter(|id| !stay.contains(id)) {
-            self.world.remove(id.unwrap()).unwrap();
-        }
-        self.ids = stay;
         true
     }
 }

@@ -2,13 +2,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use sdop::boxes::BoxWorld;
 use sdop::settings::Strategy;
 use sdop_judge::answer::AnswerError;
+use sdop_judge::history::contestant::Living;
 use sdop_judge::{Claim, Conclusion, Outcome, Scene, Verdict, judge, judge_pair_test};
 
-use crate::judge::cullers::{
-    All, Boxes, BoxesOfAWorld, Flaw, Ours, balls_meet, balls_meet_without_margin,
-};
+use crate::judge::cullers::{All, Boxes, Flaw, Ours, balls_meet, balls_meet_without_margin};
 
 fn all(flaw: Flaw) -> impl Fn(&Scene<'_>) -> All + Sync {
     move |_| All { flaw, bodies: 0, runs: 0 }
@@ -49,7 +49,7 @@ fn our_strategies_pass_their_claims() {
 #[test]
 fn given_boxes_are_reported_exactly() {
     let culler = judge(|_: &Scene<'_>| Boxes::default()).claims(Claim::Aabb);
-    let world = judge(|_: &Scene<'_>| BoxesOfAWorld::default()).claims(Claim::Aabb);
+    let world = judge(|_: &Scene<'_>| Living::new(BoxWorld::new())).claims(Claim::Aabb);
     let [culler, world] = [culler.seed(5).run(), world.seed(5).run()].map(Result::unwrap);
     for verdict in [&culler, &world] {
         let mut cases = verdict.cases.iter();

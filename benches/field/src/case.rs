@@ -27,7 +27,7 @@ pub struct Case {
     pub bodies: usize,
     /// Threads that each engine may use.
     pub threads: usize,
-    /// Bodies that move in a frame.
+    /// The number of bodies that move per frame.
     pub movers: usize,
     /// Which ones move, if not all do.
     pub motion: Option<Motion>,
@@ -35,7 +35,7 @@ pub struct Case {
     pub meshes: bool,
     /// What is asked, and how often.
     pub question: Option<Question>,
-    /// Questions of a frame.
+    /// Questions per frame.
     pub questions: usize,
     /// Frames in which engines are alone: pairs are checked and memory is counted.
     pub checked: usize,
@@ -114,7 +114,7 @@ impl Case {
         }
     }
 
-    /// How many questions a frame asks; without questions, 1.
+    /// The number of questions per frame, 1 if a frame has none.
     pub fn questions_asked(&self) -> usize {
         match self.question {
             None | Some(Question::Sets) => 1,

@@ -16,7 +16,7 @@ use crate::frame::{Frame, Slabs};
 struct Shim {
     /// Makes it from the first frame's boxes; null if it can't be made.
     new: unsafe extern "C" fn(*const Slabs, usize, u32, u32) -> *mut c_void,
-    /// Finds the pairs of a frame: changed bodies (null: all) and their boxes.
+    /// Finds the pairs after bodies have moved: their numbers (null: all bodies) and new boxes.
     frame: unsafe extern "C" fn(*mut c_void, *const u32, *const Slabs, usize),
     /// The pairs of the last frame and their number.
     pairs: unsafe extern "C" fn(*mut c_void, *mut usize) -> *const [u32; 2],

@@ -90,7 +90,7 @@ impl Contestant<Frame> for Meshes {
     }
 }
 
-/// What a frame is used for.
+/// What is timed besides the cull.
 #[derive(Clone, Copy, PartialEq)]
 enum Use {
     Events,
@@ -109,7 +109,7 @@ fn read(events: &sdop::world::Events, body_of: &[u32], read: &mut Events) {
 struct Boxes {
     world: BoxWorld,
     ids: Vec<BodyId>,
-    /// The ids of a frame's bodies.
+    /// The ids of the bodies that the frame moves.
     moved: Vec<BodyId>,
     body_of: Vec<u32>,
     events: Events,
@@ -145,7 +145,7 @@ impl Boxes {
         }
     }
 
-    /// Removes a body and inserts another one, which gets its number.
+    /// Replaces a body by another one with the same number.
     fn replace(&mut self, body: u32, bounds: Aabb) {
         let removed = self.world.remove(self.ids[body as usize]);
         assert!(removed.is_ok(), "{removed:?}: the body is there");

@@ -110,7 +110,7 @@ fn end(partners: &mut [Vec<u32>], events: &mut Events, body: u32, meets: impl Fn
     }
 }
 
-/// Begins a pair unless it is there.
+/// Adds a pair, unless it is already in the set.
 fn begin(partners: &mut [Vec<u32>], events: &mut Events, [body, other]: [u32; 2]) {
     if !partners[body as usize].contains(&other) {
         partners[body as usize].push(other);

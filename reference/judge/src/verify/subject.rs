@@ -1,5 +1,5 @@
-//! Our cullers as a subject: in every configuration that makes the claim, each in the mode whose turn
-//! it is.
+//! Our cullers as a subject: in every configuration that makes the claim, each in the mode whose
+//! turn it is.
 
 use crate::answer::{Answer, AnswerError, StopReason};
 use crate::case::{Case, Frame};
