@@ -166,7 +166,6 @@ impl World {
         let (translation, composed) = self.composed(slot);
         let (place, moved) = local.place(slot, translation);
         if !is_within_limit(&place) {
-            self.replaced = true; // some bodies have been placed
             return Err(WorldError::Apart(self.ids.id(slot as u32)));
         }
         let moved = moved + composed;

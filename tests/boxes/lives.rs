@@ -80,26 +80,6 @@ fn damaged_snapshots_of_boxes_are_refused() {
     }
 }
 
-/// A box at rest that is moved is found where it is.
-#[test]
-fn moved_resting_box_is_found() {
-    let mut world = BoxWorld::new();
-    let cube = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
-    let still = world.insert(BoxBody { motion: Motion::Fixed, ..cube(0.0).into() }).unwrap();
-    let moving = world.insert(cube(5.0)).unwrap();
-    for x in [4.0, 4.5, 6.0, 6.0_f32.next_up(), 3.0] {
-        world.set_bounds(still, cube(x)).unwrap();
-        world.cull().unwrap();
-        let meets = (4.0..=6.0).contains(&x);
-        assert!(world.pairs().eq(meets.then_some([still, moving])), "{x}");
-    }
-    // Far from where it was, so that the cube it had there is of no use.
-    world.set_bounds(still, cube(20.0)).unwrap();
-    world.set_bounds(moving, cube(20.5)).unwrap();
-    world.cull().unwrap();
-    assert!(world.pairs().eq([[still, moving]]));
-}
-
 /// The cube around the plate contains all moving boxes; only its ends show that nothing touches it.
 #[test]
 fn resting_plate_is_no_cube() {

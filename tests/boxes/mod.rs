@@ -57,15 +57,6 @@ fn pairs_match_definition() {
     }
 }
 
-/// The pairs of a hundred boxes are exact.
-#[test]
-fn hundred_boxes_are_exact() {
-    let random = &mut Random::new(6);
-    for kind in Kind::ALL {
-        assert_exact(kind, 100, 3, 0.05, random);
-    }
-}
-
 /// The cubes about neighbours touch, and those within don't: each pair is looked up, in runs as in
 /// blocks.
 #[test]
@@ -146,31 +137,6 @@ fn lists_equal_in_tiers_and_threads() {
         assert!(
             counted.updates == 12 * 3000 && counted.tests >= counted.hits && counted.hits > 1000
         );
-    }
-}
-
-/// Boxes may come and go between frames and groups filter them.
-#[test]
-fn boxes_change_between_frames() {
-    let random = &mut Random::new(3);
-    let mut culler = BoxCuller::new();
-    for kind in Kind::ALL {
-        for count in [90, 300, 40, 0, 200] {
-            let now = boxes(kind, count, random);
-            let groups: Vec<Groups> = (0..count)
-                .map(|_| Groups { member: 1 << random.below(3), mask: random.below(8) as u32 })
-                .collect();
-            culler.set_groups(Some(groups.clone()));
-            assert_eq!(
-                culler.cull(&now).unwrap().sorted(),
-                expected(&now, |_| true, |i| groups[i])
-            );
-            culler.set_groups(None);
-            assert_eq!(
-                culler.cull(&now).unwrap().sorted(),
-                expected(&now, |_| true, |_| Groups::ALL)
-            );
-        }
     }
 }
 

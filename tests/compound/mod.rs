@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod corners;
-mod lives;
 mod misuse;
 mod volumes;
 
@@ -11,6 +10,7 @@ use sdop::compound::{Compound, Part, PartCuller, PartPair};
 use sdop::volume::{DirectionSet, ShapeSpec};
 use sdop::{Body, BodyId, ProceduralShape, Shape, World};
 
+use crate::histories::{HistoryKind, live};
 use sdop_judge::draw::random::Random;
 
 const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
@@ -101,5 +101,35 @@ fn pair(a: BodyId, b: BodyId, parts: [u32; 2]) -> PartPair {
     } else {
         let [i, j] = parts;
         PartPair { bodies: [b, a], parts: [j, i] }
+    }
+}
+
+/// No two parts that meet are missed, whatever has happened to their bodies.
+#[test]
+fn histories_of_compounds() {
+    live(HistoryKind::Compounds, 2..3);
+}
+
+/// Other parts of a shape number count from the next cull on.
+#[test]
+fn changed_parts_count_next_cull() {
+    let (mut random, shapes) = (Random::new(5), shapes(DirectionSet::K18));
+    let mut world = World::new(vec![shapes[3].clone(); 2]).unwrap();
+    for body in 0..24 {
+        let rotation = [(); 4].map(|()| random.within(1.0));
+        let place = [(); 3].map(|()| f64::from(random.within(3.0)));
+        world.insert(Body::at(body % 2, rotation, place)).unwrap();
+    }
+    let (mut culler, mut compounds) = (PartCuller::new(), Vec::new());
+    for number in [0, 1, 0, 1, 0] {
+        let parts = tree(3 + compounds.len(), 4, &mut random);
+        let compound = Compound::build("t", &shapes, &parts).unwrap();
+        world.replace_shape(number, compound.shape()).unwrap();
+        culler.set_parts(number, compound.clone());
+        compounds.retain(|(other, _)| *other != number);
+        compounds.push((number, compound));
+        world.cull().unwrap();
+        let found = culler.cull(&world).unwrap().to_vec();
+        assert!(found.len() > 20 && found == afresh(&world, &compounds), "{number}");
     }
 }

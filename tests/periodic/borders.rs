@@ -121,22 +121,6 @@ fn wide_boxes_touch_in_one_image() {
     assert_eq!(image(&mut boxes, -1.0e6 - 0.25, (-1.0e6_f64).next_down()), NONE);
 }
 
-/// Points on a border meet, on either side of it.
-#[test]
-fn points_on_borders_meet() {
-    let mut boxes = PeriodicBoxes::new([Some(6.0), Some(6.0), Some(6.0)]).unwrap();
-    let corners = (0..8).map(|n| [0, 1, 2].map(|axis| if n >> axis & 1 == 1 { 3.0 } else { -3.0 }));
-    let ids: Vec<BodyId> =
-        corners.map(|corner| boxes.insert(PeriodicBox::new(corner, corner)).unwrap()).collect();
-    let pairs = boxes.cull().unwrap();
-    assert_eq!(pairs.len(), 8 * 7 / 2);
-    for pair in pairs {
-        let [a, b] = pair.bodies.map(|id| ids.iter().position(|other| *other == id).unwrap());
-        let image = [0, 1, 2].map(|axis| (a >> axis & 1) as i32 - (b >> axis & 1) as i32);
-        assert_eq!(pair.image, image);
-    }
-}
-
 /// Boxes about turned balls meet in two images, although the balls can meet in one at most.
 #[test]
 fn loose_volumes_meet_once() {

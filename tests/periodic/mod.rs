@@ -4,13 +4,9 @@
 
 mod borders;
 mod boxes;
-mod events;
-mod layouts;
-mod meshes;
 mod misuse;
 mod queries;
 
-use crate::forms;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicPair, PeriodicWorld};
 use sdop::{Body, BodyId, Groups, Motion};
 

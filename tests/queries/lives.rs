@@ -1,7 +1,7 @@
 //! An index that has followed a world answers like a newly built one.
 
 use sdop::query::QuerySource;
-use sdop::{Aabb, Body, BodyId, BoxWorld, Line, QueryIndex, QueryVolume, World};
+use sdop::{Aabb, Body, BoxWorld, Line, QueryIndex, QueryVolume, World};
 
 use crate::histories::{HistoryKind, live};
 use crate::queries::{UNTURNED, cube};
@@ -29,30 +29,6 @@ fn assert_same(index: &QueryIndex, world: &impl QuerySource, random: &mut Random
 #[test]
 fn histories_that_are_asked() {
     live(HistoryKind::Queries, 2..6);
-}
-
-/// A body that is equal to the removed one whose slot it has is another body.
-#[test]
-fn slot_twins_have_different_ids() {
-    let mut bodies = World::new(vec![cube()]).unwrap();
-    let mut boxes = BoxWorld::new();
-    let aabb = Aabb::new([-1.0; 3], [1.0; 3]);
-    let gone = (bodies.insert(Body::default()).unwrap(), boxes.insert(aabb).unwrap());
-    let [mut of_bodies, mut of_boxes] = [QueryIndex::new(), QueryIndex::new()];
-    of_bodies.update(&bodies);
-    of_boxes.update(&boxes);
-    bodies.remove(gone.0).unwrap();
-    boxes.remove(gone.1).unwrap();
-    bodies.cull().unwrap(); // frees the slots
-    boxes.cull().unwrap();
-    let twin = bodies.insert(Body::default()).unwrap();
-    assert_eq!(twin.slot(), gone.0.slot());
-    of_bodies.update(&bodies);
-    assert_eq!(of_bodies.touching(&aabb.into()).unwrap(), [twin]);
-    let twin = boxes.insert(aabb).unwrap();
-    assert_eq!(twin.slot(), gone.1.slot());
-    of_boxes.update(&boxes);
-    assert_eq!(of_boxes.touching(&aabb.into()).unwrap(), [twin]);
 }
 
 /// The shape of a number may be replaced while all bodies stay.
@@ -89,24 +65,5 @@ fn another_world_is_another_set() {
         assert_same(&index, &boxes, random);
         index.update(&World::new(Vec::new()).unwrap());
         assert!(index.is_empty());
-    }
-}
-
-/// Bodies that go far away together take the origin of their boxes with them.
-#[test]
-fn far_bodies_are_told_apart() {
-    let mut world = World::new(vec![cube()]).unwrap();
-    let ids: Vec<BodyId> = (0..200)
-        .map(|n| world.insert(Body::at(0, UNTURNED, [3.0 * f64::from(n), 0.0, 0.0])).unwrap())
-        .collect();
-    let mut index = QueryIndex::new();
-    for far in [0.0, 1.0e9 + 0.1, 4.0e15, -0.5] {
-        for (n, &id) in ids.iter().enumerate() {
-            world.set_pose(id, UNTURNED, [far + 3.0 * n as f64, 0.0, 0.0]).unwrap();
-        }
-        index.update(&world);
-        let centre = [far + 30.0, 0.0, 0.0];
-        let found = index.touching(&QueryVolume::Ball { centre, radius: 0.75 }).unwrap();
-        assert_eq!(found, [ids[10]], "{far}");
     }
 }

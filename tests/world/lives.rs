@@ -2,8 +2,8 @@
 //! input that it rejects.
 
 use sdop::culler::Culler;
-use sdop::settings::{CullSettings, Interest, Strategy};
-use sdop::world::{Body, BodyId, Groups, Motion, PairLookup, World, WorldError};
+use sdop::settings::{CullSettings, Interest};
+use sdop::world::{Body, BodyId, Groups, Motion, PairLookup, World};
 
 use super::shapes;
 
@@ -111,102 +111,6 @@ fn world_has_counters() {
     // Four bodies, two, and none were culled: 6 pairs, 1 and 0 were added where `left` is even.
     assert_eq!(world.counters().reported, 10 + 6 + 1);
     assert!(world.seconds().total > seconds && world.slots() == 5);
-}
-
-#[test]
-fn interest_ends_with_its_body() {
-    let way =
-        CullSettings { strategy: Strategy::SDopObjectOfInterest, ..CullSettings::all_pairs() };
-    let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
-    // Two needles side by side: their spheres meet, their or-DOPs don't.
-    let needle = Body { shape: 2, ..Body::default() };
-    let id = world.insert(needle).unwrap();
-    world.insert(Body { translation: [0.0, 1.0, 1.0], ..needle }).unwrap();
-    world.set_interest(&[id]).unwrap();
-    world.cull().unwrap();
-    assert_eq!(world.pairs().len(), 0);
-    world.remove(id).unwrap();
-    world.cull().unwrap();
-    let other = world.insert(needle).unwrap();
-    assert_eq!(other.slot(), id.slot());
-    world.cull().unwrap();
-    assert_eq!(world.pairs().len(), 1, "left to the spheres");
-    assert_eq!(world.set_interest(&[id]), Err(WorldError::Gone(id)));
-}
-
-/// A body that collides with all joins others that do not.
-#[test]
-fn ungrouped_body_joins_grouped() {
-    let mut world =
-        World::with(shapes(), &Culler::builder().settings(&CullSettings::all_pairs())).unwrap();
-    let apart = |member| Body { groups: Groups { member, mask: !member }, ..Body::default() };
-    let [a, b] = [(); 2].map(|()| world.insert(apart(1)).unwrap());
-    world.cull().unwrap();
-    assert_eq!(world.pairs().len(), 0);
-    let all = world.insert(Body::default()).unwrap();
-    world.cull().unwrap();
-    assert!(world.events().begun().eq([[a, all], [b, all]]));
-}
-
-/// A body that becomes static or is moved as such counts as it is now.
-#[test]
-fn static_changes_take_effect() {
-    for way in super::ways().into_iter().step_by(7) {
-        let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
-        let [here, away] =
-            [0.5, 30.0].map(|x| Body { translation: [x, 0.0, 0.0], ..Body::default() });
-        world.insert(Body::default()).unwrap();
-        let other = world.insert(Body::default().fixed()).unwrap();
-        let id = world.insert(away).unwrap();
-        let mut count = |change: &dyn Fn(&mut World) -> Result<(), WorldError>| {
-            change(&mut world).unwrap();
-            world.cull().unwrap();
-            world.pairs().len()
-        };
-        let culled = |pairs: usize| {
-            if way.strategy == Strategy::None { 0 } else { pairs }
-        };
-        for (body, pairs) in [(here, 3), (here.fixed(), 2), (away.fixed(), 1), (here, 3)] {
-            assert_eq!(count(&|world| world.set(id, body)), culled(pairs), "{way:?}");
-        }
-        let turn = here.rotation;
-        for (x, pairs) in [(30.0, 1), (0.5, 3), (-30.0, 1)] {
-            let moved = count(&|world| world.set_pose(other, turn, [x, 0.0, 0.0]));
-            assert_eq!(moved, culled(pairs), "{way:?}");
-        }
-    }
-}
-
-/// A body brings its own groups to a slot that another has left.
-#[test]
-fn reused_slot_has_new_groups() {
-    let way = CullSettings::all_pairs();
-    let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
-    let alone = Body { groups: Groups { member: 1, mask: 2 }, ..Body::default() };
-    let [a, b] = [(); 2].map(|()| world.insert(alone).unwrap());
-    world.cull().unwrap();
-    world.remove(b).unwrap();
-    world.cull().unwrap();
-    let c = world.insert(Body::default()).unwrap();
-    assert_eq!(c.slot(), b.slot());
-    for (body, pairs) in [(Body::default(), 1), (alone, 0), (Body::default(), 1)] {
-        world.set(c, body).unwrap();
-        world.cull().unwrap();
-        assert_eq!(world.pairs().len(), pairs, "{a} and {c}");
-    }
-    world.remove(c).unwrap();
-    world.cull().unwrap();
-    world.insert(alone).unwrap();
-    world.cull().unwrap();
-    assert_eq!(world.pairs().len(), 0);
-    let d = world.insert(Body::default()).unwrap();
-    world.cull().unwrap();
-    assert_eq!(world.pairs().len(), 2, "{d} collides with both");
-    world.remove(d).unwrap();
-    world.cull().unwrap();
-    world.insert(alone).unwrap();
-    world.cull().unwrap();
-    assert_eq!(world.pairs().len(), 0, "whoever takes its place does not");
 }
 
 /// Pairs come, stay and go; the look-up knows them in either order, and no other.

@@ -4,11 +4,9 @@
 
 mod changed_shapes;
 mod counters;
-mod exchange;
 mod excluded;
 mod far;
 mod lives;
-mod many;
 mod margins;
 mod pair_test;
 mod regions;
@@ -139,28 +137,4 @@ fn touching_spheres_meet_in_f64() {
         assert!(world.pairs().len() >= 1, "{way:?} / {length}");
     }
     assert!(rounded > tried / 2, "{rounded}: f32 alone would do");
-}
-
-/// A static body has other local coordinates after the origin has moved.
-#[test]
-fn static_body_follows_origin() {
-    for way in ways().into_iter().step_by(7) {
-        let mut world = World::with(shapes(), &Culler::builder().settings(&way)).unwrap();
-        let there = |x: f64| Body { translation: [x, 0.1, 0.0], ..Body::default() };
-        let still = world.insert(there(1e6 + 0.1).fixed()).unwrap();
-        let mover = world.insert(there(-1e6)).unwrap();
-        world.cull().unwrap();
-        assert_eq!(world.pairs().len(), 0, "{way:?}");
-        for (x, meets) in [(1e6 + 0.9, true), (-1e6, false), (1e6 - 0.7, true)] {
-            let rotation = Body::default().rotation;
-            let t = there(x).translation;
-            world.set_pose(mover, rotation, t).unwrap();
-            for _ in 0..2 {
-                world.cull().unwrap();
-                let meets = meets && way.strategy != Strategy::None;
-                let wanted = if meets { vec![[still, mover]] } else { vec![] };
-                assert_eq!(world.pairs().collect::<Vec<_>>(), wanted, "{way:?}, {x}");
-            }
-        }
-    }
 }

@@ -93,7 +93,7 @@ pub fn history_shapes(
     is_far: bool,
 ) -> Result<Shapes, HistoryError> {
     let offset =
-        Form { radius: None, offset: Some([0.7, -0.3, 0.4]), ..Form::of("l-shape", [0.0; 2]) };
+        Form { radius: None, offset: Some([4.5, -0.3, 0.4]), ..Form::of("l-shape", [0.0; 2]) };
     let plain = ["box", "icosphere", "tetrahedron"].map(|name| Form::of(name, [-0.5, 0.5]));
     let forms: Vec<Form> = plain.into_iter().chain([offset]).collect();
     let mut shapes = build(&forms, 1, k, axes, &mut ChaCha8Rng::seed_from_u64(seed))?;
