@@ -31,7 +31,7 @@ const EFFORT: Effort = Effort { turns: 1, builds: 9 };
 /// scene's shapes alone, so that T is a true prediction; scenes named by --also have the same
 /// prices. The residual is measured / predicted - 1; if it exceeds 5 %, the row names the
 /// assumption that fails. Without --strategy, all strategies for which the scene has settings are
-/// measured. A `World`, which keeps the pairs of sleeping bodies, isn't modelled, but `advise` times
+/// measured. A `World`, which keeps the pairs of sleeping bodies, isn't modelled; `advise` times
 /// it.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]

@@ -199,23 +199,12 @@ impl FrameTimes {
         Quartiles::of(self.of(regime).iter().map(StageSeconds::total).collect())
     }
 
-    /// Mean seconds per frame over both regimes.
-    #[must_use]
-    pub fn mean(&self) -> f64 {
-        mean(self.warm.iter().chain(&self.cold))
-    }
-
     /// Mean seconds of a frame of one regime.
     #[must_use]
-    pub fn mean_of(&self, regime: Regime) -> f64 {
-        mean(self.of(regime).iter())
+    pub fn mean(&self, regime: Regime) -> f64 {
+        let frames = self.of(regime);
+        frames.iter().map(StageSeconds::total).sum::<f64>() / frames.len() as f64
     }
-}
-
-fn mean<'a>(frames: impl Iterator<Item = &'a StageSeconds>) -> f64 {
-    let (sum, count) =
-        frames.fold((0.0, 0_u32), |(sum, count), frame| (sum + frame.total(), count + 1));
-    sum / f64::from(count)
 }
 
 /// A median with the quartiles around it.
@@ -242,35 +231,22 @@ impl Quartiles {
         };
         Self { low: at(1), median: at(2), high: at(3) }
     }
-
-    /// The means of the quartiles of several sets of frames.
-    #[must_use]
-    pub fn mean(all: &[Self]) -> Self {
-        let over = |value: fn(&Self) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
-        Self { low: over(|q| q.low), median: over(|q| q.median), high: over(|q| q.high) }
-    }
 }
 
-/// The poses of the next turn's frames, at most `frames`; none after the last frame. Seconds of the
-/// steps are appended to `steps`.
+/// The poses of the next turn's frames, at most `frames`; none after the last frame.
 ///
 /// # Errors
 /// A body that leaves the contract.
 pub fn next_turn(
     trajectory: &mut Trajectory,
     frames: usize,
-    steps: &mut Vec<f64>,
 ) -> Result<Vec<Bodies>, SimulationError> {
     let mut poses = Vec::new();
     while poses.len() < frames {
-        let stepped = trajectory.next_number() > 0;
         let Some(bodies) = trajectory.advance()? else {
             break;
         };
         poses.push(bodies.clone());
-        if stepped {
-            steps.push(trajectory.step_seconds());
-        }
     }
     Ok(poses)
 }

@@ -93,10 +93,4 @@ impl ExperimentPlan {
             tier,
         }
     }
-
-    /// How many times [`ExperimentPlan::run`] reports progress.
-    #[must_use]
-    pub fn steps(&self) -> usize {
-        self.names.len() * self.seeds.len()
-    }
 }

@@ -59,12 +59,10 @@ fn add_times(rows: &mut Rows, results: &Results, scene: &str) {
         let over_seeds = |value: fn(&StrategyRun) -> f64| {
             Estimate::in_order(&results.by_seed(scene, strategy, value))
         };
-        let mut add = |metric: &str, regime, value| {
-            rows.add((strategy.name(), regime), metric, "s per frame", over_seeds(value));
+        let mut add = |regime, value| {
+            rows.add((strategy.name(), Some(regime)), "time", "s per frame", over_seeds(value));
         };
-        add("time", Some(Regime::Warm), |run| run.seconds.total);
-        add("time", Some(Regime::Cold), |run| run.cold);
-        add("mean time", None, |run| run.mean);
-        add("simulation step", None, |run| run.step);
+        add(Regime::Warm, |run| run.warm);
+        add(Regime::Cold, |run| run.cold);
     }
 }

@@ -90,7 +90,7 @@ pub fn lines_of_a_run(
     let frames = scene.frames.min((RUN_BODIES / scene.bodies.len().max(1)).clamp(24, 80) as u32);
     let passes = passes(scene, variants, tier, || SceneFrames::new(scene, frames))?;
     let first = Scene { frames, ..scene.clone() };
-    let mean = |times: &FrameTimes| times.mean_of(Regime::Warm);
+    let mean = |times: &FrameTimes| times.mean(Regime::Warm);
     lines_of((scene, variants, tier), &samples(&first, RUN_SAMPLES)?, &passes, mean)
 }
 

@@ -10,9 +10,8 @@ use miette::{IntoDiagnostic as _, miette};
 use sdop::settings::Strategy;
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::measure::conditions::Conditions;
-pub use sdop_bench::reproduce::units::NAME;
-use sdop_bench::reproduce::units::{ExperimentSettings, Experiments};
-use sdop_bench::reproduce::{ExperimentPlan, Results};
+pub use sdop_bench::reproduce::NAME;
+use sdop_bench::reproduce::{ExperimentPlan, ExperimentSettings, Experiments, Results};
 use sdop_bench::sweep::{MergedUnits, Sweep as _};
 
 use super::Outcome;
@@ -154,7 +153,7 @@ fn plan(args: &Args) -> miette::Result<ExperimentPlan> {
 /// Says so if sequential and listed S-DOP did not report the same pairs in every run.
 fn disagreement(results: &Results) -> Option<String> {
     let hashes = |strategy| {
-        let of = results.runs.iter().filter(move |run| run.strategy == strategy);
+        let of = results.runs().filter(move |run| run.strategy == strategy);
         of.map(|run| &run.pairs_sha256)
     };
     let agree = hashes(Strategy::SDopSequential).eq(hashes(Strategy::SDopBatch));
