@@ -235,7 +235,7 @@ fn one_page(
     let rendered = match rendered {
         Ok(rendered) => rendered,
         Err(error) if args.check => return Ok(vec![error.to_string()]),
-        Err(error) => return Err(error.into()),
+        Err(error) => return Err(error),
     };
     let mut problems = Vec::new();
     if rendered != text {

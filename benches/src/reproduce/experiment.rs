@@ -9,7 +9,7 @@ use miette::{IntoDiagnostic as _, miette};
 use serde::{Deserialize, Serialize};
 
 use super::immediate::{self, HandingTimes};
-use super::plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES};
+use super::plan::{ExperimentPlan, PaperScene, STRATEGIES};
 use crate::cost::calibrate::{Calibration, CalibrationRound, Effort};
 use crate::cost::pass::{Observer, Pass, SceneFrames, VariantRun, pass};
 use crate::cost::table::{self, Cost};
@@ -67,7 +67,7 @@ impl Experiments {
     ///
     /// # Errors
     /// Scene files that can't be read or built.
-    pub fn new(plan: &ExperimentPlan) -> Result<Self, ReproduceError> {
+    pub fn new(plan: &ExperimentPlan) -> miette::Result<Self> {
         let load = |scene: PaperScene| {
             SceneFile::read(&plan.scenes.join(scene.name()).with_extension("toml"))
         };
@@ -118,7 +118,7 @@ impl Experiments {
     ///
     /// # Errors
     /// Scenes that can't be built with the seed or don't suit the strategies.
-    fn find(&self, unit: usize) -> Result<UnitResult, ReproduceError> {
+    fn find(&self, unit: usize) -> miette::Result<UnitResult> {
         let (PreparedScene { name, file, largest, variants }, seed) = self.unit(unit);
         let ExperimentPlan { frames, tier, effort, .. } = self.plan;
         let held = self.calibrations.lock();

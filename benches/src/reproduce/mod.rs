@@ -23,7 +23,7 @@ pub use crate::measure::estimate::{CONFIDENCE, Estimate};
 pub use experiment::{
     ExperimentSettings, Experiments, NAME, Results, StrategyRun, UnitResult, run_scene,
 };
-pub use plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES};
+pub use plan::{ExperimentPlan, PaperScene, STRATEGIES};
 
 use sdop::settings::Strategy;
 

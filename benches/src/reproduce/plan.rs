@@ -3,12 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use miette::Diagnostic;
-use thiserror::Error;
-
 use crate::cost::calibrate::Effort;
-use crate::scene::SceneError;
-use crate::simulate::SimulationError;
 use sdop::choice::choices;
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
@@ -65,19 +60,6 @@ pub struct ExperimentPlan {
     pub effort: Effort,
     /// The tier that culls.
     pub tier: Tier,
-}
-
-/// Why an experiment can't be run.
-#[derive(Debug, Error, Diagnostic)]
-pub enum ReproduceError {
-    /// A scene file that can't be read or built.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Scene(#[from] SceneError),
-    /// A scene that can't be simulated or culled.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Simulation(#[from] SimulationError),
 }
 
 impl ExperimentPlan {

@@ -7,7 +7,6 @@
 
 use serde::Serialize;
 
-use super::TradeoffError;
 use super::pays::{CheapestRange, Choice, Line, choose, envelope};
 use super::timing::{lines, lines_of_a_run};
 use super::variant::{Variant, volumes};
@@ -108,7 +107,7 @@ pub fn advise(
     tried: CandidateFilter,
     check: f64,
     tier: Tier,
-) -> Result<Option<Advice>, TradeoffError> {
+) -> miette::Result<Option<Advice>> {
     let before = Conditions::before();
     let mut scene = file.build()?;
     scene.frames = scene.frames.clamp(FEWEST_FRAMES, FRAMES);
@@ -191,7 +190,7 @@ fn chosen_finder(lines: &[Line]) -> Option<(Finder, Vec<String>)> {
 }
 
 /// A variant in a culler and in a world, on the same frames.
-fn in_world(scene: &Scene, variant: &Variant, tier: Tier) -> Result<WorldTimes, TradeoffError> {
+fn in_world(scene: &Scene, variant: &Variant, tier: Tier) -> miette::Result<WorldTimes> {
     let both = [variant.clone(), variant.clone().in_world()];
     let lines = lines_of_a_run(scene, &both, tier)?;
     let time = |line: &Line| Estimate::in_order(&line.times);

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use miette::IntoDiagnostic as _;
 use serde::{Deserialize, Serialize};
 
+use super::Estimate;
 use super::budget::{self, BudgetRow, ClockRow, Window};
 use super::counts::{Tally, share};
 use super::density::{self, Density};
@@ -18,7 +19,6 @@ use super::result::{Tradeoff, VariantResult};
 use super::timing::{PASSES, Windows};
 use super::truth::{ExactJudge, NarrowPhase, Sample, samples};
 use super::variant::{self, Variant};
-use super::{Estimate, TradeoffError};
 use crate::cost::calibrate::CalibrationRound;
 use crate::cost::pass::{Pass, medians, pass};
 use crate::measure::conditions::Conditions;
@@ -135,7 +135,7 @@ impl Comparison {
     ///
     /// # Errors
     /// The scene can't be built, run or culled.
-    pub fn new(file: &SceneFile, plan: &TradeoffPlan) -> Result<Self, TradeoffError> {
+    pub fn new(file: &SceneFile, plan: &TradeoffPlan) -> miette::Result<Self> {
         let mut file = file.clone();
         file.spec.frames = file.spec.frames.max(FEWEST_TIMED_FRAMES);
         let scene = Scene { construct_seconds: 0.0, ..file.build()? };
@@ -171,7 +171,7 @@ impl Comparison {
     }
 
     /// What a unit finds: findings with one part.
-    fn find(&self, unit: TradeoffUnit) -> Result<Findings, TradeoffError> {
+    fn find(&self, unit: TradeoffUnit) -> miette::Result<Findings> {
         let (file, scene) = (&self.file, &self.scene);
         let TradeoffPlan { samples: count, window, stride, tier, ref cache, .. } = self.plan;
         let mut found = Findings::default();
@@ -250,14 +250,14 @@ fn seeds(file: &SceneFile, plan: &TradeoffPlan) -> Vec<u64> {
     (0..plan.seeds.max(1)).map(seed).collect()
 }
 
-fn with_seed(file: &SceneFile, seed: u64) -> Result<Scene, TradeoffError> {
+fn with_seed(file: &SceneFile, seed: u64) -> miette::Result<Scene> {
     let mut file = file.clone();
     file.spec.seed = seed;
     Ok(file.build()?)
 }
 
 /// Consecutive frames from the first on.
-fn first_frames(scene: &Scene, count: u32) -> Result<Vec<Sample>, TradeoffError> {
+fn first_frames(scene: &Scene, count: u32) -> miette::Result<Vec<Sample>> {
     let scene = Scene { frames: count.min(scene.frames), ..scene.clone() };
     Ok(samples(&scene, count)?)
 }

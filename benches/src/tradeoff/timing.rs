@@ -3,7 +3,6 @@
 //! A turn is a sample frame with the frames after it, by the same protocol as everywhere
 //! ([`pass`](crate::cost::pass)).
 
-use super::TradeoffError;
 use super::counts::Tally;
 use super::pays::Line;
 use super::truth::{Sample, samples, windows};
@@ -70,7 +69,7 @@ pub fn lines(
     variants: &[Variant],
     tier: Tier,
     count: u32,
-) -> Result<Vec<Line>, TradeoffError> {
+) -> miette::Result<Vec<Line>> {
     let windows = Windows::new(scene, count)?;
     let passes = passes(scene, variants, tier, || Ok(windows.clone()))?;
     let median = |times: &FrameTimes| times.quartiles(Regime::Warm).median;
@@ -86,7 +85,7 @@ pub fn lines_of_a_run(
     scene: &Scene,
     variants: &[Variant],
     tier: Tier,
-) -> Result<Vec<Line>, TradeoffError> {
+) -> miette::Result<Vec<Line>> {
     let frames = scene.frames.min((RUN_BODIES / scene.bodies.len().max(1)).clamp(24, 80) as u32);
     let passes = passes(scene, variants, tier, || SceneFrames::new(scene, frames))?;
     let first = Scene { frames, ..scene.clone() };
@@ -100,7 +99,7 @@ fn lines_of(
     samples: &[Sample],
     passes: &[Pass],
     statistic: impl Fn(&FrameTimes) -> f64,
-) -> Result<Vec<Line>, TradeoffError> {
+) -> miette::Result<Vec<Line>> {
     let mut lines = Vec::new();
     for (at, variant) in variants.iter().enumerate() {
         let tally = Tally::unjudged(scene, variant, tier, samples)?;
