@@ -5,6 +5,7 @@
 use std::fs;
 use std::path::Path;
 
+use sdop::bodies::Bodies;
 use sdop::mesh::ProceduralShape;
 use sdop::simd::Tier;
 use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
@@ -114,7 +115,18 @@ fn truth_is_complete_and_cached() {
     let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| [i, j]));
     let moving =
         |&[i, j]: &[u32; 2]| scene.bodies.dynamic[i as usize] || scene.bodies.dynamic[j as usize];
-    let counted = judge.count(&samples[0].bodies, all.filter(moving)).unwrap();
+    let built = scene.shapes.iter().map(|shape| Mesh::new(&shape.vertices, &shape.triangles));
+    let meshes: Vec<Mesh> = built.map(Result::unwrap).collect();
+    let posed = |body: u32| {
+        let (body, Bodies { shape, rotation, translation, .. }) =
+            (body as usize, &samples[0].bodies);
+        (&meshes[shape[body] as usize], Pose::new(rotation[body], translation[body]).unwrap())
+    };
+    let meets = |&[i, j]: &[u32; 2]| {
+        let [(a, a_pose), (b, b_pose)] = [i, j].map(posed);
+        meeting::meet((a, &a_pose), (b, &b_pose)).meets
+    };
+    let counted = all.filter(moving).filter(meets).count();
     assert_eq!(truth[0].len(), counted);
     assert!(counted > 20 && truth.iter().all(|pairs| pairs.is_sorted()));
 

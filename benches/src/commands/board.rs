@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use miette::{IntoDiagnostic as _, miette};
 use sdop_bench::board::{Board, CellVerdict, Row, Speed, judge, page};
-use sdop_bench::outsiders::timing::frames;
+use sdop_bench::outsiders::frames;
 use sdop_bench::roster::{Roster, RosterRow};
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_judge::process::Program;

@@ -109,12 +109,6 @@ impl Cost {
     pub fn sum(&self, term: fn(&Terms) -> f64) -> f64 {
         self.terms.iter().map(term).sum()
     }
-
-    /// Whether the prediction is off by more than a share.
-    #[must_use]
-    pub fn misses(&self, share: f64) -> bool {
-        self.frame.residual.mean.abs() > share
-    }
 }
 
 /// The cost of variant number `at` from passes over one scene in the order of time; `None` if the

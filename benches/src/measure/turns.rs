@@ -152,34 +152,20 @@ pub fn turn_frames(bodies: usize) -> usize {
     (PREPARED_BODIES / bodies.max(1)).clamp(2, MOST_TURN_FRAMES)
 }
 
-/// The times of one contestant's frames, in the order of their measurement.
+/// The times of one contestant's frames by regime, in the order of their measurement.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct FrameTimes {
-    warm: Vec<StageSeconds>,
-    cold: Vec<StageSeconds>,
-}
+pub struct FrameTimes([Vec<StageSeconds>; 2]);
 
 impl FrameTimes {
     /// Adds the last frame of a contestant, without waiting.
     pub fn push(&mut self, timed: &TimedFrame<'_, Culling>) {
-        let stages = timed.contestant.last().without(timed.waited);
-        self.of_mut(timed.regime).push(stages);
+        self.0[timed.regime as usize].push(timed.contestant.last().without(timed.waited));
     }
 
     /// The frames of one regime.
     #[must_use]
     pub fn of(&self, regime: Regime) -> &[StageSeconds] {
-        match regime {
-            Regime::Warm => &self.warm,
-            Regime::Cold => &self.cold,
-        }
-    }
-
-    fn of_mut(&mut self, regime: Regime) -> &mut Vec<StageSeconds> {
-        match regime {
-            Regime::Warm => &mut self.warm,
-            Regime::Cold => &mut self.cold,
-        }
+        &self.0[regime as usize]
     }
 
     /// Medians over frames per stage, which add up to the median of whole frames: the difference,

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use miette::miette;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use super::clock::today;
 use super::provenance::{CodeVersion, Load, caches};
 use crate::hash::hex;
 use crate::measure::machine::Machine;
@@ -189,6 +189,12 @@ impl Manifest {
         let open = Self { digest: String::new(), ..self.clone() };
         sha256(serde_json::to_string(&open).unwrap_or_default().as_bytes())
     }
+}
+
+/// Today, `YYYY-MM-DD`, UTC.
+fn today() -> String {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+    now.split('T').next().unwrap_or_default().to_owned()
 }
 
 /// Some scenes and the meshes that they use, by their paths in the repository.

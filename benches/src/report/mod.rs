@@ -5,7 +5,6 @@
 //! which holds the command, the commit, the machine and a digest of every file. A page quotes
 //! records through its template (`pages`); rendering again must change nothing.
 
-mod clock;
 mod columns;
 mod compare;
 pub mod digits;

@@ -29,8 +29,6 @@ pub struct Rate {
     pub culling: Estimate,
     /// Frames a second.
     pub fps: Estimate,
-    /// Frame rate over the control's.
-    pub to_control: Estimate,
 }
 
 /// All frame rates: F by F, scene by scene, strategy by strategy.
@@ -55,7 +53,6 @@ fn rate(results: &Results, scene: &str, strategy: Strategy, elsewhere: f64) -> R
         elsewhere,
         culling: Estimate::of(&culling),
         fps: Estimate::of(&fps),
-        to_control: ratio(results, scene, [strategy, Strategy::None], elsewhere),
     }
 }
 

@@ -50,7 +50,6 @@ fn add_cell(rows: &mut Rows, cell: &Table1Cell) {
 fn add_rate(rows: &mut Rows, rate: &Rate) {
     let (of, f) = ((rate.strategy.name(), Some(Regime::Warm)), 1e3 * rate.elsewhere);
     rows.add(of, format!("frame rate, F = {f} ms"), "frames per s", rate.fps);
-    rows.add(of, format!("frame rate / control's, F = {f} ms"), "1", rate.to_control);
 }
 
 /// Times that the formula has no term for.

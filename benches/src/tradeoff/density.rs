@@ -5,8 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::TradeoffError;
-use super::pays::{CheapestRange, Line, break_even, envelope};
+use super::pays::{Line, break_even};
 use super::timing::lines;
 use super::variant;
 use crate::number::Positive;
@@ -24,10 +23,16 @@ pub struct Density {
     pub partners: f64,
     /// T and Np of every compared variant.
     pub lines: Vec<Line>,
-    /// The cheapest variant as Cp grows.
-    pub cheapest: Vec<CheapestRange>,
     /// For each compared S-DOP: the Cp in seconds above which it is cheaper than spheres alone.
     pub break_even: Vec<BreakEven>,
+}
+
+impl Density {
+    /// The name of a quantity at this density in rows.
+    #[must_use]
+    pub fn metric(&self, quantity: &str) -> String {
+        format!("{quantity} at {} times the density", self.factor)
+    }
 }
 
 /// The price from which an S-DOP pays.
@@ -49,7 +54,7 @@ pub fn at(
     factor: f32,
     tier: Tier,
     count: u32,
-) -> Result<Option<Density>, TradeoffError> {
+) -> miette::Result<Option<Density>> {
     let scene = crowded(file, factor).map(|file| built_if_possible(&file));
     let Some(scene) = scene.transpose()?.flatten() else {
         return Ok(None);
@@ -77,7 +82,6 @@ fn density(factor: f32, bodies: usize, lines: Vec<Line>) -> Density {
     Density {
         factor,
         partners: 2.0 * spheres.pairs / bodies as f64,
-        cheapest: envelope(&lines),
         break_even: lines
             .iter()
             .filter(|line| line.pairs < spheres.pairs && line.name.starts_with("s-dop"))

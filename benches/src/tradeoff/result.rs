@@ -132,14 +132,17 @@ impl Tradeoff {
             }
         }
         for density in &self.densities {
-            let of = |metric| format!("{metric} at {} times the density", density.factor);
             for line in &density.lines {
                 let time = Estimate::in_order(&line.times);
-                let reported = (&*of("reported"), "pairs per frame", alone(line.pairs));
-                add(&line.name, warm, &[reported, (&of("time"), "s per frame", time)]);
+                let reported = (&*density.metric("reported"), "pairs per frame", alone(line.pairs));
+                add(&line.name, warm, &[reported, (&density.metric("time"), "s per frame", time)]);
             }
             for even in &density.break_even {
-                add(&even.name, None, &[(&of("break-even"), "s per check", alone(even.cp))]);
+                add(
+                    &even.name,
+                    None,
+                    &[(&density.metric("break-even"), "s per check", alone(even.cp))],
+                );
             }
         }
         for row in &self.budgets {

@@ -209,8 +209,7 @@ impl Comparison {
             }
             TradeoffUnit::NarrowPhase => {
                 let judge = ExactJudge::new(&scene.shapes)?;
-                let price = judge.price_of_spheres(scene, &scene.bodies, tier, CHECKED_PAIRS)?;
-                found.narrow_phase = Some(price);
+                found.narrow_phase = Some(judge.price(scene, tier, CHECKED_PAIRS)?);
             }
             TradeoffUnit::Clock => {
                 found.clock = budget::by_clock(scene, tier, window.min(scene.frames))?;

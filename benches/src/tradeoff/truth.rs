@@ -183,34 +183,18 @@ impl ExactJudge {
         pairs
     }
 
-    /// Number of the listed pairs whose meshes meet.
+    /// Mean seconds of an exact narrow phase of pairs whose spheres overlap, for those that meet
+    /// and for those that don't: Cp. At most `most` pairs are timed, one after the other.
     ///
     /// # Errors
-    /// The reference rejects a pose.
-    pub fn count(
-        &self,
-        bodies: &Bodies,
-        pairs: impl Iterator<Item = [u32; 2]>,
-    ) -> miette::Result<usize> {
-        let poses = poses(bodies)?;
-        let meet = |&[i, j]: &[u32; 2]| self.meet(bodies, &poses, i as usize, j as usize);
-        Ok(pairs.filter(meet).count())
-    }
-
-    /// Mean seconds of an exact narrow phase, for pairs that meet and for pairs that don't: Cp. At
-    /// most `most` pairs are timed, one after the other.
-    ///
-    /// # Errors
-    /// The reference rejects a pose.
-    pub fn price(
-        &self,
-        bodies: &Bodies,
-        pairs: impl Iterator<Item = [u32; 2]>,
-        most: usize,
-    ) -> miette::Result<NarrowPhase> {
+    /// A body leaves the contract.
+    pub fn price(&self, scene: &Scene, tier: Tier, most: usize) -> miette::Result<NarrowPhase> {
+        let (bodies, settings) = (&scene.bodies, Variant::spheres(&scene.cull).settings);
+        let builder = Culler::builder().settings(&settings).tier(tier);
+        let mut culler = builder.build(&scene.shapes, bodies).or_report()?;
         let poses = poses(bodies)?;
         let mut sums = [(0.0, 0_u32); 2];
-        for [i, j] in pairs.take(most) {
+        for [i, j] in culler.cull(bodies).or_report()?.iter().take(most) {
             let start = Instant::now();
             let meets = self.meet(bodies, &poses, i as usize, j as usize);
             let (seconds, count) = &mut sums[usize::from(meets)];
@@ -219,26 +203,6 @@ impl ExactJudge {
         }
         let [miss, hit] = sums.map(|(seconds, count)| seconds / f64::from(count.max(1)));
         Ok(NarrowPhase { miss, hit })
-    }
-
-    /// [`price`](Self::price) of pairs whose spheres overlap.
-    ///
-    /// # Errors
-    /// A body leaves the contract.
-    pub fn price_of_spheres(
-        &self,
-        scene: &Scene,
-        bodies: &Bodies,
-        tier: Tier,
-        most: usize,
-    ) -> miette::Result<NarrowPhase> {
-        let settings = Variant::spheres(&scene.cull).settings;
-        let mut culler = Culler::builder()
-            .settings(&settings)
-            .tier(tier)
-            .build(&scene.shapes, bodies)
-            .or_report()?;
-        self.price(bodies, culler.cull(bodies).or_report()?.iter(), most)
     }
 
     fn meet(&self, bodies: &Bodies, poses: &[Pose], i: usize, j: usize) -> bool {

@@ -5,7 +5,7 @@ use sdop_bench::report::digits::interval;
 use sdop_bench::tradeoff::pays::{CHECKS, Choice, Standing, advice, choose};
 use sdop_bench::tradeoff::{Tradeoff, VariantResult};
 
-use crate::commands::output::{Column, Listing, counted, paragraphs, pivot, rows, table};
+use crate::commands::output::{Column, Listing, counted, paragraphs, pivot, rows};
 
 /// A title, and the quantities of the variants below it.
 type Part = (&'static str, &'static [Column<'static>]);
@@ -123,17 +123,11 @@ fn decisions(result: &Tradeoff) -> Listing {
 
 /// One row per S-DOP, one column per density, which is in sphere overlaps per body.
 fn break_even(result: &Tradeoff) -> Listing {
-    let densities: Vec<String> =
-        result.densities.iter().map(|density| format!("{:.2}", density.partners)).collect();
-    let header: Vec<&str> =
-        std::iter::once("variant").chain(densities.iter().map(String::as_str)).collect();
-    let mut rows = table(&header);
-    for name in result.densities.first().iter().flat_map(|one| &one.break_even).map(|b| &b.name) {
-        let cells = result.densities.iter().map(|density| {
-            let found = density.break_even.iter().find(|even| even.name == *name);
-            found.map_or("–".to_owned(), |even| format!("{:.0}", 1e9 * even.cp))
-        });
-        rows.add_row(std::iter::once(name.clone()).chain(cells));
-    }
-    rows
+    let names: Vec<[String; 2]> = result
+        .densities
+        .iter()
+        .map(|density| [format!("{:.2}", density.partners), density.metric("break-even")])
+        .collect();
+    let columns: Vec<Column<'_>> = names.iter().map(|[title, of]| (&**title, &**of, 1e9)).collect();
+    pivot(&result.rows(), Regime::Warm, false, &columns)
 }
