@@ -15,7 +15,7 @@ mod shown_case;
 mod shown_run;
 mod terms;
 
-pub use page::{Page, PageError};
+pub use page::Page;
 pub use shown_run::{Focus, ShownRun, ShownStrategy};
 
 use rayon::prelude::*;
