@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use miette::{IntoDiagnostic as _, miette};
+use miette::miette;
 use sdop_bench::cost::PRICES;
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::cost::design;
@@ -13,7 +13,7 @@ use sdop_bench::measure::row::Row;
 use sdop_bench::measure::turns::Regime;
 
 use super::Outcome;
-use super::files::{svg, write};
+use super::files::{svg, write, write_json};
 use super::output::{Column, Format, counted, emit, paragraphs, pivot, progress};
 use super::reproduce::draw_costs;
 use super::scene_args::{MachineArgs, SceneArgs};
@@ -75,9 +75,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     if let Some(directory) = &args.out {
         for report in &reports {
-            let json = serde_json::to_string_pretty(report).into_diagnostic()?;
-            let name = format!("{}.json", report.scene);
-            write(&directory.join(name), &(json + "\n"))?;
+            write_json(&directory.join(format!("{}.json", report.scene)), report)?;
         }
     }
     match args.format {

@@ -15,7 +15,7 @@ use sdop_bench::tradeoff::{Findings, Tradeoff, TradeoffPlan};
 use serde_json::{Value, json};
 
 use super::Outcome;
-use super::files::{self, command, write};
+use super::files::{self, command, write, write_json};
 use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::{MachineArgs, SceneArgs, VariantArgs};
 use super::sweep::{self, SweepArgs};
@@ -176,10 +176,9 @@ fn read(path: &Path) -> miette::Result<Tradeoff> {
 
 /// Writes the numbers to one directory, the figures to another.
 fn write_all(numbers: &Path, paper: &Path, result: &Tradeoff) -> miette::Result<()> {
-    let json = serde_json::to_string_pretty(result).into_diagnostic()? + "\n";
     let csv = csv_text(serde_json::to_value(result.rows()).into_diagnostic()?)?;
     let seeds = csv_text(seeds(result).into())?;
-    write(&numbers.join("tradeoff.json"), &json)?;
+    write_json(&numbers.join("tradeoff.json"), result)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
     write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;
     for (name, svg) in figures(result)? {

@@ -10,9 +10,10 @@ use miette::miette;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use super::provenance::{CodeVersion, Load, caches};
+use super::provenance::CodeVersion;
 use crate::hash::hex;
-use crate::measure::machine::Machine;
+use crate::measure::conditions::Load;
+use crate::measure::machine::{Machine, caches};
 
 /// The manifest's name in every record.
 pub const FILE: &str = "record.json";
@@ -102,7 +103,7 @@ impl Manifest {
             date: today(),
             code: CodeVersion::here(Path::new(".")),
             machine: None,
-            caches: caches(),
+            caches: caches().iter().map(|(level, size)| format!("L{level} {size}")).collect(),
             load: None,
             seconds: None,
             note: None,

@@ -22,6 +22,6 @@ pub use compare::{CountDifference, MeasuredChange, RecordComparison, compare};
 pub use digits::{Quantities, Quantity};
 pub use experiment::{Experiment, ExperimentStep, experiments};
 pub use manifest::{FILE, Manifest};
-pub use provenance::{CodeVersion, Load, caches};
+pub use provenance::CodeVersion;
 pub use store::Store;
 pub use table::Table;

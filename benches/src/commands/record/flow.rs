@@ -10,9 +10,10 @@ use std::time::Instant;
 
 use clap::Parser as _;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop_bench::measure::conditions::Load;
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::mpi;
-use sdop_bench::report::{Experiment, ExperimentStep, FILE, Load, Manifest};
+use sdop_bench::report::{Experiment, ExperimentStep, FILE, Manifest};
 use sdop_bench::sweep::{Units, code};
 
 use super::super::Cli;

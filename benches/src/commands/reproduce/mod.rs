@@ -15,7 +15,7 @@ use sdop_bench::reproduce::{ExperimentPlan, ExperimentSettings, Experiments, Res
 use sdop_bench::sweep::{MergedUnits, Sweep as _};
 
 use super::Outcome;
-use super::files::{command, write};
+use super::files::{command, write, write_json};
 use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::MachineArgs;
 use super::sweep::{self, SweepArgs};
@@ -117,8 +117,7 @@ struct OutputPlace<'a> {
 impl OutputPlace<'_> {
     fn write(&self, results: &Results, tables: &Tables, format: Format) -> miette::Result<Outcome> {
         let why = disagreement(results);
-        let json = serde_json::to_string_pretty(tables).into_diagnostic()?;
-        write(&self.numbers.join("results.json"), &(json + "\n"))?;
+        write_json(&self.numbers.join("results.json"), tables)?;
         for (name, rows) in tables.files()? {
             write(&self.numbers.join(name).with_extension("csv"), &csv_text(rows)?)?;
         }

@@ -5,6 +5,7 @@
 use miette::IntoDiagnostic as _;
 use sdop::settings::Strategy;
 use sdop_bench::cost::table::{Cost, PriceRow};
+use sdop_bench::hash::hex;
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::measure::row::Row;
@@ -178,8 +179,7 @@ pub fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
 /// SHA-256 of the counts as their CSV file has them.
 fn hash(counts: &[Value]) -> miette::Result<String> {
     let text = csv_text(serde_json::to_value(counts).into_diagnostic()?)?;
-    let digest = Sha256::digest(text);
-    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hex(&Sha256::digest(text)))
 }
 
 fn box_row(results: &Results, scene: PaperScene) -> Option<BoxRow> {
