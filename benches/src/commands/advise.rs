@@ -49,7 +49,7 @@ pub struct Args {
 /// An invalid scene.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let file = args.scene.read()?;
-    let &CandidateArgs { pairs, axes } = args.scene.cull();
+    let CandidateArgs { pairs, axes } = args.scene.cull;
     let tried = CandidateFilter { finder: pairs, axes };
     let advice = advise(&file, tried, 1e-9 * args.narrow_ns, args.machine.tier())?
         .ok_or_else(|| miette!("nothing could be timed"))?;

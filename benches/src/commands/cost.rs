@@ -111,7 +111,7 @@ fn measure(args: &Args) -> miette::Result<Vec<CostReport>> {
     let plan = CostPlan {
         strategies,
         passes: args.seeds,
-        frames: args.scene.frames().unwrap_or(DEFAULT_FRAMES.min(scene.frames)),
+        frames: args.scene.frames.unwrap_or(DEFAULT_FRAMES.min(scene.frames)),
         effort: EFFORT,
         tier: args.machine.tier(),
     };

@@ -64,7 +64,7 @@ pub struct Args {
 impl Args {
     /// Whether its work is cut into units, which many can share.
     pub fn is_sweep(&self) -> bool {
-        recorded(self.scene.path()).is_none()
+        recorded(&self.scene.path).is_none()
     }
 }
 
@@ -73,7 +73,7 @@ impl Args {
 /// # Errors
 /// A bad scene, settings that it can't have, files that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    if let Some(path) = recorded(args.scene.path()) {
+    if let Some(path) = recorded(&args.scene.path) {
         if let Some(flag) = args.sweep.arguments().first() {
             miette::bail!(
                 help = format!("leave {flag} out"),

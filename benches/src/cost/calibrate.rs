@@ -178,7 +178,7 @@ impl Calibration {
                 frames: poses.len(),
                 counts: cullers[at].counts().since(&before[at]),
                 stages: Default::default(),
-                construct: cullers[at].construct_seconds(),
+                construct: cullers[at].construct,
             };
             for (&regime, all) in Regime::ALL.iter().zip(&mut prepared.observed) {
                 let stages = times[at].medians(regime);

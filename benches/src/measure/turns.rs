@@ -159,7 +159,7 @@ pub struct FrameTimes([Vec<StageSeconds>; 2]);
 impl FrameTimes {
     /// Adds the last frame of a contestant, without waiting.
     pub fn push(&mut self, timed: &TimedFrame<'_, Culling>) {
-        self.0[timed.regime as usize].push(timed.contestant.last().without(timed.waited));
+        self.0[timed.regime as usize].push(timed.contestant.last.without(timed.waited));
     }
 
     /// The frames of one regime.
