@@ -5,16 +5,14 @@
 use std::fs;
 use std::path::Path;
 
+use sdop::bodies::Bodies;
 use sdop::mesh::ProceduralShape;
 use sdop::simd::Tier;
 use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
 use sdop_bench::hull_test::{HullGraph, PosedHull, may_touch};
 use sdop_bench::scene::{Scene, SceneFile};
-use sdop_bench::sweep::Sweep as _;
-use sdop_bench::tradeoff::TradeoffPlan;
 use sdop_bench::tradeoff::counts::Tally;
 use sdop_bench::tradeoff::truth::{ExactJudge, samples};
-use sdop_bench::tradeoff::units::Comparison;
 use sdop_bench::tradeoff::variant::{self, Variant};
 use sdop_reference::Pose;
 use sdop_reference::exact::{meeting, mesh::Mesh};
@@ -117,7 +115,18 @@ fn truth_is_complete_and_cached() {
     let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| [i, j]));
     let moving =
         |&[i, j]: &[u32; 2]| scene.bodies.dynamic[i as usize] || scene.bodies.dynamic[j as usize];
-    let counted = judge.count(&samples[0].bodies, all.filter(moving)).unwrap();
+    let built = scene.shapes.iter().map(|shape| Mesh::new(&shape.vertices, &shape.triangles));
+    let meshes: Vec<Mesh> = built.map(Result::unwrap).collect();
+    let posed = |body: u32| {
+        let (body, Bodies { shape, rotation, translation, .. }) =
+            (body as usize, &samples[0].bodies);
+        (&meshes[shape[body] as usize], Pose::new(rotation[body], translation[body]).unwrap())
+    };
+    let meets = |&[i, j]: &[u32; 2]| {
+        let [(a, a_pose), (b, b_pose)] = [i, j].map(posed);
+        meeting::meet((a, &a_pose), (b, &b_pose)).meets
+    };
+    let counted = all.filter(moving).filter(meets).count();
     assert_eq!(truth[0].len(), counted);
     assert!(counted > 20 && truth.iter().all(|pairs| pairs.is_sorted()));
 
@@ -162,41 +171,5 @@ fn finer_variants_report_fewer() {
     assert_eq!(reported("aabb"), reported("6-dop"));
     for same in ["s-dop lazy", "s-dop batch", "s-dop batch lazy"] {
         assert_eq!(reported(same), reported("s-dop 18, principal, two-sided"));
-    }
-}
-
-/// Where bodies fall asleep, each variant that a world can have is timed in one, and both report
-/// the same pairs. Elsewhere nothing is.
-#[test]
-fn worlds_are_compared_where_bodies_rest() {
-    let resting = SCENE.replace("[effects]", "[effects]\nrest = { speed = 0.5, after = 0.1 }");
-    let plan = TradeoffPlan {
-        seeds: 1,
-        samples: 2,
-        window: 1,
-        stride: 1,
-        tier: Tier::detect(),
-        cache: None,
-    };
-    for (text, worlds) in [(SCENE, 0), (&resting, 1)] {
-        let file = SceneFile::parse(text, "few.toml", Path::new("")).unwrap();
-        let comparison = Comparison::new(&file, &plan).unwrap();
-        let units = comparison.header().unwrap().units;
-        let of_worlds: Vec<usize> =
-            (0..units).filter(|&unit| comparison.name(unit) == "times of worlds").collect();
-        assert_eq!(of_worlds.len(), worlds);
-        for unit in of_worlds {
-            let found: serde_json::Value =
-                serde_json::from_str(&comparison.run(unit).unwrap()).unwrap();
-            let rows = found["worlds"].as_array().unwrap();
-            let names: Vec<&str> =
-                rows.iter().map(|row| row["variant"].as_str().unwrap()).collect();
-            assert!(names.contains(&"sphere") && names.contains(&"aabb"), "{names:?}");
-            assert_eq!(names.len(), 1 + 1 + 4 + 24 + 1, "{names:?}");
-            for row in rows {
-                let mean = |key: &str| row[key]["mean"].as_f64().unwrap();
-                assert!(mean("culler") > 0.0 && mean("world") > 0.0);
-            }
-        }
     }
 }

@@ -5,7 +5,7 @@ use sdop_judge::score::judge_answers;
 use sdop_judge::{Case, Claim, Subject};
 use serde::{Deserialize, Serialize};
 
-use crate::outsiders::timing::{TimingError, ours, own_name};
+use crate::outsiders::{TimingError, ours, own_name};
 
 /// The clock of programs.
 pub(super) const SELF_REPORTED: &str = "self-reported";

@@ -6,8 +6,9 @@ use sdop_bench::measure::row::{Row, Rows};
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::report::digits::interval;
 use sdop_bench::tradeoff::Estimate;
-use sdop_bench::tradeoff::advise::{Advice, Candidate, CandidateFilter, FRAMES, advise};
-use sdop_bench::tradeoff::worlds::WorldTimes;
+use sdop_bench::tradeoff::advise::{
+    Advice, Candidate, CandidateFilter, FRAMES, WorldTimes, advise,
+};
 
 use super::Outcome;
 use super::output::{Format, Listing, emit, paragraphs, rows};
@@ -48,7 +49,7 @@ pub struct Args {
 /// An invalid scene.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
     let file = args.scene.read()?;
-    let &CandidateArgs { pairs, axes } = args.scene.cull();
+    let CandidateArgs { pairs, axes } = args.scene.cull;
     let tried = CandidateFilter { finder: pairs, axes };
     let advice = advise(&file, tried, 1e-9 * args.narrow_ns, args.machine.tier())?
         .ok_or_else(|| miette!("nothing could be timed"))?;
@@ -114,7 +115,7 @@ fn text(advice: &Advice, is_whole: bool) -> String {
         ),
         table(&advice.candidates).to_string(),
     ];
-    if let Some(WorldTimes { variant, culler, world, .. }) = &advice.world {
+    if let Some(WorldTimes { variant, culler, world }) = &advice.world {
         let way = if world.mean < culler.mean { "Use" } else { "Don't use" };
         parts.push(format!(
             "{way} a World, which is given moved bodies and keeps the pairs of all others: {variant} takes {} there, and \

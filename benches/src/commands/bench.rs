@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use miette::IntoDiagnostic as _;
-use sdop_bench::outsiders::timing::{ContestantTiming, OwnPrices, compare, frames, strategy};
+use sdop_bench::outsiders::{ContestantTiming, OwnPrices, compare, frames, strategy};
 use sdop_bench::report::digits::number;
 use sdop_bench::scene::SceneFile;
 use sdop_judge::process::Program;

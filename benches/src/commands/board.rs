@@ -1,11 +1,11 @@
 //! `sdop board`: judges other libraries, and writes a record and one page.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use miette::{IntoDiagnostic as _, miette};
 use sdop_bench::board::{Board, CellVerdict, Row, Speed, judge, page};
-use sdop_bench::outsiders::timing::frames;
+use sdop_bench::outsiders::frames;
 use sdop_bench::roster::{Roster, RosterRow};
 use sdop_bench::scene::{Scene, SceneFile};
 use sdop_judge::process::Program;
@@ -97,7 +97,7 @@ fn judge_all(args: &Args, roster: &Roster) -> miette::Result<Outcome> {
     }
     print(&rows(&HEADER, &board.adapters, line).to_string())?;
     if let Some(out) = &args.out {
-        write_json(&out.join("board.json"), &board)?;
+        files::write_json(&out.join("board.json"), &board)?;
         files::write(&out.join("board.html"), page(&board).into_diagnostic()?)?;
     }
     let changed: Vec<String> = board.adapters.iter().filter_map(changed).collect();
@@ -132,14 +132,9 @@ fn time_all(args: &Args, roster: &Roster, scene: &Scene) -> miette::Result<Outco
     };
     print(&rows(&header, &times, line).to_string())?;
     if let Some(out) = &args.out {
-        write_json(&out.join("times.json"), &times)?;
+        files::write_json(&out.join("times.json"), &times)?;
     }
     Ok(Outcome::Passed)
-}
-
-fn write_json(path: &Path, value: &impl serde::Serialize) -> miette::Result<()> {
-    let text = serde_json::to_string_pretty(value).into_diagnostic()?;
-    files::write(path, text + "\n")
 }
 
 fn chosen<'a>(args: &Args, roster: &'a Roster) -> miette::Result<Vec<&'a RosterRow>> {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use miette::{IntoDiagnostic as _, miette};
+use miette::miette;
 use sdop_bench::cost::PRICES;
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::cost::design;
@@ -13,7 +13,7 @@ use sdop_bench::measure::row::Row;
 use sdop_bench::measure::turns::Regime;
 
 use super::Outcome;
-use super::files::{svg, write};
+use super::files::{svg, write, write_json};
 use super::output::{Column, Format, counted, emit, paragraphs, pivot, progress};
 use super::reproduce::draw_costs;
 use super::scene_args::{MachineArgs, SceneArgs};
@@ -31,8 +31,8 @@ const EFFORT: Effort = Effort { turns: 1, builds: 9 };
 /// scene's shapes alone, so that T is a true prediction; scenes named by --also have the same
 /// prices. The residual is measured / predicted - 1; if it exceeds 5 %, the row names the
 /// assumption that fails. Without --strategy, all strategies for which the scene has settings are
-/// measured. A `World`, which keeps the pairs of sleeping bodies, isn't modelled; `advise` and
-/// `tradeoff` time it.
+/// measured. A `World`, which keeps the pairs of sleeping bodies, isn't modelled; `advise` times
+/// it.
 #[derive(clap::Args)]
 #[command(after_help = "Example: sdop cost data/scenes/paper-500.toml --plot cost.svg")]
 pub struct Args {
@@ -75,9 +75,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     }
     if let Some(directory) = &args.out {
         for report in &reports {
-            let json = serde_json::to_string_pretty(report).into_diagnostic()?;
-            let name = format!("{}.json", report.scene);
-            write(&directory.join(name), &(json + "\n"))?;
+            write_json(&directory.join(format!("{}.json", report.scene)), report)?;
         }
     }
     match args.format {
@@ -113,7 +111,7 @@ fn measure(args: &Args) -> miette::Result<Vec<CostReport>> {
     let plan = CostPlan {
         strategies,
         passes: args.seeds,
-        frames: args.scene.frames().unwrap_or(DEFAULT_FRAMES.min(scene.frames)),
+        frames: args.scene.frames.unwrap_or(DEFAULT_FRAMES.min(scene.frames)),
         effort: EFFORT,
         tier: args.machine.tier(),
     };

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use miette::{IntoDiagnostic as _, WrapErr as _};
+use serde::Serialize;
 
 /// The size limit of files.
 #[derive(clap::Args)]
@@ -31,6 +32,14 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> miette::Result<()> {
         sdop::files::write(path, &bytes)
     };
     write().into_diagnostic().wrap_err_with(|| format!("cannot write {}", path.display()))
+}
+
+/// Writes a value as JSON for people to read, too.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_json(path: &Path, value: &impl Serialize) -> miette::Result<()> {
+    write(path, serde_json::to_string_pretty(value).into_diagnostic()? + "\n")
 }
 
 /// Reads a text file within the usual size limit.

@@ -1,7 +1,5 @@
 //! `sdop report`: renders the numbers on all pages from the records, or checks them.
 
-mod far;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,9 +39,6 @@ const DRAWN: [(&str, Figures); 2] = [
     ("reproduce/results.json", reproduce::figures_of),
     ("tradeoff/tradeoff.json", tradeoff::figures_of),
 ];
-
-/// The table that a figure is drawn from, and the figure.
-const FAR_FIGURE: (&str, &str) = ("kernels/far/far.csv", "far.svg");
 
 /// Macros that pages share.
 const MACROS: &str = "paper/quantities.jinja";
@@ -110,12 +105,6 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
                 problems.extend(figure(args, &whole.place(from), &svg, &name)?);
             }
         }
-    }
-    if let (table, to) = FAR_FIGURE
-        && whole.is_recorded(table)
-    {
-        let text = far::draw(&whole.table(table)?)?;
-        problems.extend(figure(args, &whole.place(table), &text, to)?);
     }
     let quantities = Arc::new(Quantities::default());
     let macros = std::fs::read_to_string(args.root.join(MACROS)).unwrap_or_default();
@@ -235,7 +224,7 @@ fn one_page(
     let rendered = match rendered {
         Ok(rendered) => rendered,
         Err(error) if args.check => return Ok(vec![error.to_string()]),
-        Err(error) => return Err(error.into()),
+        Err(error) => return Err(error),
     };
     let mut problems = Vec::new();
     if rendered != text {

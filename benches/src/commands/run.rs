@@ -13,7 +13,6 @@ use sdop_bench::percentiles::Percentiles;
 use sdop_bench::remedy::OrReport as _;
 use sdop_bench::scene::Scene;
 use sdop_bench::simulate::{Simulation, Summary};
-use sdop_bench::tradeoff::TradeoffError;
 use sdop_bench::tradeoff::truth::ExactJudge;
 use sdop_judge::record::Recorder;
 use serde::Serialize;
@@ -125,11 +124,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         }
         None => None,
     };
-    let judge = if args.truth {
-        Some(ExactJudge::new(&scene.shapes).map_err(TradeoffError::from)?)
-    } else {
-        None
-    };
+    let judge = if args.truth { Some(ExactJudge::new(&scene.shapes)?) } else { None };
     let before = Conditions::before();
     let bar = progress(scene.frames.into(), &scene.name);
     let threads = usize::from(args.threads);
@@ -138,8 +133,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
         if let Some(recorder) = &mut recorder {
             let mut line = sdop_bench::record::frame_line(frame, scene.cull.strategy);
             if let Some(judge) = &judge {
-                let meets = judge.meetings(frame.bodies, line.translations.as_deref());
-                line.meets = Some(meets.map_err(TradeoffError::from)?);
+                line.meets = Some(judge.meetings(frame.bodies, line.translations.as_deref())?);
             }
             recorder.frame(&line).or_report()?;
         }

@@ -25,17 +25,18 @@ use super::one_of;
 #[derive(clap::Args)]
 pub struct SceneArgs<C: clap::Args = CullArgs> {
     /// The scene file (TOML), for example data/scenes/paper-500.toml
-    scene: PathBuf,
+    #[arg(id = "scene", value_name = "SCENE")]
+    pub path: PathBuf,
     /// Frames to cull; the first is the scene as placed
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
-    frames: Option<u32>,
+    pub frames: Option<u32>,
     /// The seed of all random draws
     #[arg(long)]
-    seed: Option<u64>,
+    pub seed: Option<u64>,
     #[command(flatten)]
     files: ReadArgs,
     #[command(flatten)]
-    cull: C,
+    pub cull: C,
 }
 
 /// Flags that override the scene's `[cull]` table, key by key.
@@ -104,7 +105,7 @@ pub struct CandidateArgs {
 pub struct MachineArgs {
     /// SIMD level: scalar, sse2, avx2, avx512 or neon [default: the fastest that this CPU has]
     #[arg(long, value_name = "LEVEL")]
-    simd: Option<Tier>,
+    pub simd: Option<Tier>,
 }
 
 impl<C: clap::Args + Overrides> SceneArgs<C> {
@@ -113,17 +114,12 @@ impl<C: clap::Args + Overrides> SceneArgs<C> {
         self.files.max_bytes()
     }
 
-    /// The file as named.
-    pub fn path(&self) -> &Path {
-        &self.scene
-    }
-
     /// Reads the scene and puts the overrides in place.
     ///
     /// # Errors
     /// A scene that can't be read, or settings that no scene can have.
     pub fn read(&self) -> miette::Result<SceneFile> {
-        self.read_other(&self.scene)
+        self.read_other(&self.path)
     }
 
     /// The same of another scene.
@@ -144,16 +140,6 @@ impl<C: clap::Args + Overrides> SceneArgs<C> {
         }
         Ok(file)
     }
-
-    /// The requested number of frames, if any.
-    pub fn frames(&self) -> Option<u32> {
-        self.frames
-    }
-
-    /// The culling flags.
-    pub fn cull(&self) -> &C {
-        &self.cull
-    }
 }
 
 impl SceneArgs {
@@ -171,11 +157,6 @@ impl SceneArgs {
                 file.spec.cull.strategy
             )),
         }
-    }
-
-    /// The requested seed, if any.
-    pub fn seed(&self) -> Option<u64> {
-        self.seed
     }
 
     /// The default culling settings with the overrides in place.
@@ -316,11 +297,6 @@ impl MachineArgs {
     /// The requested SIMD level, or the fastest.
     pub fn tier(&self) -> Tier {
         self.simd.unwrap_or_else(Tier::detect)
-    }
-
-    /// The SIMD level of `--simd`, if it was given.
-    pub fn asked(&self) -> Option<Tier> {
-        self.simd
     }
 }
 

@@ -23,7 +23,7 @@ pub struct SweepArgs {
     /// Do shard i of n, every n-th unit of the work, and write it to the output directory for
     /// `sdop merge`
     #[arg(long, value_name = "i/n")]
-    shard: Option<Shard>,
+    pub shard: Option<Shard>,
     /// Under mpirun, let ranks on one machine measure times at the same time
     #[arg(long)]
     share_cores: bool,
@@ -53,11 +53,6 @@ pub fn enter(args: &SweepArgs) -> miette::Result<()> {
 }
 
 impl SweepArgs {
-    /// The requested part of the work.
-    pub fn shard(&self) -> Option<Shard> {
-        self.shard
-    }
-
     /// The request, as arguments for another command.
     pub fn arguments(&self) -> Vec<String> {
         let [shard, share_cores] = SHARING.map(str::to_owned);

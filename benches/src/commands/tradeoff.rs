@@ -8,16 +8,14 @@ use std::path::{Path, PathBuf};
 use etcetera::BaseStrategy as _;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_bench::measure::conditions::Conditions;
-use sdop_bench::measure::machine::Machine;
 use sdop_bench::sweep::MergedUnits;
-pub use sdop_bench::tradeoff::units::NAME;
-use sdop_bench::tradeoff::units::{Comparison, Settings};
+pub use sdop_bench::tradeoff::study::NAME;
+use sdop_bench::tradeoff::study::{Comparison, Settings};
 use sdop_bench::tradeoff::{Findings, Tradeoff, TradeoffPlan};
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::Outcome;
-use super::files::{self, command, write};
+use super::files::{self, command, write, write_json};
 use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::{MachineArgs, SceneArgs, VariantArgs};
 use super::sweep::{self, SweepArgs};
@@ -25,10 +23,9 @@ use super::sweep::{self, SweepArgs};
 /// Measure precision and time for every volume and strategy
 ///
 /// Culls sample frames of the scene with every volume and strategy, compares the pairs with the
-/// exact intersections of the meshes, and measures the time of frames that follow one another
-/// (warm) and of frames before which other cullers ran (cold). Counts depend only on scene and
-/// flags; times are those of this machine. If the argument is the JSON of an earlier run, prints
-/// and draws that.
+/// exact intersections of the meshes, and measures the time of frames that follow one another.
+/// Counts depend only on scene and flags; times are those of this machine. If the argument is the
+/// JSON of an earlier run, prints and draws that.
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 when any strategy misses a true pair.\n\
     Examples: sdop tradeoff data/scenes/paper-500.toml --out target/tradeoff\n          \
@@ -67,17 +64,8 @@ pub struct Args {
 impl Args {
     /// Whether its work is cut into units, which many can share.
     pub fn is_sweep(&self) -> bool {
-        recorded(self.scene.path()).is_none()
+        recorded(&self.scene.path).is_none()
     }
-}
-
-/// A result with where it comes from.
-#[derive(Serialize, Deserialize)]
-struct RecordedTradeoff {
-    command: String,
-    machine: Machine,
-    #[serde(flatten)]
-    result: Tradeoff,
 }
 
 /// Runs the command.
@@ -85,14 +73,14 @@ struct RecordedTradeoff {
 /// # Errors
 /// A bad scene, settings that it can't have, files that can't be written.
 pub fn run(args: &Args) -> miette::Result<Outcome> {
-    if let Some(path) = recorded(args.scene.path()) {
+    if let Some(path) = recorded(&args.scene.path) {
         if let Some(flag) = args.sweep.arguments().first() {
             miette::bail!(
                 help = format!("leave {flag} out"),
                 "{flag}: an earlier run has no work to share"
             );
         }
-        return args.tell(&read(path)?);
+        return args.print(&read(path)?);
     }
     sweep::enter(&args.sweep)?;
     let comparison = Comparison::new(&args.scene.read()?, &plan(args))?;
@@ -103,8 +91,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
     if args.sweep.run(&comparison, directory, &mut take)?.is_none() {
         return Ok(Outcome::Passed);
     }
-    let settings = comparison.settings();
-    args.tell(&RecordedTradeoff::new(command(), findings, &settings, before)?)
+    args.print(&finished(command(), findings, comparison.settings(), before)?)
 }
 
 /// What merged shards give.
@@ -118,47 +105,40 @@ pub fn merged(merged: &MergedUnits, out: &Path, format: Format) -> miette::Resul
         findings.take(result)?;
     }
     let (line, unknown) = (merged.header.line.clone(), Conditions::default());
-    let recorded = RecordedTradeoff::new(line, findings, &settings, unknown)?;
-    write_all(out, out, &recorded)?;
-    print(&recorded, format, false)
+    let result = finished(line, findings, settings, unknown)?;
+    write_all(out, out, &result)?;
+    print(&result, format, false)
 }
 
-impl RecordedTradeoff {
-    fn new(
-        command: String,
-        findings: Findings,
-        settings: &Settings,
-        before: Conditions,
-    ) -> miette::Result<Self> {
-        let result = findings.finish(settings, before);
-        Ok(Self {
-            command,
-            machine: settings.machine.clone(),
-            result: result.ok_or_else(|| miette!("these are not the units of one comparison"))?,
-        })
-    }
+fn finished(
+    command: String,
+    findings: Findings,
+    settings: Settings,
+    before: Conditions,
+) -> miette::Result<Tradeoff> {
+    let result = findings.finish(command, settings, before);
+    result.ok_or_else(|| miette!("these are not the units of one comparison"))
 }
 
 impl Args {
     /// Writes and prints the requested results.
-    fn tell(&self, recorded: &RecordedTradeoff) -> miette::Result<Outcome> {
+    fn print(&self, result: &Tradeoff) -> miette::Result<Outcome> {
         if let Some(directory) = &self.out {
             let paper = self.paper.as_ref().unwrap_or(directory);
-            write_all(directory, paper, recorded)?;
+            write_all(directory, paper, result)?;
         }
-        print(recorded, self.format, self.all)
+        print(result, self.format, self.all)
     }
 }
 
-fn print(recorded: &RecordedTradeoff, format: Format, is_whole: bool) -> miette::Result<Outcome> {
-    let result = &recorded.result;
+fn print(result: &Tradeoff, format: Format, is_whole: bool) -> miette::Result<Outcome> {
     let failures: Vec<&str> = result.failures().collect();
     let why = (!failures.is_empty())
         .then(|| format!("true pairs were missed by: {}", failures.join("; ")));
     match format {
         Format::Csv => emit(Format::Csv, &result.rows(), |_| String::new())?,
-        format => emit_with_reason(format, recorded, why.as_deref(), |recorded| {
-            tables::text(&recorded.result, is_whole)
+        format => emit_with_reason(format, result, why.as_deref(), |result| {
+            tables::text(result, is_whole)
         })?,
     }
     Ok(why.map_or(Outcome::Passed, Outcome::Failed))
@@ -188,19 +168,17 @@ fn recorded(path: &Path) -> Option<&Path> {
     path.extension().is_some_and(|ending| ending == "json").then_some(path)
 }
 
-fn read(path: &Path) -> miette::Result<RecordedTradeoff> {
+fn read(path: &Path) -> miette::Result<Tradeoff> {
     serde_json::from_str(&files::read(path)?)
         .into_diagnostic()
         .wrap_err_with(|| format!("{} is no result of sdop tradeoff", path.display()))
 }
 
 /// Writes the numbers to one directory, the figures to another.
-fn write_all(numbers: &Path, paper: &Path, recorded: &RecordedTradeoff) -> miette::Result<()> {
-    let result = &recorded.result;
-    let json = serde_json::to_string_pretty(recorded).into_diagnostic()? + "\n";
+fn write_all(numbers: &Path, paper: &Path, result: &Tradeoff) -> miette::Result<()> {
     let csv = csv_text(serde_json::to_value(result.rows()).into_diagnostic()?)?;
     let seeds = csv_text(seeds(result).into())?;
-    write(&numbers.join("tradeoff.json"), &json)?;
+    write_json(&numbers.join("tradeoff.json"), result)?;
     write(&numbers.join("tradeoff.csv"), &csv)?;
     write(&numbers.join("tradeoff-seeds.csv"), &seeds)?;
     for (name, svg) in figures(result)? {
@@ -232,8 +210,7 @@ fn seeds(result: &Tradeoff) -> Vec<Value> {
 /// Another text.
 #[cfg_attr(not(feature = "maintain"), allow(dead_code, reason = "pages alone need it"))]
 pub fn figures_of(recorded: &str) -> miette::Result<Vec<(String, String)>> {
-    let recorded: RecordedTradeoff = serde_json::from_str(recorded).into_diagnostic()?;
-    figures(&recorded.result)
+    figures(&serde_json::from_str(recorded).into_diagnostic()?)
 }
 
 fn figures(result: &Tradeoff) -> miette::Result<Vec<(String, String)>> {

@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> miette::Result<Outcome> {
                 (page, show.header.scene, broken)
             }
             ViewInput::Broken(error) => {
-                let path = args.scene.path();
+                let path = &args.scene.path;
                 let stem = path.file_stem().unwrap_or(path.as_os_str());
                 (Page::broken(path, &error), stem.to_string_lossy().into_owned(), Some(error))
             }

@@ -127,12 +127,6 @@ impl Calibration {
         })
     }
 
-    /// The level of the working set for which the prices hold.
-    #[must_use]
-    pub fn level(&self) -> CacheLevel {
-        self.level
-    }
-
     /// Runs a round.
     ///
     /// # Errors
@@ -160,7 +154,7 @@ impl Calibration {
     fn turn(&mut self, subject: usize) -> Result<(), SimulationError> {
         let (scene, trajectory) = &mut self.subjects[subject];
         let frames = turn_frames(scene.bodies.len());
-        let poses = next_turn(trajectory, frames, &mut Vec::new())?;
+        let poses = next_turn(trajectory, frames)?;
         let mut cullers = Vec::new();
         for prepared in &mut self.prepared {
             // Shapes are the same in all scenes.
@@ -184,7 +178,7 @@ impl Calibration {
                 frames: poses.len(),
                 counts: cullers[at].counts().since(&before[at]),
                 stages: Default::default(),
-                construct: cullers[at].construct_seconds(),
+                construct: cullers[at].construct,
             };
             for (&regime, all) in Regime::ALL.iter().zip(&mut prepared.observed) {
                 let stages = times[at].medians(regime);

@@ -49,6 +49,6 @@ pub fn build(
 ) -> Result<(Culling, f64), SimulationError> {
     let volumes: f64 = volume_seconds(variant, shapes).iter().sum();
     let culling = variant.culling_of(shapes, scene, tier)?;
-    let seconds = volumes + culling.construct_seconds();
+    let seconds = volumes + culling.construct;
     Ok((culling, seconds))
 }

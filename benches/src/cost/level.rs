@@ -1,9 +1,7 @@
 //! The cache that holds the data of a frame. It follows from the number of bodies, and is part of a
 //! price's regime.
 
-use std::fs::read_to_string;
-use std::path::Path;
-
+use crate::measure::machine::caches;
 use sdop::choice::choices;
 
 /// Approximate bytes per body that a frame reads or writes: the pose (28), the ball in its place
@@ -12,8 +10,6 @@ use sdop::choice::choices;
 const BYTES_PER_BODY: usize = 132;
 /// The sizes of the levels if the system doesn't report them: 32 kB, 1 MB and 32 MB.
 const USUAL_BYTES: [usize; 3] = [32 << 10, 1 << 20, 32 << 20];
-/// The directory in which Linux describes the caches of the first processor.
-const CACHES: &str = "/sys/devices/system/cpu/cpu0/cache";
 
 choices! {
     /// The smallest cache that holds the data of a frame.
@@ -59,14 +55,9 @@ impl CacheLevel {
 /// The sizes of the three levels, from the first on.
 fn cache_bytes() -> [usize; 3] {
     let mut found = USUAL_BYTES;
-    for index in 0..8 {
-        let directory = Path::new(CACHES).join(format!("index{index}"));
-        let text = |name: &str| read_to_string(directory.join(name)).unwrap_or_default();
-        let level: Option<usize> = text("level").trim().parse().ok();
-        let place = level.and_then(|level| found.get_mut(level.checked_sub(1)?));
-        if let (Some(place), Some(bytes)) = (place, bytes(text("size").trim()))
-            && text("type").trim() != "Instruction"
-        {
+    for (level, size) in caches() {
+        let place = level.checked_sub(1).and_then(|place| found.get_mut(place));
+        if let (Some(place), Some(bytes)) = (place, bytes(&size)) {
             *place = bytes;
         }
     }

@@ -39,8 +39,6 @@ pub struct Pass {
     /// The prices of each variant for warm and for cold frames, from the round before the run;
     /// empty without a calibration.
     pub prices: [Vec<Prices>; 2],
-    /// Median seconds of a simulation step.
-    pub step: f64,
 }
 
 /// The frames of a scene, turn after turn.
@@ -53,11 +51,6 @@ pub trait Frames {
     /// # Errors
     /// A body leaves the contract.
     fn next_turn(&mut self) -> Result<Option<(u32, Vec<Bodies>)>, SimulationError>;
-
-    /// Median seconds of a simulation step, if frames are simulated.
-    fn step(&self) -> f64 {
-        0.0
-    }
 }
 
 /// The frames of a scene's run, from the first on.
@@ -68,7 +61,6 @@ pub struct SceneFrames {
     trajectory: Trajectory,
     turn_frames: usize,
     frames: u32,
-    steps: Vec<f64>,
 }
 
 impl SceneFrames {
@@ -84,7 +76,6 @@ impl SceneFrames {
                 None => turn_frames(scene.bodies.len()),
             },
             frames,
-            steps: Vec::new(),
         })
     }
 }
@@ -96,12 +87,8 @@ impl Frames for SceneFrames {
 
     fn next_turn(&mut self) -> Result<Option<(u32, Vec<Bodies>)>, SimulationError> {
         let first = self.trajectory.next_number();
-        let poses = next_turn(&mut self.trajectory, self.turn_frames, &mut self.steps)?;
+        let poses = next_turn(&mut self.trajectory, self.turn_frames)?;
         Ok((!poses.is_empty()).then_some((first, poses)))
-    }
-
-    fn step(&self) -> f64 {
-        median(self.steps.clone())
     }
 }
 
@@ -166,7 +153,7 @@ pub fn pass(
     for (culled, built) in culled.iter_mut().zip(built) {
         culled.construct = median(built);
     }
-    Ok(Pass { culled, prices, step: frames.step() })
+    Ok(Pass { culled, prices })
 }
 
 /// The median seconds per frame of variant number `at`, from passes in the order of time.

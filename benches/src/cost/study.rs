@@ -4,9 +4,7 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
-use miette::Diagnostic;
 use serde::Serialize;
-use thiserror::Error;
 
 use super::calibrate::{Calibration, Effort};
 use super::level::CacheLevel;
@@ -16,8 +14,7 @@ use crate::measure::conditions::Conditions;
 use crate::measure::machine::Machine;
 use crate::measure::turns::{FEWEST_TIMED_FRAMES, Regime};
 use crate::measure::variant::Variant;
-use crate::scene::{Scene, SceneError, SceneFile};
-use crate::simulate::SimulationError;
+use crate::scene::{Scene, SceneFile};
 use sdop::settings::{CullSettings, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::Shape;
@@ -60,30 +57,6 @@ pub struct CostReport {
     pub costs: Vec<Cost>,
 }
 
-/// The error of a cost that can't be measured.
-#[derive(Debug, Error, Diagnostic)]
-pub enum CostError {
-    /// The scene can't be built.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Scene(#[from] SceneError),
-    /// The scene can't be simulated or culled.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Simulation(#[from] SimulationError),
-    /// Prices hold for scenes of one kind.
-    #[error("{scene} and {first} can't have the same prices: their {differ} differ")]
-    #[diagnostic(help("run `sdop cost` for each kind of scene by itself"))]
-    OtherKind {
-        /// The scene.
-        scene: String,
-        /// The first scene.
-        first: String,
-        /// What differs.
-        differ: &'static str,
-    },
-}
-
 /// A scene, and its passes so far.
 struct StudiedScene {
     file: SceneFile,
@@ -93,7 +66,7 @@ struct StudiedScene {
 }
 
 impl StudiedScene {
-    fn new(file: &SceneFile, plan: &CostPlan) -> Result<Self, CostError> {
+    fn new(file: &SceneFile, plan: &CostPlan) -> miette::Result<Self> {
         let scene = file.build()?;
         let frames = plan.frames.min(scene.frames);
         Ok(Self {
@@ -105,7 +78,7 @@ impl StudiedScene {
     }
 
     /// Checks that this scene and the first one have the same calibration scenes.
-    fn is_like(&self, first: &Self) -> Result<(), CostError> {
+    fn is_like(&self, first: &Self) -> miette::Result<()> {
         let rests = |studied: &Self| studied.scene.effects.rest.is_some();
         let differ = if self.scene.cull != first.scene.cull {
             "`[cull]` tables"
@@ -116,11 +89,12 @@ impl StudiedScene {
         } else {
             return Ok(());
         };
-        Err(CostError::OtherKind {
-            scene: self.scene.name.clone(),
-            first: first.scene.name.clone(),
-            differ,
-        })
+        miette::bail!(
+            help = "run `sdop cost` for each kind of scene by itself",
+            "{} and {} can't have the same prices: their {differ} differ",
+            self.scene.name,
+            first.scene.name
+        )
     }
 
     /// The bits of the vertices of each shape, each once.
@@ -130,7 +104,7 @@ impl StudiedScene {
     }
 
     /// The scene of pass number `n`, which has the nth next seed.
-    fn of_pass(&mut self, n: u64) -> Result<Scene, CostError> {
+    fn of_pass(&mut self, n: u64) -> miette::Result<Scene> {
         self.file.spec.seed = self.scene.seed.wrapping_add(n);
         Ok(self.file.build()?)
     }
@@ -159,7 +133,7 @@ pub fn study(
     files: &[SceneFile],
     plan: &CostPlan,
     mut done: impl FnMut(),
-) -> Result<Vec<CostReport>, CostError> {
+) -> miette::Result<Vec<CostReport>> {
     let scenes = files.iter().map(|file| StudiedScene::new(file, plan));
     let mut scenes = scenes.collect::<Result<Vec<_>, _>>()?;
     let Some(first) = scenes.first() else {

@@ -13,7 +13,7 @@ use super::terms::Terms;
 use crate::measure::counts::Volume;
 use crate::measure::culling::StageSeconds;
 use crate::measure::estimate::Estimate;
-use crate::measure::turns::{Quartiles, Regime};
+use crate::measure::turns::Regime;
 use crate::measure::variant::Variant;
 use sdop::choice::choices;
 use sdop::settings::Strategy;
@@ -92,8 +92,6 @@ pub struct Cost {
     pub widths: Vec<Terms>,
     /// Seconds per frame without construction: the terms' sum, and the median over frames.
     pub frame: CheckedPrediction,
-    /// The frames' quartiles, means over passes.
-    pub quartiles: Quartiles,
     /// Co, seconds.
     pub construct: CheckedPrediction,
     /// T = Co + all frames, seconds.
@@ -110,12 +108,6 @@ impl Cost {
     /// A term summed over the variant's volumes.
     pub fn sum(&self, term: fn(&Terms) -> f64) -> f64 {
         self.terms.iter().map(term).sum()
-    }
-
-    /// Whether the prediction is off by more than a share.
-    #[must_use]
-    pub fn misses(&self, share: f64) -> bool {
-        self.frame.residual.mean.abs() > share
     }
 }
 
@@ -144,8 +136,8 @@ pub fn cost(
     }
     let by_round: Vec<Vec<Terms>> = rounds.iter().map(|prices| terms_at(prices, last)).collect();
     let frames = f64::from(last.frames);
-    let seconds: Vec<Quartiles> =
-        culled.iter().map(|culled| culled.times.quartiles(regime)).collect();
+    let seconds: Vec<f64> =
+        culled.iter().map(|culled| culled.times.quartiles(regime).median).collect();
     let compared = |predicted: &dyn Fn(&[Terms]) -> f64, measured: &dyn Fn(usize) -> f64| {
         let pass = |(number, terms): (usize, &Vec<Terms>)| [predicted(terms), measured(number)];
         let passes: Vec<_> = parts.iter().enumerate().map(pass).collect();
@@ -154,7 +146,7 @@ pub fn cost(
     };
     let per_frame = |terms: &[Terms]| terms.iter().map(Terms::recurring).sum::<f64>();
     let once = |terms: &[Terms]| terms.iter().map(|terms| terms.construct).sum::<f64>();
-    let frame = compared(&per_frame, &|pass| seconds[pass].median);
+    let frame = compared(&per_frame, &|pass| seconds[pass]);
     let of_volume =
         |from: &[Vec<Terms>], at: usize| from.iter().map(|terms| terms[at]).collect::<Vec<_>>();
     let widths = |at| {
@@ -176,10 +168,9 @@ pub fn cost(
             .then(|| failing(&frame, &terms, &culled, regime)),
         terms,
         frame,
-        quartiles: Quartiles::mean(&seconds),
         construct: compared(&once, &|pass| culled[pass].construct),
         total: compared(&|terms| once(terms) + frames * per_frame(terms), &|pass| {
-            culled[pass].construct + frames * seconds[pass].median
+            culled[pass].construct + frames * seconds[pass]
         }),
     })
 }

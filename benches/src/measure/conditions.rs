@@ -27,7 +27,7 @@ impl Conditions {
     /// Before anything is measured.
     #[must_use]
     pub fn before() -> Self {
-        Self { others: [load(), None], wide: 0, of: 0 }
+        Self { others: [Load::now().map(|load| load.one_minute), None], wide: 0, of: 0 }
     }
 
     /// After everything is: with the times that will be quoted.
@@ -35,7 +35,7 @@ impl Conditions {
     pub fn after(self, times: impl Iterator<Item = Estimate>) -> Self {
         let times: Vec<Estimate> = times.collect();
         // Our own single thread has been running all the time.
-        let others = load().map(|load| (load - 1.0).max(0.0));
+        let others = Load::now().map(|load| (load.one_minute - 1.0).max(0.0));
         Self {
             others: [self.others[0], others],
             wide: times.iter().filter(|time| time.relative() > WIDE_INTERVAL).count(),
@@ -69,10 +69,23 @@ impl Conditions {
     }
 }
 
-/// The one-minute load average, where the system has it in a file.
-fn load() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/loadavg").ok()?;
-    text.split_whitespace().next()?.parse().ok()
+/// Mean numbers of waiting or running threads over one and five minutes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Load {
+    /// Over the last minute.
+    pub one_minute: f64,
+    /// Over the last five.
+    pub five_minutes: f64,
+}
+
+impl Load {
+    /// The load now, where the system reports it.
+    #[must_use]
+    pub fn now() -> Option<Self> {
+        let text = std::fs::read_to_string("/proc/loadavg").ok()?;
+        let mut numbers = text.split(' ').map(str::parse);
+        Some(Self { one_minute: numbers.next()?.ok()?, five_minutes: numbers.next()?.ok()? })
+    }
 }
 
 #[cfg(test)]

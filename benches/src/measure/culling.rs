@@ -69,7 +69,7 @@ impl Engine {
     fn seconds(&self) -> &Seconds {
         match self {
             Self::Culler(culler) => culler.seconds(),
-            Self::World(world) => world.world().seconds(),
+            Self::World(world) => world.world.seconds(),
         }
     }
 }
@@ -79,8 +79,10 @@ impl Engine {
 pub struct Culling {
     engine: Engine,
     hulls: Option<HullTest>,
-    last: StageSeconds,
-    construct: f64,
+    /// Seconds of the last frame.
+    pub last: StageSeconds,
+    /// Seconds of building it, without the shapes' volumes.
+    pub construct: f64,
     refused: Option<WorldError>,
 }
 
@@ -138,18 +140,6 @@ impl Culling {
     /// The error of the first rejected frame; frames of a scene are never rejected.
     pub fn accepted(&self) -> Result<(), WorldError> {
         self.refused.clone().map_or(Ok(()), Err)
-    }
-
-    /// Seconds of the last frame.
-    #[must_use]
-    pub fn last(&self) -> StageSeconds {
-        self.last
-    }
-
-    /// Seconds of building it, without the shapes' volumes.
-    #[must_use]
-    pub fn construct_seconds(&self) -> f64 {
-        self.construct
     }
 
     /// The culler's counters, summed over frames.

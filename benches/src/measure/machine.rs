@@ -62,6 +62,22 @@ fn cpu() -> Option<String> {
     Some(format!("{name} (family {}, model {})", ids[0], ids[1]))
 }
 
+/// The data caches of the first core, where Linux describes them: the level and the size of each,
+/// as in `48K`.
+#[must_use]
+pub fn caches() -> Vec<(usize, String)> {
+    let read = |index: usize, what: &str| {
+        let path = format!("/sys/devices/system/cpu/cpu0/cache/index{index}/{what}");
+        Some(std::fs::read_to_string(path).ok()?.trim().to_owned())
+    };
+    let cache = |index| {
+        let level = read(index, "level")?.parse().ok()?;
+        Some((read(index, "type")?, (level, read(index, "size")?)))
+    };
+    let caches = (0..8).map_while(cache).filter(|(kind, _)| kind != "Instruction");
+    caches.map(|(_, cache)| cache).collect()
+}
+
 /// The system and its release, as far as a file says.
 fn os() -> String {
     let kernel = std::fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();

@@ -19,7 +19,8 @@ const NUDGE: f64 = 1.0;
 /// A world with the bodies of a scene, each in the slot of its number.
 #[derive(Debug)]
 pub(super) struct SceneWorld {
-    world: World,
+    /// The world.
+    pub world: World,
     ids: Vec<BodyId>,
     /// The bodies as of the last frame, and those that have moved since.
     last: Bodies,
@@ -96,11 +97,6 @@ impl SceneWorld {
             self.world.set_pose(self.ids[body], bodies.rotation[body], t)?;
         }
         self.world.cull().map(|_| ())
-    }
-
-    /// The world.
-    pub fn world(&self) -> &World {
-        &self.world
     }
 
     /// The counters of all frames.

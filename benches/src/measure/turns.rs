@@ -152,34 +152,20 @@ pub fn turn_frames(bodies: usize) -> usize {
     (PREPARED_BODIES / bodies.max(1)).clamp(2, MOST_TURN_FRAMES)
 }
 
-/// The times of one contestant's frames, in the order of their measurement.
+/// The times of one contestant's frames by regime, in the order of their measurement.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct FrameTimes {
-    warm: Vec<StageSeconds>,
-    cold: Vec<StageSeconds>,
-}
+pub struct FrameTimes([Vec<StageSeconds>; 2]);
 
 impl FrameTimes {
     /// Adds the last frame of a contestant, without waiting.
     pub fn push(&mut self, timed: &TimedFrame<'_, Culling>) {
-        let stages = timed.contestant.last().without(timed.waited);
-        self.of_mut(timed.regime).push(stages);
+        self.0[timed.regime as usize].push(timed.contestant.last.without(timed.waited));
     }
 
     /// The frames of one regime.
     #[must_use]
     pub fn of(&self, regime: Regime) -> &[StageSeconds] {
-        match regime {
-            Regime::Warm => &self.warm,
-            Regime::Cold => &self.cold,
-        }
-    }
-
-    fn of_mut(&mut self, regime: Regime) -> &mut Vec<StageSeconds> {
-        match regime {
-            Regime::Warm => &mut self.warm,
-            Regime::Cold => &mut self.cold,
-        }
+        &self.0[regime as usize]
     }
 
     /// Medians over frames per stage, which add up to the median of whole frames: the difference,
@@ -199,23 +185,12 @@ impl FrameTimes {
         Quartiles::of(self.of(regime).iter().map(StageSeconds::total).collect())
     }
 
-    /// Mean seconds per frame over both regimes.
-    #[must_use]
-    pub fn mean(&self) -> f64 {
-        mean(self.warm.iter().chain(&self.cold))
-    }
-
     /// Mean seconds of a frame of one regime.
     #[must_use]
-    pub fn mean_of(&self, regime: Regime) -> f64 {
-        mean(self.of(regime).iter())
+    pub fn mean(&self, regime: Regime) -> f64 {
+        let frames = self.of(regime);
+        frames.iter().map(StageSeconds::total).sum::<f64>() / frames.len() as f64
     }
-}
-
-fn mean<'a>(frames: impl Iterator<Item = &'a StageSeconds>) -> f64 {
-    let (sum, count) =
-        frames.fold((0.0, 0_u32), |(sum, count), frame| (sum + frame.total(), count + 1));
-    sum / f64::from(count)
 }
 
 /// A median with the quartiles around it.
@@ -242,35 +217,22 @@ impl Quartiles {
         };
         Self { low: at(1), median: at(2), high: at(3) }
     }
-
-    /// The means of the quartiles of several sets of frames.
-    #[must_use]
-    pub fn mean(all: &[Self]) -> Self {
-        let over = |value: fn(&Self) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
-        Self { low: over(|q| q.low), median: over(|q| q.median), high: over(|q| q.high) }
-    }
 }
 
-/// The poses of the next turn's frames, at most `frames`; none after the last frame. Seconds of the
-/// steps are appended to `steps`.
+/// The poses of the next turn's frames, at most `frames`; none after the last frame.
 ///
 /// # Errors
 /// A body that leaves the contract.
 pub fn next_turn(
     trajectory: &mut Trajectory,
     frames: usize,
-    steps: &mut Vec<f64>,
 ) -> Result<Vec<Bodies>, SimulationError> {
     let mut poses = Vec::new();
     while poses.len() < frames {
-        let stepped = trajectory.next_number() > 0;
         let Some(bodies) = trajectory.advance()? else {
             break;
         };
         poses.push(bodies.clone());
-        if stepped {
-            steps.push(trajectory.step_seconds());
-        }
     }
     Ok(poses)
 }

@@ -77,12 +77,6 @@ impl Variant {
         self.volumes().pop()
     }
 
-    /// The scene with these settings and with the or-DOPs that they need.
-    #[must_use]
-    pub fn apply(&self, scene: &Scene) -> Scene {
-        Scene { shapes: self.shapes(scene), cull: self.settings.clone(), ..scene.clone() }
-    }
-
     /// The scene's shapes with the or-DOPs that the settings need.
     #[must_use]
     pub fn shapes(&self, scene: &Scene) -> Vec<Shape> {

@@ -7,9 +7,9 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::columns::{ColumnKind, interval, kinds};
-use super::manifest::{Manifest, ManifestError, sha256};
+use super::manifest::{Manifest, sha256};
 use super::provenance::CodeVersion;
-use super::table::{Table, TableError};
+use super::table::Table;
 use crate::measure::conditions::Conditions;
 use crate::measure::estimate::Estimate;
 use crate::measure::machine::Machine;
@@ -71,41 +71,20 @@ pub struct RecordComparison {
     pub warnings: Vec<String>,
 }
 
-/// Records that can't be compared.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum CompareError {
-    /// One of them is no record.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Manifest(#[from] ManifestError),
-    /// One of their tables can't be read.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Table(#[from] TableError),
-    /// They are of two experiments.
-    #[error("{first} and {second} are different experiments")]
-    #[diagnostic(help("compare two records of one experiment"))]
-    Experiments {
-        /// The first record's.
-        first: String,
-        /// The second record's.
-        second: String,
-    },
-}
-
 /// Compares the records in two directories.
 ///
 /// # Errors
 /// A directory without a whole record; two experiments.
-pub fn compare(first: &Path, second: &Path) -> Result<RecordComparison, CompareError> {
+pub fn compare(first: &Path, second: &Path) -> miette::Result<RecordComparison> {
     let manifests = [Manifest::read(first)?, Manifest::read(second)?];
     let [a, b] = &manifests;
-    if a.experiment != b.experiment {
-        return Err(CompareError::Experiments {
-            first: a.experiment.clone(),
-            second: b.experiment.clone(),
-        });
-    }
+    miette::ensure!(
+        a.experiment == b.experiment,
+        help = "compare two records of one experiment",
+        "{} and {} are different experiments",
+        a.experiment,
+        b.experiment
+    );
     let mut comparison = RecordComparison {
         ids: [a.id().to_owned(), b.id().to_owned()],
         settings: settings(a, b),

@@ -1,15 +1,19 @@
 //! `record.json`: the description of a directory of measurements.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
+use miette::miette;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use super::clock::today;
-use super::provenance::{CodeVersion, Load, caches};
+use super::provenance::CodeVersion;
 use crate::hash::hex;
-use crate::measure::machine::Machine;
+use crate::measure::conditions::Load;
+use crate::measure::machine::{Machine, caches};
 
 /// The manifest's name in every record.
 pub const FILE: &str = "record.json";
@@ -62,56 +66,20 @@ pub struct Manifest {
     pub digest: String,
 }
 
-/// What is wrong with a record.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum ManifestError {
-    /// A file can't be read.
-    #[error("{}: {source}", path.display())]
-    #[diagnostic(help("a record is a directory with a record.json, as `sdop record` makes it"))]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The system's error.
-        source: std::io::Error,
-    },
-    /// The manifest is none.
-    #[error("{}: {source}", path.display())]
-    #[diagnostic(help("record.json is written by `sdop record`; make the record again"))]
-    Form {
-        /// The manifest.
-        path: PathBuf,
-        /// Where it breaks the format.
-        source: serde_json::Error,
-    },
-    /// A manifest of another format or version.
-    #[error("{}: format {format} version {version}, expected sdop-measurement version {VERSION}", path.display())]
-    #[diagnostic(help("make the record again with this version of sdop"))]
-    Version {
-        /// The manifest.
-        path: PathBuf,
-        /// Its format.
-        format: String,
-        /// Its version.
-        version: u32,
-    },
-    /// A digest that doesn't fit.
-    #[error("{}: changed since it was recorded", path.display())]
-    #[diagnostic(help("restore the file, or measure again with the command in record.json"))]
-    Changed {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A file that the manifest doesn't know, or one that is missing.
-    #[error("{}: {problem}", path.display())]
-    #[diagnostic(help(
-        "a record's files are those that record.json lists, without those that in-history.txt lists; make the record again"
-    ))]
-    Files {
-        /// The file.
-        path: PathBuf,
-        /// What is the matter with it.
-        problem: &'static str,
-    },
+/// What is wrong with a file of a record, and what to do.
+fn flaw(path: &Path, problem: impl Display, help: &str) -> miette::Report {
+    miette!(help = help, "{}: {problem}", path.display())
+}
+
+/// A file that can't be read.
+fn unreadable(path: &Path, error: &io::Error) -> miette::Report {
+    flaw(path, error, "a record is a directory with a record.json, as `sdop record` makes it")
+}
+
+/// A file whose digest doesn't fit.
+fn changed(path: &Path) -> miette::Report {
+    let help = "restore the file, or measure again with the command in record.json";
+    flaw(path, "changed since it was recorded", help)
 }
 
 impl Manifest {
@@ -124,7 +92,7 @@ impl Manifest {
         experiment: &str,
         command: String,
         deterministic: &[String],
-    ) -> Result<Self, ManifestError> {
+    ) -> miette::Result<Self> {
         let files = digests(directory)?;
         let known = |name: &&String| files.contains_key(*name);
         Ok(Self {
@@ -135,7 +103,7 @@ impl Manifest {
             date: today(),
             code: CodeVersion::here(Path::new(".")),
             machine: None,
-            caches: caches(),
+            caches: caches().iter().map(|(level, size)| format!("L{level} {size}")).collect(),
             load: None,
             seconds: None,
             note: None,
@@ -150,11 +118,10 @@ impl Manifest {
     ///
     /// # Errors
     /// A file that can't be read.
-    pub fn add_inputs(&mut self, root: &Path, scenes: &[String]) -> Result<(), ManifestError> {
+    pub fn add_inputs(&mut self, root: &Path, scenes: &[String]) -> miette::Result<()> {
         for input in inputs(scenes) {
             let path = root.join(&input);
-            let bytes =
-                std::fs::read(&path).map_err(|source| ManifestError::Io { path, source })?;
+            let bytes = std::fs::read(&path).map_err(|error| unreadable(&path, &error))?;
             self.inputs.insert(input.display().to_string(), sha256(&bytes));
         }
         Ok(())
@@ -172,18 +139,21 @@ impl Manifest {
     ///
     /// # Errors
     /// What is missing, new or changed.
-    pub fn read(directory: &Path) -> Result<Self, ManifestError> {
+    pub fn read(directory: &Path) -> miette::Result<Self> {
         let path = directory.join(FILE);
-        let text = std::fs::read_to_string(&path)
-            .map_err(|source| ManifestError::Io { path: path.clone(), source })?;
-        let manifest: Self = serde_json::from_str(&text)
-            .map_err(|source| ManifestError::Form { path: path.clone(), source })?;
+        let text = std::fs::read_to_string(&path).map_err(|error| unreadable(&path, &error))?;
+        let manifest: Self = serde_json::from_str(&text).map_err(|error| {
+            flaw(&path, error, "record.json is written by `sdop record`; make the record again")
+        })?;
         let Self { format, version, .. } = &manifest;
         if format != "sdop-measurement" || *version != VERSION {
-            return Err(ManifestError::Version { path, format: format.clone(), version: *version });
+            let problem = format!(
+                "format {format} version {version}, expected sdop-measurement version {VERSION}"
+            );
+            return Err(flaw(&path, problem, "make the record again with this version of sdop"));
         }
         if manifest.digest != manifest.own_digest() {
-            return Err(ManifestError::Changed { path });
+            return Err(changed(&path));
         }
         manifest.check_files(directory)?;
         Ok(manifest)
@@ -196,18 +166,16 @@ impl Manifest {
     }
 
     /// Checks the files that are there. Those that only the git history has may be missing.
-    fn check_files(&self, directory: &Path) -> Result<(), ManifestError> {
+    fn check_files(&self, directory: &Path) -> miette::Result<()> {
         let now = digests(directory)?;
         let in_history = std::fs::read_to_string(directory.join(IN_HISTORY)).unwrap_or_default();
-        let problem =
-            |name: &str, problem| Err(ManifestError::Files { path: directory.join(name), problem });
+        let help = "a record's files are those that record.json lists, without those that in-history.txt lists; make the record again";
+        let problem = |name: &str, problem: &str| Err(flaw(&directory.join(name), problem, help));
         for (name, digest) in &self.files {
             match now.get(name) {
                 None if in_history.lines().any(|listed| listed == name) => {}
                 None => return problem(name, "missing"),
-                Some(other) if other != digest => {
-                    return Err(ManifestError::Changed { path: directory.join(name) });
-                }
+                Some(other) if other != digest => return Err(changed(&directory.join(name))),
                 Some(_) => {}
             }
         }
@@ -222,6 +190,12 @@ impl Manifest {
         let open = Self { digest: String::new(), ..self.clone() };
         sha256(serde_json::to_string(&open).unwrap_or_default().as_bytes())
     }
+}
+
+/// Today, `YYYY-MM-DD`, UTC.
+fn today() -> String {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+    now.split('T').next().unwrap_or_default().to_owned()
 }
 
 /// Some scenes and the meshes that they use, by their paths in the repository.
@@ -239,7 +213,7 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
 
 /// The digest of every file in `directory` and in its directories, except the manifest and the list
 /// of files in the history. A directory that has a manifest is another record.
-fn digests(directory: &Path) -> Result<BTreeMap<String, String>, ManifestError> {
+fn digests(directory: &Path) -> miette::Result<BTreeMap<String, String>> {
     let mut digests = BTreeMap::new();
     add_digests(directory, "", &mut digests)?;
     Ok(digests)
@@ -249,19 +223,16 @@ fn add_digests(
     directory: &Path,
     prefix: &str,
     digests: &mut BTreeMap<String, String>,
-) -> Result<(), ManifestError> {
-    let failed = |path: &Path| {
-        let path = path.to_path_buf();
-        move |source| ManifestError::Io { path, source }
-    };
-    for entry in std::fs::read_dir(directory).map_err(failed(directory))? {
-        let path = entry.map_err(failed(directory))?.path();
+) -> miette::Result<()> {
+    let failed = |error: io::Error| unreadable(directory, &error);
+    for entry in std::fs::read_dir(directory).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
         let own = path.file_name().unwrap_or_default().to_string_lossy();
         let name = format!("{prefix}{own}");
         if path.is_dir() && !path.join(FILE).is_file() {
             add_digests(&path, &format!("{name}/"), digests)?;
         } else if path.is_file() && name != FILE && name != IN_HISTORY {
-            let bytes = std::fs::read(&path).map_err(failed(&path))?;
+            let bytes = std::fs::read(&path).map_err(|error| unreadable(&path, &error))?;
             digests.insert(name, sha256(&bytes));
         }
     }
@@ -285,6 +256,12 @@ mod tests {
         let manifest = manifest.unwrap();
         std::fs::write(directory.path().join(FILE), manifest.text()).unwrap();
         (directory, manifest)
+    }
+
+    /// What is wrong with a record, without the file's place.
+    fn problem(directory: &tempfile::TempDir) -> String {
+        let error = Manifest::read(directory.path()).unwrap_err().to_string();
+        error.strip_prefix(&format!("{}/", directory.path().display())).unwrap().to_owned()
     }
 
     /// A record reads back as it was described.
@@ -312,8 +289,8 @@ mod tests {
         assert_eq!(manifest.files.keys().collect::<Vec<_>>(), ["figures/a.svg"]);
         std::fs::write(place.join(FILE), manifest.text()).unwrap();
         std::fs::write(place.join("figures/a.svg"), "3").unwrap();
-        let error = Manifest::read(place).unwrap_err();
-        assert!(matches!(error, ManifestError::Changed { .. }), "{error}");
+        let error = Manifest::read(place).unwrap_err().to_string();
+        assert!(error.contains("changed since"), "{error}");
     }
 
     /// A file more or less is seen, unless only the history has it.
@@ -321,23 +298,14 @@ mod tests {
     fn added_or_missing_file_is_detected() {
         let (directory, _) = record();
         std::fs::write(directory.path().join("extra.csv"), "a\n1\n").unwrap();
-        assert!(matches!(
-            Manifest::read(directory.path()).unwrap_err(),
-            ManifestError::Files { .. }
-        ));
+        assert_eq!(problem(&directory), "extra.csv: not among the record's files");
         let (directory, _) = record();
         std::fs::remove_file(directory.path().join("counts.csv")).unwrap();
-        assert!(matches!(
-            Manifest::read(directory.path()).unwrap_err(),
-            ManifestError::Files { .. }
-        ));
+        assert_eq!(problem(&directory), "counts.csv: missing");
         let list = directory.path().join(IN_HISTORY);
         std::fs::write(&list, "counts.csv\n").unwrap();
         assert_eq!(Manifest::read(directory.path()).unwrap().deterministic, ["counts.csv"]);
         std::fs::write(&list, "counts.csv\ntimes.csv\n").unwrap();
-        assert!(matches!(
-            Manifest::read(directory.path()).unwrap_err(),
-            ManifestError::Files { .. }
-        ));
+        assert_eq!(problem(&directory), "times.csv: not among the record's files");
     }
 }

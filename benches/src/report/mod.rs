@@ -5,7 +5,6 @@
 //! which holds the command, the commit, the machine and a digest of every file. A page quotes
 //! records through its template (`pages`); rendering again must change nothing.
 
-mod clock;
 mod columns;
 mod compare;
 pub mod digits;
@@ -22,7 +21,7 @@ mod table;
 pub use compare::{CountDifference, MeasuredChange, RecordComparison, compare};
 pub use digits::{Quantities, Quantity};
 pub use experiment::{Experiment, ExperimentStep, experiments};
-pub use manifest::{FILE, Manifest, ManifestError};
-pub use provenance::{CodeVersion, Load, caches};
-pub use store::{Store, StoreError};
-pub use table::{Table, TableError};
+pub use manifest::{FILE, Manifest};
+pub use provenance::CodeVersion;
+pub use store::Store;
+pub use table::Table;

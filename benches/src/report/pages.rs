@@ -27,7 +27,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use miette::Diagnostic;
+use miette::miette;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Kwargs, Serde};
 use minijinja::{Environment, Error, ErrorKind, Output, State, Value, context, escape_formatter};
@@ -55,26 +55,20 @@ pub struct PageSources {
     pub quantities: Arc<Quantities>,
 }
 
-/// A page that can't be rendered.
-#[derive(Debug, thiserror::Error, Diagnostic)]
-#[error("{page}:{line}: {problem}")]
-#[diagnostic(help("`sdop report --help` says what a template may use"))]
-pub struct PageError {
-    page: String,
-    line: usize,
-    problem: String,
+/// What is wrong with a page that can't be rendered.
+fn flaw(page: &str, line: usize, problem: &str) -> miette::Report {
+    let help = "`sdop report --help` says what a template may use";
+    miette!(help = help, "{page}:{line}: {problem}")
 }
 
 /// A page as its records have it, from its own template.
 ///
 /// # Errors
 /// An expression that has no value, a record that was changed.
-pub fn whole(page: &str, template: &str, sources: &PageSources) -> Result<String, PageError> {
+pub fn whole(page: &str, template: &str, sources: &PageSources) -> miette::Result<String> {
     let environment = environment(page, sources)?;
-    let text = evaluate(&environment, template).map_err(|error| PageError {
-        page: format!("{WHOLE}/{page}"),
-        line: error.line().unwrap_or(0),
-        problem: said(&error),
+    let text = evaluate(&environment, template).map_err(|error| {
+        flaw(&format!("{WHOLE}/{page}"), error.line().unwrap_or(0), &said(&error))
     })?;
     let is_markdown = Path::new(page).extension().is_some_and(|e| e == "md");
     Ok(if is_markdown { filled(&text) } else { text })
@@ -86,7 +80,7 @@ pub fn whole(page: &str, template: &str, sources: &PageSources) -> Result<String
 /// # Errors
 /// A block without an end or a template, an expression that has no value, a record that was
 /// changed.
-pub fn blocks(page: &str, text: &str, sources: &PageSources) -> Result<String, PageError> {
+pub fn blocks(page: &str, text: &str, sources: &PageSources) -> miette::Result<String> {
     let environment = environment(page, sources)?;
     let mut out = String::with_capacity(text.len());
     let mut lines = text.split_inclusive('\n').enumerate();
@@ -95,8 +89,7 @@ pub fn blocks(page: &str, text: &str, sources: &PageSources) -> Result<String, P
         let Some(name) = marked(line, "BEGIN") else {
             continue;
         };
-        let failed =
-            |problem: String| PageError { page: page.to_owned(), line: index + 1, problem };
+        let failed = |problem: String| flaw(page, index + 1, &problem);
         let template = sources
             .templates
             .get(name)
@@ -137,7 +130,7 @@ fn said(error: &Error) -> String {
     text
 }
 
-fn environment<'s>(page: &str, sources: &'s PageSources) -> Result<Environment<'s>, PageError> {
+fn environment<'s>(page: &str, sources: &'s PageSources) -> miette::Result<Environment<'s>> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
     // A line that only has a block tag is removed.
@@ -171,11 +164,7 @@ fn environment<'s>(page: &str, sources: &'s PageSources) -> Result<Environment<'
     environment.add_filter("signed", |x: f64, digits: usize| format!("{x:+.digits$}"));
     environment.add_filter("shortest", |x: f64| x.to_string());
     let added = environment.add_template("macros", &sources.macros);
-    added.map_err(|error| PageError {
-        page: "macros".to_owned(),
-        line: error.line().unwrap_or(0),
-        problem: said(&error),
-    })?;
+    added.map_err(|error| flaw("macros", error.line().unwrap_or(0), &said(&error)))?;
     environment.set_formatter(formatted);
     Ok(environment)
 }

@@ -89,39 +89,3 @@ fn git(place: &Path, arguments: &[&str]) -> Option<String> {
     let text = String::from_utf8(output.stdout).ok()?;
     output.status.success().then(|| text.trim().to_owned())
 }
-
-/// Mean numbers of waiting or running threads over one and five minutes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Load {
-    /// Over the last minute.
-    pub one_minute: f64,
-    /// Over the last five.
-    pub five_minutes: f64,
-}
-
-impl Load {
-    /// The load now, where the system reports it.
-    #[must_use]
-    pub fn now() -> Option<Self> {
-        let text = std::fs::read_to_string("/proc/loadavg").ok()?;
-        let mut numbers = text.split(' ').map(str::parse);
-        Some(Self { one_minute: numbers.next()?.ok()?, five_minutes: numbers.next()?.ok()? })
-    }
-}
-
-/// Data caches of the first core, as in `L1 48K, L2 2048K, L3 32768K`, smallest first.
-#[must_use]
-pub fn caches() -> Vec<String> {
-    let read = |index: usize, what: &str| {
-        let path = format!("/sys/devices/system/cpu/cpu0/cache/index{index}/{what}");
-        Some(std::fs::read_to_string(path).ok()?.trim().to_owned())
-    };
-    let cache = |index| {
-        let (level, kind, size) =
-            (read(index, "level")?, read(index, "type")?, read(index, "size")?);
-        Some((kind, format!("L{level} {size}")))
-    };
-    let caches = (0..8).map_while(cache);
-    let data = caches.filter(|(kind, _)| kind != "Instruction");
-    data.map(|(_, name)| name).collect()
-}

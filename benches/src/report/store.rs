@@ -4,14 +4,16 @@
 //! `quoted.toml` names, so that every page quotes the same record of an experiment.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use miette::miette;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::manifest::{FILE, Manifest, ManifestError};
-use super::table::{Table, TableError};
+use super::manifest::{FILE, Manifest};
+use super::table::Table;
 
 /// The file that says which machine's record a page quotes.
 const QUOTED: &str = "quoted.toml";
@@ -35,39 +37,17 @@ pub struct Store {
     manifests: Mutex<BTreeMap<String, Manifest>>,
 }
 
-/// A value that can't be read from the records.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum StoreError {
-    /// The record is none, or was changed.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Manifest(#[from] ManifestError),
-    /// One of its tables can't be read.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Table(#[from] TableError),
-    /// One of its other files can't be read.
-    #[error("{}: {problem}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        problem: String,
-    },
-}
-
 impl Store {
     /// The records below `root`, by tradition `data/record`.
     ///
     /// # Errors
     /// `quoted.toml` is there and can't be read.
-    pub fn new(root: impl Into<PathBuf>) -> Result<Self, StoreError> {
+    pub fn new(root: impl Into<PathBuf>) -> miette::Result<Self> {
         let root = root.into();
         let path = root.join(QUOTED);
-        let failed = |problem: String| StoreError::File { path: path.clone(), problem };
         let quoted = if path.is_file() {
-            let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
-            Some(toml::from_str(&text).map_err(|error| failed(error.to_string()))?)
+            let text = std::fs::read_to_string(&path).map_err(|error| at(&path, error))?;
+            Some(toml::from_str(&text).map_err(|error| at(&path, error))?)
         } else {
             None
         };
@@ -109,8 +89,8 @@ impl Store {
     /// A record's manifest, its digests checked.
     ///
     /// # Errors
-    /// See [`Manifest::read`].
-    pub fn manifest(&self, record: &str) -> Result<Manifest, ManifestError> {
+    /// As [`Manifest::read`].
+    pub fn manifest(&self, record: &str) -> miette::Result<Manifest> {
         let mut known = self.manifests.lock().unwrap_or_else(PoisonError::into_inner);
         let record = self.place(record);
         if let Some(manifest) = known.get(&record) {
@@ -132,34 +112,30 @@ impl Store {
     ///
     /// # Errors
     /// The record or the table can't be read.
-    pub fn table(&self, path: &str) -> Result<Table, StoreError> {
-        Ok(Table::read(&self.checked(path)?)?)
+    pub fn table(&self, path: &str) -> miette::Result<Table> {
+        Table::read(&self.checked(path)?)
     }
 
     /// A JSON file, by `machine/experiment/file.json`.
     ///
     /// # Errors
     /// The record or the file can't be read.
-    pub fn json(&self, path: &str) -> Result<Value, StoreError> {
+    pub fn json(&self, path: &str) -> miette::Result<Value> {
         let text = self.text(path)?;
-        serde_json::from_str(&text).map_err(|error| StoreError::File {
-            path: self.root.join(self.place(path)),
-            problem: error.to_string(),
-        })
+        serde_json::from_str(&text).map_err(|error| at(&self.root.join(self.place(path)), error))
     }
 
     /// A text file, by `machine/experiment/file`.
     ///
     /// # Errors
     /// The record or the file can't be read.
-    pub fn text(&self, path: &str) -> Result<String, StoreError> {
+    pub fn text(&self, path: &str) -> miette::Result<String> {
         let path = self.checked(path)?;
-        std::fs::read_to_string(&path)
-            .map_err(|error| StoreError::File { path, problem: error.to_string() })
+        std::fs::read_to_string(&path).map_err(|error| at(&path, error))
     }
 
     /// The path of a record's file, once the record is known to be whole.
-    fn checked(&self, path: &str) -> Result<PathBuf, StoreError> {
+    fn checked(&self, path: &str) -> miette::Result<PathBuf> {
         let path = self.place(path);
         // A record may have subdirectories.
         let mut record = path.as_str();
@@ -174,9 +150,17 @@ impl Store {
         if path.is_file() {
             return Ok(path);
         }
-        let problem = format!("not in this tree; `sdop record {}` finds the record", manifest.id());
-        Err(StoreError::File { path, problem })
+        miette::bail!(
+            "{}: not in this tree; `sdop record {}` finds the record",
+            path.display(),
+            manifest.id()
+        )
     }
+}
+
+/// What is wrong with a file.
+fn at(path: &Path, problem: impl Display) -> miette::Report {
+    miette!("{}: {problem}", path.display())
 }
 
 fn collect(directory: &Path, name: &str, names: &mut Vec<String>) {

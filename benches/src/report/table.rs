@@ -1,7 +1,8 @@
 //! A recorded CSV table as rows of named values.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use miette::miette;
 use serde_json::{Map, Value};
 
 /// A table: its columns in order and its rows.
@@ -13,22 +14,19 @@ pub struct Table {
     pub rows: Vec<Map<String, Value>>,
 }
 
-/// A table that can't be read.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("{}: {source}", path.display())]
-#[diagnostic(help("records hold comma-separated tables with one header line"))]
-pub struct TableError {
-    path: PathBuf,
-    source: csv::Error,
-}
-
 impl Table {
     /// Reads a table.
     ///
     /// # Errors
     /// The file can't be read, or a row has more or fewer cells than the header.
-    pub fn read(path: &Path) -> Result<Self, TableError> {
-        let failed = |source| TableError { path: path.to_path_buf(), source };
+    pub fn read(path: &Path) -> miette::Result<Self> {
+        let failed = |error: csv::Error| {
+            miette!(
+                help = "records hold comma-separated tables with one header line",
+                "{}: {error}",
+                path.display()
+            )
+        };
         let mut reader = csv::Reader::from_path(path).map_err(failed)?;
         let header = reader.headers().map_err(failed)?;
         let columns: Vec<String> = header.iter().map(str::to_owned).collect();

@@ -57,12 +57,6 @@ impl PaperClaim {
             _ => Verdict::Undecided,
         }
     }
-
-    /// How many checks came out so.
-    #[must_use]
-    pub fn count(&self, verdict: Verdict) -> usize {
-        self.checks.iter().filter(|check| check.verdict == verdict).count()
-    }
 }
 
 impl ClaimCheck {

@@ -82,7 +82,8 @@ fn at_once(results: &Results) -> Vec<ClaimCheck> {
                 });
                 list / once
             };
-            let runs = results.immediacies.iter().filter(|run| run.scene == scene);
+            let found = results.units.iter().filter_map(|unit| unit.immediacy.as_ref());
+            let runs = found.filter(|run| run.scene == scene);
             let ratios: Vec<f64> = runs.map(of).collect();
             let quantity = format!("t of {list} / {once}, {scene}");
             checks.push(ClaimCheck::above(quantity, Estimate::in_order(&ratios), 1.0));
@@ -99,7 +100,7 @@ fn percentages(results: &Results) -> Vec<PaperClaim> {
             let others = TABLE_1_STRATEGIES.into_iter().filter(|&other| other != Seq);
             highest.extend(others.map(|other| {
                 let [one, other_values] =
-                    [Seq, other].map(|strategy| percent(results, scene, strategy, *reading));
+                    [Seq, other].map(|strategy| results.percent(scene, strategy, *reading));
                 let differences: Vec<f64> =
                     one.iter().zip(&other_values).map(|(a, b)| a - b).collect();
                 let quantity = format!("Seq − {}, {reading}, {scene}, points", paper_name(other));
@@ -110,7 +111,7 @@ fn percentages(results: &Results) -> Vec<PaperClaim> {
     let mut useful = Vec::new();
     for reading in [Reading::OwnTests, Reading::AllTests] {
         useful.extend(results.scenes().map(|scene| {
-            let values = Estimate::of(&percent(results, scene, Seq, reading));
+            let values = Estimate::of(&results.percent(scene, Seq, reading));
             ClaimCheck::above(format!("Seq, {reading}, {scene}, %"), values, 50.0)
         }));
     }
@@ -188,10 +189,4 @@ fn largest(results: &Results) -> Vec<PaperScene> {
     let most = names.iter().map(bodies).max().unwrap_or(0);
     let of_most = names.iter().filter(|scene| bodies(scene) == most);
     of_most.copied().collect()
-}
-
-fn percent(results: &Results, scene: &str, strategy: Strategy, reading: Reading) -> Vec<f64> {
-    results.by_seed(scene, strategy, |run| {
-        reading.percentage(strategy, &run.counters, run.frames, run.bodies)
-    })
 }

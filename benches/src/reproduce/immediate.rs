@@ -152,7 +152,7 @@ pub fn measure(
     let mut turns = Turns::from_stream(2);
     let frames = turn_frames(scene.bodies.len());
     loop {
-        let poses = next_turn(&mut trajectory, frames, &mut Vec::new())?;
+        let poses = next_turn(&mut trajectory, frames)?;
         if poses.is_empty() {
             break;
         }

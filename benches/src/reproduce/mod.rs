@@ -10,7 +10,6 @@
 
 pub mod check;
 pub mod claims;
-pub mod closed_form;
 mod experiment;
 pub mod immediate;
 pub mod paper;
@@ -19,11 +18,12 @@ pub mod rates;
 pub mod readings;
 pub mod rows;
 pub mod study;
-pub mod units;
 
-pub use crate::measure::estimate::{CONFIDENCE, Estimate, chi_squared_p};
-pub use experiment::{Results, StrategyRun, run_scene};
-pub use plan::{ExperimentPlan, PaperScene, ReproduceError, STRATEGIES};
+pub use crate::measure::estimate::{CONFIDENCE, Estimate};
+pub use experiment::{
+    ExperimentSettings, Experiments, NAME, Results, StrategyRun, UnitResult, run_scene,
+};
+pub use plan::{ExperimentPlan, PaperScene, STRATEGIES};
 
 use sdop::settings::Strategy;
 

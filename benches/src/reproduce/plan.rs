@@ -3,12 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use miette::Diagnostic;
-use thiserror::Error;
-
 use crate::cost::calibrate::Effort;
-use crate::scene::SceneError;
-use crate::simulate::SimulationError;
 use sdop::choice::choices;
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
@@ -67,19 +62,6 @@ pub struct ExperimentPlan {
     pub tier: Tier,
 }
 
-/// Why an experiment can't be run.
-#[derive(Debug, Error, Diagnostic)]
-pub enum ReproduceError {
-    /// A scene file that can't be read or built.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Scene(#[from] SceneError),
-    /// A scene that can't be simulated or culled.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Simulation(#[from] SimulationError),
-}
-
 impl ExperimentPlan {
     /// The paper's scenes in the directory `scenes`, with seeds 1 … `seeds`.
     #[must_use]
@@ -92,11 +74,5 @@ impl ExperimentPlan {
             effort,
             tier,
         }
-    }
-
-    /// How many times [`ExperimentPlan::run`] reports progress.
-    #[must_use]
-    pub fn steps(&self) -> usize {
-        self.names.len() * self.seeds.len()
     }
 }

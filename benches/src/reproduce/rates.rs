@@ -13,8 +13,6 @@ use sdop::settings::Strategy;
 
 /// Per-frame costs F of everything else, in seconds.
 pub const OTHER_FRAME_SECONDS: [f64; 2] = [0.0, 16.7e-3];
-/// A frame of 60 Hz, in seconds.
-pub const FRAME_60_HZ: f64 = 1.0 / 60.0;
 
 /// One strategy's frame rate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,10 +29,6 @@ pub struct Rate {
     pub culling: Estimate,
     /// Frames a second.
     pub fps: Estimate,
-    /// Frame rate over the control's.
-    pub to_control: Estimate,
-    /// t as a share of a 60 Hz frame, percent.
-    pub share: Estimate,
 }
 
 /// All frame rates: F by F, scene by scene, strategy by strategy.
@@ -50,7 +44,7 @@ pub fn table(results: &Results) -> Vec<Rate> {
 }
 
 fn rate(results: &Results, scene: &str, strategy: Strategy, elsewhere: f64) -> Rate {
-    let culling = results.by_seed(scene, strategy, |run| run.seconds.total);
+    let culling = results.by_seed(scene, strategy, |run| run.warm);
     let fps: Vec<f64> = culling.iter().map(|t| 1.0 / (elsewhere + t)).collect();
     Rate {
         scene: scene.to_owned(),
@@ -59,8 +53,6 @@ fn rate(results: &Results, scene: &str, strategy: Strategy, elsewhere: f64) -> R
         elsewhere,
         culling: Estimate::of(&culling),
         fps: Estimate::of(&fps),
-        to_control: ratio(results, scene, [strategy, Strategy::None], elsewhere),
-        share: Estimate::of(&culling).scaled(100.0 / FRAME_60_HZ),
     }
 }
 
@@ -68,7 +60,7 @@ fn rate(results: &Results, scene: &str, strategy: Strategy, elsewhere: f64) -> R
 /// seed cancels.
 #[must_use]
 pub fn ratio(results: &Results, scene: &str, of: [Strategy; 2], elsewhere: f64) -> Estimate {
-    let [one, other] = of.map(|strategy| results.by_seed(scene, strategy, |run| run.seconds.total));
+    let [one, other] = of.map(|strategy| results.by_seed(scene, strategy, |run| run.warm));
     let ratios: Vec<f64> = one
         .iter()
         .zip(&other)

@@ -82,11 +82,12 @@ pub struct Table1Cell {
     pub paper: Option<f64>,
 }
 
-impl Table1Cell {
-    /// Ours over the paper's.
-    #[must_use]
-    pub fn ratio(&self) -> Option<f64> {
-        self.paper.map(|paper| self.measured.mean / paper)
+impl Results {
+    /// A strategy's percentages in a scene, seed by seed.
+    pub(super) fn percent(&self, scene: &str, strategy: Strategy, reading: Reading) -> Vec<f64> {
+        self.by_seed(scene, strategy, |run| {
+            reading.percentage(strategy, &run.counters, run.frames, run.bodies)
+        })
     }
 }
 
@@ -94,9 +95,7 @@ impl Table1Cell {
 #[must_use]
 pub fn cell(results: &Results, scene: &str, strategy: Strategy, reading: Reading) -> Table1Cell {
     let bodies = results.example(scene).map_or(0, |run| run.bodies);
-    let values = results.by_seed(scene, strategy, |run| {
-        reading.percentage(strategy, &run.counters, run.frames, run.bodies)
-    });
+    let values = results.percent(scene, strategy, reading);
     let comparable = results.paper_scenes().any(|name| name == scene);
     Table1Cell {
         scene: scene.to_owned(),

@@ -50,7 +50,6 @@ fn add_cell(rows: &mut Rows, cell: &Table1Cell) {
 fn add_rate(rows: &mut Rows, rate: &Rate) {
     let (of, f) = ((rate.strategy.name(), Some(Regime::Warm)), 1e3 * rate.elsewhere);
     rows.add(of, format!("frame rate, F = {f} ms"), "frames per s", rate.fps);
-    rows.add(of, format!("frame rate / control's, F = {f} ms"), "1", rate.to_control);
 }
 
 /// Times that the formula has no term for.
@@ -59,12 +58,10 @@ fn add_times(rows: &mut Rows, results: &Results, scene: &str) {
         let over_seeds = |value: fn(&StrategyRun) -> f64| {
             Estimate::in_order(&results.by_seed(scene, strategy, value))
         };
-        let mut add = |metric: &str, regime, value| {
-            rows.add((strategy.name(), regime), metric, "s per frame", over_seeds(value));
+        let mut add = |regime, value| {
+            rows.add((strategy.name(), Some(regime)), "time", "s per frame", over_seeds(value));
         };
-        add("time", Some(Regime::Warm), |run| run.seconds.total);
-        add("time", Some(Regime::Cold), |run| run.cold);
-        add("mean time", None, |run| run.mean);
-        add("simulation step", None, |run| run.step);
+        add(Regime::Warm, |run| run.warm);
+        add(Regime::Cold, |run| run.cold);
     }
 }

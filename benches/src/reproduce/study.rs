@@ -1,7 +1,6 @@
 //! Checks our reading of Table 1: what its rows can and cannot be.
 
 use super::check::{ClaimCheck, PaperClaim};
-use super::closed_form::{inverse, probability, relative_reach};
 use super::experiment::Results;
 use super::readings::Reading;
 use super::{Estimate, paper};
@@ -19,17 +18,11 @@ const EXTRA_TESTS: f64 = 0.28;
 pub fn all(results: &Results) -> Vec<PaperClaim> {
     let claim = |claim, checks| PaperClaim { source: SOURCE, claim, checks };
     vec![
-        claim(
-            "The sphere percentage is the closed form's for the box, 100·P(2r/L), whatever N.",
-            closed_form(results),
-        ),
-        claim("The paper's sphere row corresponds to 2r/L from .128 to .144.", paper_reach()),
         claim("A fixed box can't show the sphere row's rise with N.", no_trend(results)),
         claim(
             "Sequential S-DOP is or-DOP hits over or-DOP tests: with sphere tests among the tests it can't exceed the sphere row.",
             sequential(results),
         ),
-        claim("43 to 52 % fits an or-DOP of k = 18 on compact meshes.", survival(results)),
         claim(
             "ALL S-DOP counts list entries as tests, and up to .28·N tests a frame more.",
             list(results),
@@ -42,36 +35,6 @@ pub fn all(results: &Results) -> Vec<PaperClaim> {
     ]
 }
 
-fn percent(results: &Results, scene: &str, strategy: Strategy, reading: Reading) -> Vec<f64> {
-    results.by_seed(scene, strategy, |run| {
-        reading.percentage(strategy, &run.counters, run.frames, run.bodies)
-    })
-}
-
-fn closed_form(results: &Results) -> Vec<ClaimCheck> {
-    let family = results.plan.names.len();
-    let check = |scene: &'static str| {
-        let run = results.example(scene)?;
-        let s = relative_reach(run.side, run.radius);
-        let measured = Estimate::of(&percent(results, scene, Sphere, Reading::OwnTests));
-        let quantity = format!("Sphere, {scene}, 2r/L = {s:.4}, %");
-        Some(ClaimCheck::equal(quantity, measured, 100.0 * probability(s), family))
-    };
-    results.scenes().filter_map(check).collect()
-}
-
-fn paper_reach() -> Vec<ClaimCheck> {
-    let columns = paper::TABLE_1_BODIES.iter().zip(paper::TABLE_1[0].1);
-    let check = |(n, percent)| {
-        ClaimCheck::computed(
-            format!("2r/L of the paper's sphere row, N = {n}"),
-            inverse(0.01 * percent),
-            [0.1275, 0.1445],
-        )
-    };
-    columns.map(check).collect()
-}
-
 /// The difference between the most and the fewest objects, and the chance of the paper's row in a
 /// fixed box.
 fn no_trend(results: &Results) -> Vec<ClaimCheck> {
@@ -80,7 +43,7 @@ fn no_trend(results: &Results) -> Vec<ClaimCheck> {
     if let (Some(first), Some(last)) = (scenes.first(), scenes.last().filter(|_| scenes.len() > 1))
     {
         let [few, many] =
-            [first, last].map(|scene| percent(results, scene, Sphere, Reading::OwnTests));
+            [first, last].map(|scene| results.percent(scene, Sphere, Reading::OwnTests));
         let rises: Vec<f64> = few.iter().zip(&many).map(|(few, many)| many - few).collect();
         let [first_paper, .., last_paper] = paper::TABLE_1[0].1;
         let quantity = format!(
@@ -108,21 +71,12 @@ fn sequential(results: &Results) -> Vec<ClaimCheck> {
     }
     checks.extend(results.scenes().map(|scene| {
         let [all, sphere] = [(Seq, Reading::AllTests), (Sphere, Reading::OwnTests)]
-            .map(|(strategy, reading)| percent(results, scene, strategy, reading));
+            .map(|(strategy, reading)| results.percent(scene, strategy, reading));
         let ratios: Vec<f64> = all.iter().zip(&sphere).map(|(all, sphere)| all / sphere).collect();
         let quantity = format!("Seq by hits/all tests over Sphere, {scene}");
         ClaimCheck::between(quantity, Estimate::of(&ratios), [f64::NEG_INFINITY, 1.0])
     }));
     checks
-}
-
-fn survival(results: &Results) -> Vec<ClaimCheck> {
-    let [lo, .., hi] = paper::row(Seq).copied().unwrap_or_default();
-    let check = |scene| {
-        let measured = Estimate::of(&percent(results, scene, Seq, Reading::OwnTests));
-        ClaimCheck::between(format!("Seq, {}, {scene}, %", Reading::OwnTests), measured, [lo, hi])
-    };
-    results.scenes().map(check).collect()
 }
 
 /// The ALL row from the paper's other rows, and ours with the additional tests.
@@ -183,7 +137,7 @@ fn product(results: &Results) -> Vec<ClaimCheck> {
     let mut checks = Vec::new();
     for scene in results.scenes() {
         let [ordop, sphere, sequential] = [OrDop, Sphere, Seq]
-            .map(|strategy| percent(results, scene, strategy, Reading::OwnTests));
+            .map(|strategy| results.percent(scene, strategy, Reading::OwnTests));
         let ratios: Vec<f64> =
             (0..ordop.len()).map(|i| ordop[i] / (0.01 * sphere[i] * sequential[i])).collect();
         let quantity = format!("or-DOPs over Sphere × Seq, {scene}");

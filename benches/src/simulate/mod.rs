@@ -6,8 +6,6 @@
 
 mod scene_culler;
 
-use std::time::Instant;
-
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -38,7 +36,6 @@ pub struct Trajectory {
     effects: Effects,
     next: u32,
     frames: u32,
-    step_seconds: f64,
 }
 
 impl Trajectory {
@@ -52,7 +49,6 @@ impl Trajectory {
             effects: scene.start_effects()?,
             next: 0,
             frames: scene.frames,
-            step_seconds: 0.0,
         })
     }
 
@@ -72,10 +68,8 @@ impl Trajectory {
         }
         let frame = self.next;
         if frame > 0 {
-            let start = Instant::now();
             let step = self.effects.step(&mut self.bodies);
             step.map_err(|error| SimulationError::contract(frame, error))?;
-            self.step_seconds = start.elapsed().as_secs_f64();
         }
         self.next += 1;
         Ok(Some(&self.bodies))
@@ -90,12 +84,6 @@ impl Trajectory {
     /// Every effect of the scene with its steps and seconds so far.
     pub fn reports(&self) -> &[EffectReport] {
         self.effects.reports()
-    }
-
-    /// Seconds of the last step; 0 before the first.
-    #[must_use]
-    pub fn step_seconds(&self) -> f64 {
-        self.step_seconds
     }
 }
 

@@ -12,9 +12,9 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use miette::Diagnostic;
+use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sha2::{Digest as _, Sha256};
 
 use super::Header;
@@ -32,50 +32,29 @@ pub struct Units {
     pub seconds: Option<f64>,
 }
 
-/// A file of units that can't be used.
-#[derive(Debug, thiserror::Error, Diagnostic)]
-pub enum UnitsError {
-    /// The system.
-    #[error("cannot read or write {}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What it says.
-        source: io::Error,
-    },
-    /// A line that doesn't belong to a file of units.
-    #[error("{}:{line}: not a line of a shard", path.display())]
-    #[diagnostic(help("the file was written by something else, or has been damaged"))]
-    Line {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-    },
-    /// Bytes that have changed.
-    #[error("{}: the digest at its end does not match its lines", path.display())]
-    #[diagnostic(help("the file has been damaged: run this shard again"))]
-    Digest {
-        /// The file.
-        path: PathBuf,
-    },
-}
-
 impl Units {
     /// Reads a file of units.
     ///
     /// # Errors
     /// A file that can't be read, has other lines or a wrong digest.
-    pub fn read(path: &Path) -> Result<Self, UnitsError> {
-        let io = |source| UnitsError::Io { path: path.to_owned(), source };
-        let mut lines = BufReader::new(File::open(path).map_err(io)?);
+    pub fn read(path: &Path) -> miette::Result<Self> {
+        let name = path.display();
+        let unreadable = || format!("cannot read or write {name}");
+        let file = File::open(path).into_diagnostic().wrap_err_with(unreadable)?;
+        let mut lines = BufReader::new(file);
         let (mut line, mut hash) = (Vec::new(), Sha256::new());
         let mut units: Option<Self> = None;
         let mut number = 0;
         loop {
             number += 1;
-            let wrong = || UnitsError::Line { path: path.to_owned(), line: number };
-            files::read_line(&mut lines, MAX_BYTES, &mut line).map_err(io)?;
+            let wrong = || {
+                miette!(
+                    help = "the file was written by something else, or has been damaged",
+                    "{name}:{number}: not a line of a shard"
+                )
+            };
+            let read = files::read_line(&mut lines, MAX_BYTES, &mut line);
+            read.into_diagnostic().wrap_err_with(unreadable)?;
             // A line that was cut off is none.
             if !line.ends_with(b"\n") {
                 return units.ok_or_else(wrong);
@@ -84,10 +63,10 @@ impl Units {
             match &mut units {
                 None => units = Some(Self::headed(text).ok_or_else(wrong)?),
                 Some(units) => match units.add(text.trim_end()).ok_or_else(wrong)? {
-                    Some(digest) if digest != hex(&hash.clone().finalize()) => {
-                        let path = path.to_owned();
-                        return Err(UnitsError::Digest { path });
-                    }
+                    Some(digest) if digest != hex(&hash.clone().finalize()) => miette::bail!(
+                        help = "the file has been damaged: run this shard again",
+                        "{name}: the digest at its end does not match its lines"
+                    ),
                     _ => {}
                 },
             }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use miette::Diagnostic;
+use miette::{bail, ensure, miette};
 
 use super::{Header, Shard, Units};
 
@@ -18,65 +18,7 @@ pub struct MergedUnits {
     pub seconds: f64,
 }
 
-/// Files that don't make a whole.
-#[derive(Debug, thiserror::Error, Diagnostic)]
-pub enum MergeError {
-    /// No file.
-    #[error("there is no shard to merge")]
-    None,
-    /// A file that was cut off.
-    #[error("{} is not a finished shard", path.display())]
-    #[diagnostic(help("run this shard again"))]
-    Unfinished {
-        /// The file.
-        path: PathBuf,
-    },
-    /// Shards belong to different works.
-    #[error("{} and {} are shards of different runs: {difference}", first.display(), other.display())]
-    #[diagnostic(help(
-        "`here` is the first file; run one of them again with the other's code, settings and scenes"
-    ))]
-    Different {
-        /// The file that others are compared with.
-        first: PathBuf,
-        /// Another.
-        other: PathBuf,
-        /// How they differ.
-        difference: String,
-    },
-    /// One part twice.
-    #[error("{} and {} are both shard {shard}", first.display(), other.display())]
-    #[diagnostic(help("name one of them"))]
-    Twice {
-        /// A file.
-        first: PathBuf,
-        /// Another.
-        other: PathBuf,
-        /// The part.
-        shard: Shard,
-    },
-    /// Parts that aren't there.
-    #[error("{} of {of} shards are missing: {}", missing.len(), names(missing))]
-    #[diagnostic(help("run them: the same command with --shard"))]
-    Missing {
-        /// Their numbers.
-        missing: Vec<usize>,
-        /// How many there are.
-        of: usize,
-    },
-    /// A part that lacks units, or has those of others.
-    #[error("{} does not hold the units of shard {shard}: unit {unit} is the first that differs", path.display())]
-    #[diagnostic(help("the file was not written by this program: run this shard again"))]
-    Units {
-        /// The file.
-        path: PathBuf,
-        /// The part.
-        shard: Shard,
-        /// A unit that is missing or another shard's.
-        unit: usize,
-    },
-}
-
+/// The first of some shards' numbers.
 fn names(missing: &[usize]) -> String {
     let names: Vec<String> = missing.iter().take(20).map(usize::to_string).collect();
     let more = if missing.len() > 20 { ", …" } else { "" };
@@ -87,16 +29,14 @@ fn names(missing: &[usize]) -> String {
 ///
 /// # Errors
 /// Files that are unfinished, of different works, there twice or missing.
-pub fn merge(files: Vec<(PathBuf, Units)>) -> Result<MergedUnits, MergeError> {
-    let (first, header) = match files.first() {
-        Some((path, units)) => (path.clone(), units.header.clone()),
-        None => return Err(MergeError::None),
-    };
+pub fn merge(files: Vec<(PathBuf, Units)>) -> miette::Result<MergedUnits> {
+    let first = files.first().ok_or_else(|| miette!("there is no shard to merge"))?;
+    let (first, header) = (first.0.clone(), first.1.header.clone());
     let mut parts: BTreeMap<Shard, PathBuf> = BTreeMap::new();
     let (mut done, mut seconds) = (BTreeMap::new(), 0.0);
     for (path, units) in files {
         let (Some(shard), Some(took)) = (units.header.shard, units.seconds) else {
-            return Err(MergeError::Unfinished { path });
+            bail!(help = "run this shard again", "{} is not a finished shard", path.display());
         };
         let number = |header: &Header| header.shard.map_or(0, |shard| shard.of);
         let difference = header.difference(&units.header).or_else(|| {
@@ -104,19 +44,27 @@ pub fn merge(files: Vec<(PathBuf, Units)>) -> Result<MergedUnits, MergeError> {
             (here != there).then(|| format!("there are {here} shards here and {there} there"))
         });
         if let Some(difference) = difference {
-            let other = path;
-            return Err(MergeError::Different { first, other, difference });
+            bail!(
+                help = "`here` is the first file; run one of them again with the other's code, settings and scenes",
+                "{} and {} are shards of different runs: {difference}",
+                first.display(),
+                path.display()
+            );
         }
         let own = shard.units(header.units);
         let wrong = own.iter().find(|unit| !units.done.contains_key(unit));
         let wrong =
             wrong.or_else(|| units.done.keys().find(|unit| own.binary_search(unit).is_err()));
         if let Some(&unit) = wrong {
-            return Err(MergeError::Units { path, shard, unit });
+            bail!(
+                help = "the file was not written by this program: run this shard again",
+                "{} does not hold the units of shard {shard}: unit {unit} is the first that differs",
+                path.display()
+            );
         }
         if let Some(first) = parts.insert(shard, path.clone()) {
-            let other = path;
-            return Err(MergeError::Twice { first, other, shard });
+            let (first, other) = (first.display(), path.display());
+            bail!(help = "name one of them", "{first} and {other} are both shard {shard}");
         }
         done.extend(units.done);
         seconds += took;
@@ -124,8 +72,12 @@ pub fn merge(files: Vec<(PathBuf, Units)>) -> Result<MergedUnits, MergeError> {
     let of = header.shard.map_or(0, |shard| shard.of);
     let present = |&index: &usize| parts.contains_key(&Shard { index, of });
     let missing: Vec<usize> = (1..=of).filter(|index| !present(index)).collect();
-    if !missing.is_empty() {
-        return Err(MergeError::Missing { missing, of });
-    }
+    ensure!(
+        missing.is_empty(),
+        help = "run them: the same command with --shard",
+        "{} of {of} shards are missing: {}",
+        missing.len(),
+        names(&missing)
+    );
     Ok(MergedUnits { header, done, seconds })
 }

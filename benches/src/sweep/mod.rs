@@ -16,10 +16,10 @@ mod order;
 mod ranks;
 mod shard;
 
-pub use file::{Units, UnitsError, write_shard};
+pub use file::{Units, write_shard};
 pub use header::{Header, code, digest};
 pub use in_process::run_in_process;
-pub use merge::{MergeError, MergedUnits, merge};
+pub use merge::{MergedUnits, merge};
 pub use order::OrderedResults;
 pub use ranks::on_ranks;
 pub use shard::{Shard, ShardError};

@@ -7,15 +7,13 @@
 
 use serde::Serialize;
 
-use super::TradeoffError;
-use super::density::{lines, lines_of_a_run};
 use super::pays::{CheapestRange, Choice, Line, choose, envelope};
-use super::variant::{Variant, s_dops};
-use super::worlds::{self, WorldTimes};
+use super::timing::{lines, lines_of_a_run};
+use super::variant::{Variant, volumes};
 use crate::measure::conditions::Conditions;
 use crate::measure::estimate::Estimate;
 use crate::scene::{Scene, SceneFile};
-use sdop::settings::{Axes, CullSettings, Finder, Overlap, Strategy};
+use sdop::settings::{Axes, CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
 
 /// The most frames of the scene that are used: enough for its pairs, few enough for a minute.
@@ -73,6 +71,18 @@ pub struct Advice {
     pub conditions: Conditions,
 }
 
+/// T of a variant in a culler, which is given every pose, and in a world, which is given the poses
+/// that have changed: seconds per warm frame.
+#[derive(Clone, Debug, Serialize)]
+pub struct WorldTimes {
+    /// The variant.
+    pub variant: String,
+    /// T of a culler.
+    pub culler: Estimate,
+    /// T of a world.
+    pub world: Estimate,
+}
+
 /// One candidate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
@@ -97,7 +107,7 @@ pub fn advise(
     tried: CandidateFilter,
     check: f64,
     tier: Tier,
-) -> Result<Option<Advice>, TradeoffError> {
+) -> miette::Result<Option<Advice>> {
     let before = Conditions::before();
     let mut scene = file.build()?;
     scene.frames = scene.frames.clamp(FEWEST_FRAMES, FRAMES);
@@ -106,7 +116,7 @@ pub fn advise(
         return Ok(None);
     };
     scene.cull.pairs = finder;
-    let variants = variants(&scene.cull, tried.axes);
+    let variants = volumes(&scene.cull, tried.axes);
     let lines = lines(&scene, &variants, tier, SAMPLES)?;
     let Some(choice) = choose(&lines, check) else {
         return Ok(None);
@@ -124,9 +134,7 @@ pub fn advise(
         variants.find(|variant| variant.name == candidate.name)
     };
     let world = match candidates.iter().find_map(cheapest) {
-        Some(variant) if scene.effects.rest.is_some() => {
-            worlds::times(&scene, std::slice::from_ref(variant), tier)?.pop()
-        }
+        Some(variant) if scene.effects.rest.is_some() => Some(in_world(&scene, variant, tier)?),
         _ => None,
     };
     Ok(Some(Advice {
@@ -181,16 +189,16 @@ fn chosen_finder(lines: &[Line]) -> Option<(Finder, Vec<String>)> {
     Some((chosen.parse().ok()?, tied))
 }
 
-/// Spheres, boxes, S-DOP with each k and both kinds of axes by the tests of sides, and hulls.
-fn variants(own: &CullSettings, axes: Option<Axes>) -> Vec<Variant> {
-    let boxes = CullSettings { strategy: Strategy::Aabb, ..own.clone() };
-    let mut list = vec![Variant::spheres(own), Variant::of("aabb".into(), boxes)];
-    list.extend(s_dops(own).into_iter().filter(|variant| {
-        let settings = &variant.settings;
-        settings.overlap != Overlap::Full && axes.is_none_or(|axes| axes == settings.axes)
-    }));
-    list.push(Variant::hulls(own));
-    list
+/// A variant in a culler and in a world, on the same frames.
+fn in_world(scene: &Scene, variant: &Variant, tier: Tier) -> miette::Result<WorldTimes> {
+    let both = [variant.clone(), variant.clone().in_world()];
+    let lines = lines_of_a_run(scene, &both, tier)?;
+    let time = |line: &Line| Estimate::in_order(&line.times);
+    Ok(WorldTimes {
+        variant: variant.name.clone(),
+        culler: time(&lines[0]),
+        world: time(&lines[1]),
+    })
 }
 
 /// The numbers of each candidate, cheapest first.
@@ -212,14 +220,7 @@ mod tests {
     use super::*;
 
     fn line(name: &str, times: [f64; 3]) -> Line {
-        Line {
-            name: name.into(),
-            decides: None,
-            ordop: None,
-            times: times.to_vec(),
-            pairs: 1.0,
-            construct: 0.0,
-        }
+        Line { name: name.into(), times: times.to_vec(), pairs: 1.0 }
     }
 
     /// Auto is kept unless another is surely faster.
@@ -238,7 +239,7 @@ mod tests {
     fn both_axes_are_tried() {
         let own = CullSettings::default();
         let along = |axes: Axes, only| {
-            let list = variants(&own, only);
+            let list = volumes(&own, only);
             let s_dop = |v: &&Variant| v.settings.strategy == Strategy::SDopSequential;
             let list = list.iter().filter(s_dop);
             list.filter(|v| v.settings.axes == axes).count()

@@ -8,7 +8,6 @@ use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::TradeoffError;
 use super::counts::{share, shared};
 use super::interest::spread;
 use super::truth::{ExactJudge, Sample};
@@ -16,6 +15,7 @@ use super::variant::Variant;
 use crate::cost::pass::{SceneFrames, VariantRun, pass};
 use crate::measure::turns::{Regime, median};
 use crate::percentiles::Percentiles;
+use crate::remedy::OrReport as _;
 use crate::scene::Scene;
 use sdop::culler::Culler;
 use sdop::settings::{Budget, CullSettings, Interest, Order, Strategy, Updates};
@@ -76,7 +76,7 @@ pub fn by_tests(
     judge: &ExactJudge,
     cache: Option<&std::path::Path>,
     tests: f64,
-) -> Result<Vec<BudgetRow>, TradeoffError> {
+) -> miette::Result<Vec<BudgetRow>> {
     let judged: Vec<Sample> = window.frames.iter().step_by(window.stride).cloned().collect();
     let truth = judge.truth(&judged, cache)?;
     let mut rows = Vec::new();
@@ -111,15 +111,18 @@ fn row(
     tier: Tier,
     window: Window<'_>,
     truth: &[Vec<[u32; 2]>],
-) -> Result<BudgetRow, TradeoffError> {
-    let mut culler =
-        Culler::builder().settings(settings).tier(tier).build(&scene.shapes, &scene.bodies)?;
+) -> miette::Result<BudgetRow> {
+    let mut culler = Culler::builder()
+        .settings(settings)
+        .tier(tier)
+        .build(&scene.shapes, &scene.bodies)
+        .or_report()?;
     let mut starved = Starvation::default();
     let (mut reported, mut found, mut true_pairs) = (0, 0, 0);
     let mut truth = truth.iter();
     for (number, sample) in window.frames.iter().enumerate() {
         let before = culler.counters().untested;
-        let pairs = culler.cull(&sample.bodies)?;
+        let pairs = culler.cull(&sample.bodies).or_report()?;
         if number % window.stride == 0
             && let Some(truth) = truth.next()
         {
@@ -187,9 +190,9 @@ impl Starvation {
 ///
 /// # Errors
 /// The settings can't be carried out.
-pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> Result<Vec<ClockRow>, TradeoffError> {
+pub fn by_clock(scene: &Scene, tier: Tier, frames: u32) -> miette::Result<Vec<ClockRow>> {
     let variant = |budget| Variant::of(String::new(), settings(scene, budget, Order::AsFound));
-    let culled = |budgets: &[Budget]| -> Result<Vec<VariantRun>, TradeoffError> {
+    let culled = |budgets: &[Budget]| -> miette::Result<Vec<VariantRun>> {
         let variants: Vec<Variant> = budgets.iter().copied().map(variant).collect();
         let mut frames = SceneFrames::new(scene, frames)?;
         let pass = pass(scene, &variants, tier, &mut frames, None, &mut ())?;

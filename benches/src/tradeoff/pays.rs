@@ -8,51 +8,18 @@
 use serde::{Deserialize, Serialize};
 
 use super::truth::NarrowPhase;
-use crate::measure::counts::Volume;
 use crate::measure::estimate::Estimate;
-use crate::measure::variant::Variant;
 use sdop::choice::choices;
-use sdop::settings::{Axes, Overlap};
 
 /// One variant's cost per frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// The variant.
     pub name: String,
-    /// The volume that decides last.
-    pub decides: Option<Volume>,
-    /// Its or-DOP, if that decides after spheres.
-    pub ordop: Option<OrDopKind>,
     /// T, seconds per warm frame, of each pass in the order of time.
     pub times: Vec<f64>,
     /// Np, pairs per frame.
     pub pairs: f64,
-    /// Co, seconds once.
-    pub construct: f64,
-}
-
-/// One kind of or-DOP.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OrDopKind {
-    /// Half-spaces.
-    pub k: usize,
-    /// Its axes.
-    pub axes: Axes,
-    /// Its overlap test.
-    pub overlap: Overlap,
-}
-
-impl OrDopKind {
-    /// The or-DOP of an S-DOP variant; `None` for others.
-    #[must_use]
-    pub fn of(variant: &Variant) -> Option<Self> {
-        let settings = &variant.settings;
-        (variant.volumes() == [Volume::Sphere, Volume::OrDop]).then(|| Self {
-            k: settings.k.k(),
-            axes: settings.axes,
-            overlap: settings.overlap,
-        })
-    }
 }
 
 impl Line {
@@ -214,14 +181,7 @@ mod tests {
     use super::*;
 
     fn line(name: &str, time: f64, pairs: f64) -> Line {
-        Line {
-            name: name.into(),
-            decides: None,
-            ordop: None,
-            times: vec![time],
-            pairs,
-            construct: 0.0,
-        }
+        Line { name: name.into(), times: vec![time], pairs }
     }
 
     /// The cheapest total wins, and variants within its interval are tied.

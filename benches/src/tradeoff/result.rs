@@ -1,4 +1,5 @@
-//! The results of comparing variants on one scene.
+//! The results of a comparison: of every variant, density, budget and interest set; and the same as
+//! rows.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,29 +9,16 @@ use super::density::Density;
 use super::interest::InterestRow;
 use super::pays::{CheapestRange, Standing};
 use super::truth::NarrowPhase;
-use super::worlds::WorldTimes;
-use crate::cost::table::{Cost, PriceRow};
 use crate::measure::conditions::Conditions;
-use crate::measure::counts::Volume;
-use sdop::settings::{Axes, Overlap, Strategy};
+use crate::measure::machine::Machine;
+use crate::measure::row::{Row, Rows};
+use crate::measure::turns::Regime;
 
 /// One variant's result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VariantResult {
     /// Its name in tables.
     pub name: String,
-    /// The strategy.
-    pub strategy: Strategy,
-    /// Whether hulls are tested after it.
-    pub hulls: bool,
-    /// The volume that decides last.
-    pub volume: Option<Volume>,
-    /// Half-spaces, if the strategy has or-DOPs or k-DOPs.
-    pub k: Option<usize>,
-    /// The or-DOP's axes, if it has or-DOPs.
-    pub axes: Option<Axes>,
-    /// The overlap test, if it has or-DOPs.
-    pub overlap: Option<Overlap>,
     /// Pairs reported per frame.
     pub reported: Estimate,
     /// True pairs / reported pairs.
@@ -43,12 +31,10 @@ pub struct VariantResult {
     pub recall: f64,
     /// Mean volume / hull volume; `None` if a hull is flat.
     pub volume_over_hull: Option<f64>,
-    /// Predicted and measured cost of warm frames.
-    pub warm: Option<Cost>,
-    /// Predicted and measured cost of cold frames.
-    pub cold: Option<Cost>,
     /// Seconds of a warm frame per pass, in the order of time.
     pub times: Vec<f64>,
+    /// Co, seconds once; `None` in earlier records.
+    pub construct: Option<Estimate>,
     /// Its relation to the Pareto front of time and precision.
     pub standing: Standing,
     /// The hash of the pairs reported on the sample frames, per seed.
@@ -64,8 +50,12 @@ impl VariantResult {
 }
 
 /// All results of one scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tradeoff {
+    /// The command that repeats it.
+    pub command: String,
+    /// The machine and the SIMD tier.
+    pub machine: Machine,
     /// The scene.
     pub scene: String,
     /// Its bodies.
@@ -76,8 +66,6 @@ pub struct Tradeoff {
     pub samples: usize,
     /// The runs' seeds.
     pub seeds: Vec<u64>,
-    /// The SIMD tier.
-    pub simd: String,
     /// True pairs per frame.
     pub truth: Estimate,
     /// Sphere overlaps per body.
@@ -96,15 +84,8 @@ pub struct Tradeoff {
     pub clock: Vec<ClockRow>,
     /// Interest sets.
     pub interest: Vec<InterestRow>,
-    /// Worlds, if bodies of the scene fall asleep.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub worlds: Vec<WorldTimes>,
-    /// Prices of every variant's volumes, warm and cold.
-    pub prices: Vec<PriceRow>,
     /// Other load of the machine.
     pub conditions: Conditions,
-    /// The advice.
-    pub advice: String,
 }
 
 impl Tradeoff {
@@ -116,5 +97,93 @@ impl Tradeoff {
         rows.map(|row| row.name.as_str())
             .chain(budgets.map(|row| row.order.name()))
             .chain(interest.map(|_| "s-dop of interest"))
+    }
+
+    /// Every number of the comparison.
+    #[must_use]
+    pub fn rows(&self) -> Vec<Row> {
+        let warm = Some(Regime::Warm);
+        let mut rows = Rows::new("tradeoff", &self.scene);
+        let mut add = |name: &str, regime, numbers: &[(&str, &'static str, Estimate)]| {
+            for &(metric, unit, value) in numbers {
+                rows.add((name, regime), metric, unit, value);
+            }
+        };
+        let alone = Estimate::alone;
+        for row in &self.rows {
+            let false_pairs = row.reported.mean * (1.0 - row.precision.mean);
+            add(
+                &row.name,
+                None,
+                &[
+                    ("reported", "pairs per frame", row.reported),
+                    ("false pairs", "per frame", alone(false_pairs)),
+                    ("precision", "1", row.precision),
+                    ("reported / true", "1", row.per_true),
+                    ("recall", "1", alone(row.recall)),
+                ],
+            );
+            if let Some(ratio) = row.volume_over_hull {
+                add(&row.name, None, &[("volume / hull", "1", alone(ratio))]);
+            }
+            add(&row.name, warm, &[("time", "s per frame", row.seconds())]);
+            if let Some(construct) = row.construct {
+                add(&row.name, None, &[("Co", "s", construct)]);
+            }
+        }
+        for density in &self.densities {
+            for line in &density.lines {
+                let time = Estimate::in_order(&line.times);
+                let reported = (&*density.metric("reported"), "pairs per frame", alone(line.pairs));
+                add(&line.name, warm, &[reported, (&density.metric("time"), "s per frame", time)]);
+            }
+            for even in &density.break_even {
+                add(
+                    &even.name,
+                    None,
+                    &[(&density.metric("break-even"), "s per check", alone(even.cp))],
+                );
+            }
+        }
+        for row in &self.budgets {
+            add(
+                &format!("{}, {} tests", row.order, row.tests),
+                None,
+                &[
+                    ("refined", "1", alone(row.refined)),
+                    ("precision", "1", alone(row.precision)),
+                    ("recall", "1", alone(row.recall)),
+                    ("mean age", "frames", alone(row.mean_age)),
+                    ("oldest", "frames", alone(row.oldest.into())),
+                ],
+            );
+        }
+        for row in &self.clock {
+            add(
+                &format!("budget of {} µs", row.microseconds),
+                warm,
+                &[
+                    ("refined", "1", alone(row.refined)),
+                    ("overrun p50", "s per frame", alone(1e-6 * row.p50)),
+                    ("overrun p99", "s per frame", alone(1e-6 * row.p99)),
+                ],
+            );
+        }
+        for row in &self.interest {
+            let name = format!("{} of interest", row.bodies);
+            add(
+                &name,
+                None,
+                &[
+                    ("or-DOP tests", "per frame", alone(row.tests)),
+                    ("reported", "pairs per frame", alone(row.reported)),
+                    ("precision", "1", alone(row.quality.precision)),
+                    ("recall", "1", alone(row.quality.recall)),
+                ],
+            );
+            let times = [("time", row.seconds), ("time, lazy", row.lazy_seconds)];
+            add(&name, warm, &times.map(|(metric, seconds)| (metric, "s per frame", seconds)));
+        }
+        rows.finish()
     }
 }

@@ -10,14 +10,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use miette::miette;
 use rayon::prelude::*;
 use sdop_reference::exact::{meeting, mesh::Mesh};
 use sdop_reference::{InvalidInput, Pose};
 use sha2::{Digest, Sha256};
 
-use super::TradeoffError;
 use super::variant::Variant;
 use crate::hash::{PairsHash, hex};
+use crate::remedy::OrReport as _;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
 use sdop::bodies::Bodies;
@@ -95,7 +96,7 @@ impl ExactJudge {
     ///
     /// # Errors
     /// The reference rejects a mesh, which never happens for meshes of [`Shape::build`].
-    pub fn new(shapes: &[Shape]) -> Result<Self, InvalidInput> {
+    pub fn new(shapes: &[Shape]) -> miette::Result<Self> {
         let mut key = Sha256::new_with_prefix(HEADER);
         let mut meshes = Vec::new();
         for shape in shapes {
@@ -105,7 +106,7 @@ impl ExactJudge {
             vertices.iter().flatten().for_each(|x| key.update(x.to_le_bytes()));
             let corners = shape.triangles.iter().flatten();
             corners.for_each(|i| key.update(i.to_le_bytes()));
-            meshes.push(Mesh::new(&vertices, &shape.triangles)?);
+            meshes.push(Mesh::new(&vertices, &shape.triangles).map_err(refused)?);
         }
         let reaches = shapes.iter().map(|shape| f64::from(shape.reach)).collect();
         Ok(Self { meshes, reaches, key })
@@ -115,11 +116,7 @@ impl ExactJudge {
     ///
     /// # Errors
     /// The reference rejects a pose, or the cache can't be written.
-    pub fn truth(
-        &self,
-        samples: &[Sample],
-        cache: Option<&Path>,
-    ) -> Result<TruePairs, TradeoffError> {
+    pub fn truth(&self, samples: &[Sample], cache: Option<&Path>) -> miette::Result<TruePairs> {
         let file = cache.map(|directory| directory.join(self.file_name(samples)));
         if let Some(truth) = file.as_deref().and_then(|file| read(file, samples)) {
             return Ok(truth);
@@ -127,10 +124,15 @@ impl ExactJudge {
         let truth = samples
             .par_iter()
             .map(|sample| self.meetings(&sample.bodies, None))
-            .collect::<Result<TruePairs, _>>()?;
+            .collect::<miette::Result<TruePairs>>()?;
         if let Some(file) = file {
-            write(&file, samples, &truth)
-                .map_err(|source| TradeoffError::Cache { file, source })?;
+            write(&file, samples, &truth).map_err(|error| {
+                miette!(
+                    help = "choose a writable directory with --cache",
+                    "cannot write {}: {error}",
+                    file.display()
+                )
+            })?;
         }
         Ok(truth)
     }
@@ -144,12 +146,13 @@ impl ExactJudge {
         &self,
         bodies: &Bodies,
         translations: Option<&[[f64; 3]]>,
-    ) -> Result<Vec<[u32; 2]>, InvalidInput> {
+    ) -> miette::Result<Vec<[u32; 2]>> {
         let poses = match translations {
             None => poses(bodies)?,
             Some(all) => (bodies.rotation.iter().zip(all))
                 .map(|(q, t)| Pose::from_f64(*q, *t))
-                .collect::<Result<_, _>>()?,
+                .collect::<Result<_, _>>()
+                .map_err(refused)?,
         };
         let mut pairs = self.candidates(bodies, &poses);
         pairs.retain(|&[i, j]| self.meet(bodies, &poses, i as usize, j as usize));
@@ -180,34 +183,18 @@ impl ExactJudge {
         pairs
     }
 
-    /// Number of the listed pairs whose meshes meet.
+    /// Mean seconds of an exact narrow phase of pairs whose spheres overlap, for those that meet
+    /// and for those that don't: Cp. At most `most` pairs are timed, one after the other.
     ///
     /// # Errors
-    /// The reference rejects a pose.
-    pub fn count(
-        &self,
-        bodies: &Bodies,
-        pairs: impl Iterator<Item = [u32; 2]>,
-    ) -> Result<usize, InvalidInput> {
-        let poses = poses(bodies)?;
-        let meet = |&[i, j]: &[u32; 2]| self.meet(bodies, &poses, i as usize, j as usize);
-        Ok(pairs.filter(meet).count())
-    }
-
-    /// Mean seconds of an exact narrow phase, for pairs that meet and for pairs that don't: Cp. At
-    /// most `most` pairs are timed, one after the other.
-    ///
-    /// # Errors
-    /// The reference rejects a pose.
-    pub fn price(
-        &self,
-        bodies: &Bodies,
-        pairs: impl Iterator<Item = [u32; 2]>,
-        most: usize,
-    ) -> Result<NarrowPhase, InvalidInput> {
+    /// A body leaves the contract.
+    pub fn price(&self, scene: &Scene, tier: Tier, most: usize) -> miette::Result<NarrowPhase> {
+        let (bodies, settings) = (&scene.bodies, Variant::spheres(&scene.cull).settings);
+        let builder = Culler::builder().settings(&settings).tier(tier);
+        let mut culler = builder.build(&scene.shapes, bodies).or_report()?;
         let poses = poses(bodies)?;
         let mut sums = [(0.0, 0_u32); 2];
-        for [i, j] in pairs.take(most) {
+        for [i, j] in culler.cull(bodies).or_report()?.iter().take(most) {
             let start = Instant::now();
             let meets = self.meet(bodies, &poses, i as usize, j as usize);
             let (seconds, count) = &mut sums[usize::from(meets)];
@@ -216,23 +203,6 @@ impl ExactJudge {
         }
         let [miss, hit] = sums.map(|(seconds, count)| seconds / f64::from(count.max(1)));
         Ok(NarrowPhase { miss, hit })
-    }
-
-    /// [`price`](Self::price) of pairs whose spheres overlap.
-    ///
-    /// # Errors
-    /// A body leaves the contract.
-    pub fn price_of_spheres(
-        &self,
-        scene: &Scene,
-        bodies: &Bodies,
-        tier: Tier,
-        most: usize,
-    ) -> Result<NarrowPhase, TradeoffError> {
-        let settings = Variant::spheres(&scene.cull).settings;
-        let mut culler =
-            Culler::builder().settings(&settings).tier(tier).build(&scene.shapes, bodies)?;
-        Ok(self.price(bodies, culler.cull(bodies)?.iter(), most)?)
     }
 
     fn meet(&self, bodies: &Bodies, poses: &[Pose], i: usize, j: usize) -> bool {
@@ -267,6 +237,10 @@ impl ExactJudge {
     }
 }
 
+fn refused(error: InvalidInput) -> miette::Report {
+    miette!("the exact reference refuses the scene: {error}")
+}
+
 /// Cp: seconds of the exact narrow phase per pair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct NarrowPhase {
@@ -276,9 +250,10 @@ pub struct NarrowPhase {
     pub hit: f64,
 }
 
-fn poses(bodies: &Bodies) -> Result<Vec<Pose>, InvalidInput> {
+fn poses(bodies: &Bodies) -> miette::Result<Vec<Pose>> {
     let pose = |(q, t): (&[f32; 4], &[f32; 3])| Pose::new(*q, *t);
-    bodies.rotation.iter().zip(&bodies.translation).map(pose).collect()
+    let poses = bodies.rotation.iter().zip(&bodies.translation).map(pose);
+    poses.collect::<Result<_, _>>().map_err(refused)
 }
 
 /// Reads a cache file: the header, a line of numbers per sample, and the hash of all pairs. A file

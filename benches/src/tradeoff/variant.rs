@@ -68,6 +68,20 @@ pub fn all(own: &CullSettings, hits: u64) -> Vec<Variant> {
     list
 }
 
+/// What a choice is made among: spheres, boxes, S-DOP with each k by the tests of sides, and hulls;
+/// with these axes, or with both kinds.
+#[must_use]
+pub fn volumes(own: &CullSettings, axes: Option<Axes>) -> Vec<Variant> {
+    let boxes = CullSettings { strategy: Strategy::Aabb, ..own.clone() };
+    let mut list = vec![Variant::spheres(own), Variant::of("aabb".into(), boxes)];
+    list.extend(s_dops(own).into_iter().filter(|variant| {
+        let settings = &variant.settings;
+        settings.overlap != Overlap::Full && axes.is_none_or(|axes| axes == settings.axes)
+    }));
+    list.push(Variant::hulls(own));
+    list
+}
+
 /// The variant of a name: a strategy's, or one that tables show, such as `s-dop 26, model,
 /// two-sided`. What the name leaves out is as in `own`. `None` of another name.
 #[must_use]
@@ -92,8 +106,7 @@ pub fn named(own: &CullSettings, name: &str) -> Option<Variant> {
 }
 
 /// S-DOP over k × axes × overlap.
-#[must_use]
-pub fn s_dops(own: &CullSettings) -> Vec<Variant> {
+fn s_dops(own: &CullSettings) -> Vec<Variant> {
     let mut list = Vec::new();
     for &k in DirectionSet::ALL {
         for &axes in Axes::ALL {

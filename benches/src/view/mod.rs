@@ -15,12 +15,11 @@ mod shown_case;
 mod shown_run;
 mod terms;
 
-pub use page::{Page, PageError};
+pub use page::Page;
 pub use shown_run::{Focus, ShownRun, ShownStrategy};
 
 use rayon::prelude::*;
 
-use crate::tradeoff::TradeoffError;
 use crate::tradeoff::truth::ExactJudge;
 use sdop::bodies::Bodies;
 use sdop_judge::record::FrameLine;
@@ -30,10 +29,10 @@ use sdop_judge::record::FrameLine;
 ///
 /// # Errors
 /// The exact reference rejects a number, which never happens for a record that was read.
-pub fn decide_truth(show: &mut ShownRun, done: impl Fn() + Sync) -> Result<(), TradeoffError> {
+pub fn decide_truth(show: &mut ShownRun, done: impl Fn() + Sync) -> miette::Result<()> {
     let judge = ExactJudge::new(&show.shapes)?;
     let bodies = &show.bodies;
-    let decide = |frame: &mut FrameLine| -> Result<(), TradeoffError> {
+    let decide = |frame: &mut FrameLine| -> miette::Result<()> {
         if frame.meets.is_none() {
             let mut posed: Bodies = bodies.clone();
             frame.pose(&mut posed);

@@ -6,17 +6,14 @@ use std::path::Path;
 
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
-use miette::Diagnostic;
 use rayon::prelude::*;
-use thiserror::Error;
 
 use super::detail::DrawnShape;
 use super::header::{BlockHeader, Header, Level, RunHeader, ShapeHeader};
 use super::pairs::Pairs;
 use super::terms::{self, TermCourse};
 use super::{ShownRun, ShownStrategy};
-use crate::simulate::SimulationError;
-use sdop::culler::CullError;
+use crate::remedy::OrReport as _;
 use sdop::settings::Strategy;
 use sdop::simd::Tier;
 use sdop_judge::record::{FrameLine, RecordError, ShapeLine};
@@ -35,32 +32,6 @@ pub struct Page {
     blocks: Vec<Block>,
 }
 
-/// The error of a page that can't be made.
-#[derive(Debug, Error, Diagnostic)]
-pub enum PageError {
-    /// The data are larger than a browser can read.
-    #[error("{name} of {frames} frames take {megabytes} MB, more than browsers can read")]
-    #[diagnostic(help("show fewer frames: --frames N"))]
-    TooLarge {
-        /// The block.
-        name: &'static str,
-        /// Frames of the run.
-        frames: usize,
-        /// Its size.
-        megabytes: usize,
-    },
-    /// The culling settings can't be carried out.
-    #[error("{}", .0.problem())]
-    #[diagnostic(help("{}", .0.help()))]
-    Cull(CullError),
-    /// Prices can't be calibrated.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Simulation(#[from] SimulationError),
-}
-
-crate::remedy::held_with_remedy!(PageError, Cull(CullError));
-
 #[derive(Debug)]
 struct Block {
     name: String,
@@ -77,7 +48,7 @@ impl Page {
         show: &ShownRun,
         culled: &[ShownStrategy],
         tier: Option<Tier>,
-    ) -> Result<Self, PageError> {
+    ) -> miette::Result<Self> {
         let mut page = Self { header: Header::of(show), blocks: Vec::new() };
         if show.frames.is_empty() {
             if page.header.messages.is_empty() {
@@ -152,7 +123,7 @@ impl Page {
 
     /// The poses of all bodies in the first frame, and in every frame those of bodies that ever
     /// move.
-    fn put_poses(&mut self, show: &ShownRun) -> Result<(), PageError> {
+    fn put_poses(&mut self, show: &ShownRun) -> miette::Result<()> {
         let frames = &show.frames;
         let first = &frames[0].poses;
         let bits = |pose: &[f32; 7]| pose.map(f32::to_bits);
@@ -176,8 +147,8 @@ impl Page {
         self.put("poses", frames.iter().flat_map(posed).collect::<Vec<f32>>())
     }
 
-    fn put_pairs(&mut self, show: &ShownRun, culled: &[ShownStrategy]) -> Result<(), PageError> {
-        let Pairs { starts, pairs, flags } = Pairs::join(show, culled)?;
+    fn put_pairs(&mut self, show: &ShownRun, culled: &[ShownStrategy]) -> miette::Result<()> {
+        let Pairs { starts, pairs, flags } = Pairs::join(show, culled).or_report()?;
         self.header.pairs = pairs.len();
         self.put("starts", starts.iter().map(|&start| start as f64).collect::<Vec<f64>>())?;
         match u16::try_from(show.bodies.len()) {
@@ -190,7 +161,7 @@ impl Page {
         self.put("flags", flags)
     }
 
-    fn put_shapes(&mut self, show: &ShownRun) -> Result<(), PageError> {
+    fn put_shapes(&mut self, show: &ShownRun) -> miette::Result<()> {
         let drawn: Vec<DrawnShape> = show.shapes.par_iter().map(DrawnShape::of).collect();
         let (mut vertices, mut triangles, mut hulls) = (Vec::new(), Vec::new(), Vec::new());
         for (shape, drawn) in show.shapes.iter().zip(drawn) {
@@ -227,7 +198,7 @@ impl Page {
         culled: &ShownStrategy,
         side: usize,
         tier: Option<Tier>,
-    ) -> Result<(), PageError> {
+    ) -> miette::Result<()> {
         let prices = match tier {
             Some(tier) if culled.counters.is_some() => terms::prices(show, culled, tier)?,
             _ => None,
@@ -257,14 +228,16 @@ impl Page {
         Ok(())
     }
 
-    fn put<T: Number>(&mut self, name: &str, numbers: Vec<T>) -> Result<(), PageError> {
+    fn put<T: Number>(&mut self, name: &str, numbers: Vec<T>) -> miette::Result<()> {
         let size = numbers.len() * size_of::<T>();
         if size > LONGEST {
-            return Err(PageError::TooLarge {
-                name: if name == "poses" { "the poses" } else { "the pairs" },
-                frames: self.header.frames,
-                megabytes: size >> 20,
-            });
+            miette::bail!(
+                help = "show fewer frames: --frames N",
+                "{} of {} frames take {} MB, more than browsers can read",
+                if name == "poses" { "the poses" } else { "the pairs" },
+                self.header.frames,
+                size >> 20
+            );
         }
         let mut bytes = Vec::with_capacity(size);
         for number in &numbers {

@@ -10,9 +10,10 @@ use std::time::Instant;
 
 use clap::Parser as _;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
+use sdop_bench::measure::conditions::Load;
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::mpi;
-use sdop_bench::report::{Experiment, ExperimentStep, FILE, Load, Manifest};
+use sdop_bench::report::{Experiment, ExperimentStep, FILE, Manifest};
 use sdop_bench::sweep::{Units, code};
 
 use super::super::Cli;
@@ -37,7 +38,7 @@ pub(super) fn record(
         run(args, experiment, &beside(directory, PART), false)?;
         return Ok(false);
     }
-    if args.sweep.shard().is_some() {
+    if args.sweep.shard.is_some() {
         run(args, experiment, &beside(directory, SHARDS), false)?;
         return Ok(false);
     }
@@ -105,7 +106,7 @@ fn run(args: &Args, experiment: &Experiment, out: &Path, is_kept: bool) -> miett
         if is_kept {
             let words = command.get_args().map(|word| word.to_string_lossy());
             eprintln!("{name} {}/{of}: {}", index + 1, words.collect::<Vec<_>>().join(" "));
-        } else if args.sweep.shard().is_some() {
+        } else if args.sweep.shard.is_some() {
             command.stdout(Stdio::inherit());
         }
         let said = output(name, &mut command)?;
@@ -234,7 +235,7 @@ pub(super) fn further(args: &Args, experiment: &Experiment) -> miette::Result<Ve
         ));
     }
     let mut more = args.more.clone();
-    if let Some(tier) = args.machine.asked() {
+    if let Some(tier) = args.machine.simd {
         miette::ensure!(
             experiment.steps.iter().all(ExperimentStep::is_sdop),
             help =
@@ -250,7 +251,7 @@ pub(super) fn further(args: &Args, experiment: &Experiment) -> miette::Result<Ve
 /// The command as a reader types it.
 pub(super) fn command_line(experiment: &Experiment, args: &Args) -> String {
     let mut command = format!("sdop record {}", experiment.name);
-    if let Some(tier) = args.machine.asked() {
+    if let Some(tier) = args.machine.simd {
         command.push_str(&format!(" --simd {tier}"));
     }
     if !args.more.is_empty() {

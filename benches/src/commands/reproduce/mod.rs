@@ -10,13 +10,12 @@ use miette::{IntoDiagnostic as _, miette};
 use sdop::settings::Strategy;
 use sdop_bench::cost::calibrate::Effort;
 use sdop_bench::measure::conditions::Conditions;
-pub use sdop_bench::reproduce::units::NAME;
-use sdop_bench::reproduce::units::{ExperimentSettings, Experiments};
-use sdop_bench::reproduce::{ExperimentPlan, Results};
+pub use sdop_bench::reproduce::NAME;
+use sdop_bench::reproduce::{ExperimentPlan, ExperimentSettings, Experiments, Results};
 use sdop_bench::sweep::{MergedUnits, Sweep as _};
 
 use super::Outcome;
-use super::files::{command, write};
+use super::files::{command, write, write_json};
 use super::output::{Format, csv_text, emit, emit_with_reason};
 use super::scene_args::MachineArgs;
 use super::sweep::{self, SweepArgs};
@@ -118,8 +117,7 @@ struct OutputPlace<'a> {
 impl OutputPlace<'_> {
     fn write(&self, results: &Results, tables: &Tables, format: Format) -> miette::Result<Outcome> {
         let why = disagreement(results);
-        let json = serde_json::to_string_pretty(tables).into_diagnostic()?;
-        write(&self.numbers.join("results.json"), &(json + "\n"))?;
+        write_json(&self.numbers.join("results.json"), tables)?;
         for (name, rows) in tables.files()? {
             write(&self.numbers.join(name).with_extension("csv"), &csv_text(rows)?)?;
         }
@@ -154,7 +152,7 @@ fn plan(args: &Args) -> miette::Result<ExperimentPlan> {
 /// Says so if sequential and listed S-DOP did not report the same pairs in every run.
 fn disagreement(results: &Results) -> Option<String> {
     let hashes = |strategy| {
-        let of = results.runs.iter().filter(move |run| run.strategy == strategy);
+        let of = results.runs().filter(move |run| run.strategy == strategy);
         of.map(|run| &run.pairs_sha256)
     };
     let agree = hashes(Strategy::SDopSequential).eq(hashes(Strategy::SDopBatch));

@@ -5,12 +5,12 @@
 use miette::IntoDiagnostic as _;
 use sdop::settings::Strategy;
 use sdop_bench::cost::table::{Cost, PriceRow};
+use sdop_bench::hash::hex;
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::measure::machine::Machine;
 use sdop_bench::measure::row::Row;
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::reproduce::check::PaperClaim;
-use sdop_bench::reproduce::closed_form::{probability, relative_reach};
 use sdop_bench::reproduce::rates::{self, Rate};
 use sdop_bench::reproduce::readings::{self, Table1Cell};
 use sdop_bench::reproduce::rows::{rows, scene_prices};
@@ -34,8 +34,6 @@ pub struct Tables {
     pub prices: Vec<ScenePrice>,
     #[serde(flatten)]
     pub drawn: Drawings,
-    /// Cold frames.
-    pub cold_costs: Vec<Cost>,
     pub claims: Vec<PaperClaim>,
     pub study: Vec<PaperClaim>,
     #[serde(skip)]
@@ -88,7 +86,7 @@ pub struct ScenePrice {
     pub price: PriceRow,
 }
 
-/// A scene's bodies and box, and the share of sphere tests that hit there in the closed form.
+/// A scene's bodies and box.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct BoxRow {
     pub scene: String,
@@ -98,13 +96,12 @@ pub struct BoxRow {
     pub statics: usize,
     pub side: f64,
     pub radius: f64,
-    pub percent: f64,
 }
 
 impl Tables {
     /// All tables of the results.
     pub fn new(results: &Results, machine: &Machine, command: String, before: Conditions) -> Self {
-        let counts: Vec<Value> = results.runs.iter().map(count_row).collect();
+        let counts: Vec<Value> = results.runs().map(count_row).collect();
         let costs = results.costs(Regime::Warm);
         let scene_prices = |&scene: &PaperScene| {
             let prices = scene_prices(results, scene).into_iter();
@@ -130,7 +127,6 @@ impl Tables {
                 rates: rates::table(results),
                 costs,
             },
-            cold_costs: results.costs(Regime::Cold),
             claims: claims::all(results),
             study: study::all(results),
             counts,
@@ -183,8 +179,7 @@ pub fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
 /// SHA-256 of the counts as their CSV file has them.
 fn hash(counts: &[Value]) -> miette::Result<String> {
     let text = csv_text(serde_json::to_value(counts).into_diagnostic()?)?;
-    let digest = Sha256::digest(text);
-    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hex(&Sha256::digest(text)))
 }
 
 fn box_row(results: &Results, scene: PaperScene) -> Option<BoxRow> {
@@ -196,7 +191,6 @@ fn box_row(results: &Results, scene: PaperScene) -> Option<BoxRow> {
         statics: run.statics,
         side: run.side,
         radius: run.radius,
-        percent: 100.0 * probability(relative_reach(run.side, run.radius)),
     })
 }
 

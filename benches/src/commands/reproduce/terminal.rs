@@ -1,68 +1,49 @@
 //! The results for the terminal.
 
-use std::fmt::{Result, Write as _};
-
-use sdop_bench::cost::table::Cost;
+use sdop::settings::Strategy;
 use sdop_bench::report::digits::{interval, number};
 use sdop_bench::reproduce::paper_name;
-use sdop_bench::reproduce::readings::{Reading, TABLE_1_STRATEGIES, Table1Cell};
+use sdop_bench::reproduce::readings::{Reading, TABLE_1_STRATEGIES};
 
-use super::rows::{Tables, distinct};
-use crate::commands::output::{paragraphs, table};
+use super::rows::Tables;
+use crate::commands::output::{paragraphs, rows};
 
 /// Table 1, times and verdicts; `place` is where the rest was written.
 pub fn brief(tables: &Tables, seconds: f64, place: &str) -> String {
-    let mut out = String::new();
-    // Writing to a String cannot fail.
-    let _ = sections(&mut out, tables);
-    let _ = writeln!(out, "\n{seconds:.1} s; written to {place}");
-    paragraphs(&out)
-}
-
-fn sections(out: &mut String, tables: &Tables) -> Result {
-    let scenes: Vec<&str> = tables.drawn.boxes.iter().map(|row| row.scene.as_str()).collect();
-    let heads = [&["strategy"], &scenes[..]].concat();
-    writeln!(
-        out,
-        "Collisions in percent of tests, {} seeds of {} frames; in brackets the paper's",
-        tables.seeds.len(),
-        tables.frames
-    )?;
-    let mut rows = table(&heads);
-    for strategy in TABLE_1_STRATEGIES {
+    let scenes = tables.drawn.boxes.iter().map(|row| row.scene.as_str());
+    let heads: Vec<&str> = std::iter::once("strategy").chain(scenes).collect();
+    let by_scene = |strategies: &[Strategy], cells: &dyn Fn(Strategy) -> Vec<String>| {
+        let row = |&strategy: &Strategy| {
+            [vec![paper_name(strategy).to_owned()], cells(strategy)].concat()
+        };
+        rows(&heads, strategies, row).to_string()
+    };
+    let percentages = by_scene(&TABLE_1_STRATEGIES, &|strategy| {
         let reading = Reading::shown(strategy);
-        let of = |cell: &&Table1Cell| cell.reading == reading && cell.strategy == strategy;
-        let cell = |cell: &Table1Cell| {
-            let paper = cell.paper.map_or(String::new(), |paper| format!(" ({paper:.2})"));
-            format!("{}{paper}", interval(&cell.measured))
-        };
-        let cells = tables.drawn.table_1.iter().filter(of).map(cell);
-        rows.add_row(std::iter::once(paper_name(strategy).to_owned()).chain(cells));
-    }
-    writeln!(
-        out,
-        "{rows}\n\nCulling, µs per warm frame, and how far the formula's prediction is off"
-    )?;
-    let mut rows = table(&heads);
-    for strategy in distinct(tables.drawn.costs.iter().map(|cost| cost.strategy)) {
-        let of = |cost: &&Cost| cost.strategy == strategy;
-        let cell = |cost: &Cost| {
-            format!(
-                "{} ({:+.0} %)",
-                number(1e6 * cost.frame.measured.mean),
-                100.0 * cost.frame.residual.mean
-            )
-        };
-        let cells = tables.drawn.costs.iter().filter(of).map(cell);
-        rows.add_row(std::iter::once(paper_name(strategy).to_owned()).chain(cells));
-    }
-    if let Some(warning) = tables.conditions.warning() {
-        writeln!(out, "{rows}\n\n{warning}\n\nThe paper's claims")?;
-    } else {
-        writeln!(out, "{rows}\n\nThe paper's claims")?;
-    }
-    for claim in &tables.claims {
-        writeln!(out, "{:<12} {}", claim.verdict().name(), claim.claim)?;
-    }
-    Ok(())
+        let cells = tables.drawn.table_1.iter();
+        let cells = cells.filter(|cell| cell.reading == reading && cell.strategy == strategy);
+        let text = |paper: f64| format!(" ({paper:.2})");
+        cells
+            .map(|cell| interval(&cell.measured) + &cell.paper.map_or_else(String::new, text))
+            .collect()
+    });
+    let times = by_scene(&tables.drawn.strategies(), &|strategy| {
+        let costs = tables.drawn.costs.iter().filter(|cost| cost.strategy == strategy);
+        let cell = |time: f64, off: f64| format!("{} ({:+.0} %)", number(1e6 * time), 100.0 * off);
+        costs.map(|cost| cell(cost.frame.measured.mean, cost.frame.residual.mean)).collect()
+    });
+    let mut parts = vec![
+        format!(
+            "Collisions in percent of tests, {} seeds of {} frames; in brackets the paper's\n{percentages}",
+            tables.seeds.len(),
+            tables.frames
+        ),
+        format!("Culling, µs per warm frame, and how far the formula's prediction is off\n{times}"),
+    ];
+    parts.extend(tables.conditions.warning());
+    let claim = |verdict: &str, claim: &str| format!("{verdict:<12} {claim}");
+    let claims = tables.claims.iter().map(|of| claim(of.verdict().name(), of.claim));
+    parts.push(format!("The paper's claims\n{}", claims.collect::<Vec<_>>().join("\n")));
+    parts.push(format!("{seconds:.1} s; written to {place}"));
+    paragraphs(&parts.join("\n\n"))
 }

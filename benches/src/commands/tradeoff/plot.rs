@@ -4,7 +4,6 @@
 use std::ops::Range;
 
 use plotters::prelude::*;
-use sdop::settings::Overlap;
 use sdop_bench::tradeoff::pays::Standing;
 use sdop_bench::tradeoff::{Tradeoff, VariantResult};
 
@@ -143,10 +142,8 @@ fn label_offsets(names: &[(&str, (i32, i32))], dots: &[(i32, i32)]) -> Vec<(i32,
 /// against density.
 pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
     let mut curves = Curves::new();
-    let stroke_of = |name: &str| of_variant(result.rows.iter().find(|row| row.name == name)?);
     for density in &result.densities {
-        for even in density.break_even.iter().filter(|b| b.cp > 0.0 && stroke_of(&b.name).is_some())
-        {
+        for even in density.break_even.iter().filter(|b| b.cp > 0.0 && by_k(&b.name).is_some()) {
             let point = (density.partners, 1e9 * even.cp);
             curves.entry(even.name.clone()).or_default().push(point);
         }
@@ -158,7 +155,7 @@ pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
         "exact narrow phase".into(),
         vec![(densities.start, reference), (densities.end, reference)],
     );
-    let stroke = |place, name: &str| stroke_of(name).unwrap_or(Stroke::plain(place));
+    let stroke = |place, name: &str| by_k(name).unwrap_or(Stroke::plain(place));
     let legend_room = 6.0;
     let chart = Chart {
         caption: &format!("{}: when an or-DOP pays", result.scene),
@@ -172,10 +169,11 @@ pub fn break_even(result: &Tradeoff) -> miette::Result<String> {
 }
 
 /// The curve of an S-DOP with a two-sided test, coloured by its k.
-fn of_variant(row: &VariantResult) -> Option<Stroke> {
-    let known = [6, 14, 18, 26].iter().position(|k| row.k == Some(*k))?;
-    let is_drawn = row.overlap? == Overlap::TwoSided;
-    is_drawn.then_some(Stroke { colour: BY_K[known], is_dashed: false, has_rings: false })
+fn by_k(name: &str) -> Option<Stroke> {
+    let (k, _) = name.strip_prefix("s-dop ")?.split_once(", ")?;
+    let known = ["6", "14", "18", "26"].iter().position(|own| *own == k)?;
+    let stroke = Stroke { colour: BY_K[known], is_dashed: false, has_rings: false };
+    name.ends_with("two-sided").then_some(stroke)
 }
 
 /// Precision against the budget of tests, a curve per order.
@@ -209,7 +207,9 @@ fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+    use sdop::Tier;
     use sdop_bench::measure::conditions::Conditions;
+    use sdop_bench::measure::machine::Machine;
 
     use super::*;
 
@@ -220,20 +220,18 @@ mod tests {
             .iter()
             .map(|(name, microseconds, precision, standing)| {
                 serde_json::json!({
-                    "name": name, "strategy": "sphere", "hulls": false, "volume": null, "k": null,
-                    "axes": null, "overlap": null, "reported": estimate(1.0),
-                    "precision": estimate(*precision), "precisions": [precision],
-                    "per_true": estimate(1.0), "recall": 1.0, "volume_over_hull": null,
-                    "warm": null, "cold": null, "times": [1e-6 * microseconds],
+                    "name": name, "reported": estimate(1.0), "precision": estimate(*precision),
+                    "precisions": [precision], "per_true": estimate(1.0), "recall": 1.0,
+                    "volume_over_hull": null, "times": [1e-6 * microseconds],
                     "standing": standing, "pairs_sha256": [],
                 })
             })
             .collect();
         serde_json::from_value(serde_json::json!({
-            "scene": "s", "bodies": 2, "frames": 1, "samples": 1, "seeds": [1], "simd": "scalar",
-            "truth": estimate(1.0), "partners": 1.0, "narrow_phase": {"miss": 1e-6, "hit": 1e-6},
+            "command": "", "machine": Machine::here(Tier::SCALAR), "scene": "s", "bodies": 2,
+            "frames": 1, "samples": 1, "seeds": [1], "truth": estimate(1.0), "partners": 1.0, "narrow_phase": {"miss": 1e-6, "hit": 1e-6},
             "rows": rows, "cheapest": [], "densities": [], "budgets": [],
-            "clock": [], "interest": [], "prices": [], "conditions": Conditions::default(), "advice": "",
+            "clock": [], "interest": [], "conditions": Conditions::default(),
         }))
         .unwrap()
     }

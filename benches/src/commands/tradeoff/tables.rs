@@ -2,17 +2,17 @@
 
 use sdop_bench::measure::turns::Regime;
 use sdop_bench::report::digits::interval;
-use sdop_bench::tradeoff::pays::{CHECKS, Choice, Standing, choose};
+use sdop_bench::tradeoff::pays::{CHECKS, Choice, Standing, advice, choose};
 use sdop_bench::tradeoff::{Tradeoff, VariantResult};
 
-use crate::commands::output::{Column, Listing, counted, paragraphs, pivot, rows, table};
+use crate::commands::output::{Column, Listing, counted, paragraphs, pivot, rows};
 
 /// A title, and the quantities of the variants below it.
 type Part = (&'static str, &'static [Column<'static>]);
 
 /// The tables of `--all`, after the recommended variants. A line has those of its quantities that a
 /// variant has.
-const PARTS: [Part; 6] = [
+const PARTS: [Part; 4] = [
     (
         "Every variant",
         &[
@@ -21,17 +21,8 @@ const PARTS: [Part; 6] = [
             ("reported / true", "reported / true", 1.0),
             ("recall", "recall", 1.0),
             ("volume / hull", "volume / hull", 1.0),
-        ],
-    ),
-    (
-        "The formula, µs per warm frame",
-        &[
-            ("Nu·Cu", "Nu*Cu", 1e6),
-            ("F", "F", 1e6),
-            ("Nv·Cv", "Nv*Cv", 1e6),
-            ("measured", "measured", 1e6),
-            ("residual, %", "residual", 100.0),
-            ("Co, ms", "Co measured", 1e3),
+            ("warm µs", "time", 1e6),
+            ("Co, ms", "Co", 1e3),
         ],
     ),
     (
@@ -58,19 +49,11 @@ const PARTS: [Part; 6] = [
             ("lazy, warm µs", "time, lazy", 1e6),
         ],
     ),
-    (
-        "Bodies fall asleep: a culler is given every pose, a world keeps the pairs of those that stay",
-        &[
-            ("reported", "reported of a run", 1.0),
-            ("culler, warm µs", "culler's time of a run", 1e6),
-            ("world, warm µs", "world's time of a run", 1e6),
-        ],
-    ),
 ];
 
 /// For people: the recommendation, the variants that aren't beaten, and on request all tables.
 pub fn text(result: &Tradeoff, is_whole: bool) -> String {
-    let mut parts = vec![result.advice.clone()];
+    let mut parts = vec![advice(&result.cheapest, &result.narrow_phase)];
     parts.extend(result.conditions.warning());
     parts.extend([heading(result), unbeaten(result).to_string()]);
     if is_whole {
@@ -114,7 +97,8 @@ fn unbeaten(result: &Tradeoff) -> Listing {
 
 /// What was run.
 fn heading(result: &Tradeoff) -> String {
-    let Tradeoff { scene, bodies, samples, frames, seeds, simd, partners, .. } = result;
+    let Tradeoff { scene, bodies, samples, frames, seeds, partners, .. } = result;
+    let simd = &result.machine.simd;
     format!(
         "{scene}: {bodies} bodies, {}, {samples} of {frames} frames of each judged, {simd}; {} true pairs per frame, \
          {partners:.2} sphere overlaps per body",
@@ -139,17 +123,11 @@ fn decisions(result: &Tradeoff) -> Listing {
 
 /// One row per S-DOP, one column per density, which is in sphere overlaps per body.
 fn break_even(result: &Tradeoff) -> Listing {
-    let densities: Vec<String> =
-        result.densities.iter().map(|density| format!("{:.2}", density.partners)).collect();
-    let header: Vec<&str> =
-        std::iter::once("variant").chain(densities.iter().map(String::as_str)).collect();
-    let mut rows = table(&header);
-    for name in result.densities.first().iter().flat_map(|one| &one.break_even).map(|b| &b.name) {
-        let cells = result.densities.iter().map(|density| {
-            let found = density.break_even.iter().find(|even| even.name == *name);
-            found.map_or("–".to_owned(), |even| format!("{:.0}", 1e9 * even.cp))
-        });
-        rows.add_row(std::iter::once(name.clone()).chain(cells));
-    }
-    rows
+    let names: Vec<[String; 2]> = result
+        .densities
+        .iter()
+        .map(|density| [format!("{:.2}", density.partners), density.metric("break-even")])
+        .collect();
+    let columns: Vec<Column<'_>> = names.iter().map(|[title, of]| (&**title, &**of, 1e9)).collect();
+    pivot(&result.rows(), Regime::Warm, false, &columns)
 }

@@ -39,7 +39,7 @@ pub fn read(
     answers: Option<&Path>,
     tier: Tier,
 ) -> miette::Result<ViewInput> {
-    let (path, most) = (args.path(), args.max_bytes());
+    let (path, most) = (&*args.path, args.max_bytes());
     if is_record(path)? {
         if answers.is_some() || is_claimed(path, most).unwrap_or(false) {
             refuse(args, run, "its poses are given")?;
@@ -166,14 +166,14 @@ fn refuse(args: &SceneArgs, run: Option<usize>, why: &str) -> miette::Result<()>
         Some(flag) => Err(miette!(
             help = "--beside STRATEGY culls its frames again",
             "{}: {why}; {flag} can't change it",
-            args.path().display()
+            args.path.display()
         )),
     }
 }
 
 fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<ViewInput> {
     refuse(args, run, "a record is shown as it was culled")?;
-    match ShownRun::record(args.path(), args.frames()) {
+    match ShownRun::record(&args.path, args.frames) {
         Ok((show, broken)) => Ok(ViewInput::Run(Box::new(show), broken)),
         // Nothing there is no record that is broken.
         Err(error @ RecordError::Unreadable { .. }) => Err(error).or_report(),
@@ -182,7 +182,7 @@ fn record(args: &SceneArgs, run: Option<usize>) -> miette::Result<ViewInput> {
 }
 
 fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<ShownRun> {
-    let path = args.path();
+    let path = &*args.path;
     let name = path.display();
     let text = std::fs::read_to_string(path)
         .into_diagnostic()
@@ -190,7 +190,7 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<ShownRun> {
     let group = HardCaseGroup::parse(&text)
         .into_diagnostic()
         .wrap_err_with(|| format!("{name}: no group of hard cases"))?;
-    if args.seed().is_some() {
+    if args.seed.is_some() {
         return Err(miette!(
             help = "leave --seed out",
             "{name}: a group of hard cases has its own seed"
@@ -204,7 +204,7 @@ fn case(args: &SceneArgs, run: usize, tier: Tier) -> miette::Result<ShownRun> {
     let frames = cases.runs.get(run).ok_or_else(|| {
         miette!(help = "runs are counted from 0", "{name}: run {run} of {}", cases.runs.len())
     })?;
-    let most = args.frames().map_or(frames.len(), |most| frames.len().min(most as usize));
+    let most = args.frames.map_or(frames.len(), |most| frames.len().min(most as usize));
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut show =
         ShownRun::poses(&stem, path, cases.shapes.built.clone(), &frames[..most], &settings, tier)

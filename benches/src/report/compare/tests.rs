@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-use super::super::{FILE, Load};
+use super::super::FILE;
 use super::*;
+use crate::measure::conditions::Load;
 
 fn record(counts: &str, times: &str) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();

@@ -141,7 +141,7 @@ mod tests {
     use sdop_bench::cost::table::CheckedPrediction;
     use sdop_bench::cost::terms::Terms;
     use sdop_bench::measure::counts::Volume;
-    use sdop_bench::measure::turns::{Quartiles, Regime};
+    use sdop_bench::measure::turns::Regime;
 
     fn cost(strategy: Strategy, volume: Volume, microseconds: f64) -> Cost {
         let seconds = 1e-6 * microseconds;
@@ -168,7 +168,6 @@ mod tests {
             }],
             widths: Vec::new(),
             frame: compared,
-            quartiles: Quartiles::default(),
             construct: compared,
             total: compared,
             fails: None,

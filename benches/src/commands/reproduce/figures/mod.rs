@@ -14,12 +14,11 @@ use crate::commands::style::{Area, DrawResult, page};
 /// A figure's file name, size, and what draws it.
 type Figure = (&'static str, (u32, u32), fn(&Area<'_>, &Drawings) -> DrawResult);
 
-const FIGURES: [Figure; 5] = [
+const FIGURES: [Figure; 4] = [
     ("frame_rates", (1000, 620), frame_rates::draw),
-    ("useful_tests", (860, 560), percent::useful_tests),
+    ("useful_tests", (860, 560), percent::draw),
     ("costs", (1060, 640), costs::draw),
     ("residuals", (900, 420), residuals::draw),
-    ("sphere", (760, 430), percent::sphere),
 ];
 
 /// Every figure, with its file's name.

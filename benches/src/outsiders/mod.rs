@@ -1,3 +1,0 @@
-//! Timing other programs on the same frames.
-
-pub mod timing;
