@@ -1,5 +1,4 @@
-//! Periodic axes against exact truth: every pair of which some image meets is reported once, with
-//! that image, whatever has come, moved and gone, and no other pair of boxes is.
+//! Periodic axes against exact truth: each pair of which an image meets is reported once.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod borders;

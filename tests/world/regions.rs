@@ -1,5 +1,4 @@
-//! Bodies in far-apart regions: hardly more pairs than each region alone has, and bodies that are
-//! too far apart for one origin.
+//! Bodies in far-apart regions, and bodies that are too far apart for one origin.
 
 use sdop::culler::Culler;
 use sdop::mesh::{ProceduralShape, TriangleMesh};
