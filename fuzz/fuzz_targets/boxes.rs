@@ -4,8 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use sdop::Tier;
-use sdop_judge::draw::boxes::{draw, judge};
-use sdop_judge::configuration::Rotation;
+use sdop_judge::{configuration::Rotation, draw::boxes::draw, verify::rounds::check_boxes};
 
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {
@@ -19,6 +18,6 @@ fuzz_target!(|data: &[u8]| {
     let tiers = Tier::available();
     let tier = tiers[below(tiers.len() as u32, &mut bytes) as usize];
     let frames = draw(&mut |n| below(n, &mut bytes));
-    let judged = judge(&frames, &Rotation::new(&[tier])).expect("boxes are boxes");
+    let judged = check_boxes(&frames, &Rotation::new(&[tier])).expect("boxes are boxes");
     assert_eq!(judged.failure, None);
 });

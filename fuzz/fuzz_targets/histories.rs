@@ -9,12 +9,12 @@ use std::sync::OnceLock;
 use libfuzzer_sys::fuzz_target;
 use sdop::Tier;
 use sdop::settings::{CullSettings, Overlap};
-use sdop_judge::truth::Shapes;
 use sdop_judge::configuration::{Mode, rows, variants};
 use sdop_judge::history::{
     Repeated, Robots, draw_boxes, draw_meshes, history_shapes, judge_boxes, judge_compounds,
     judge_meshes, judge_periodic_boxes, judge_periodic_meshes,
 };
+use sdop_judge::truth::Shapes;
 
 /// A number below another, of as many bytes as that takes; 0 when none are left.
 fn below(n: u32, bytes: &mut impl Iterator<Item = u8>) -> u32 {

@@ -10,11 +10,11 @@ use sdop::bodies::Bodies;
 use sdop::bodies::contract::check_bodies;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
-use sdop_judge::verify::{Ledger, Run};
 use sdop_judge::configuration::Rotation;
-use sdop_judge::draw::contact::{Contact, ContactKind, PlacedShape};
 use sdop_judge::draw::bodies::add;
+use sdop_judge::draw::contact::{Contact, ContactKind, PlacedShape};
 use sdop_judge::truth::{Answers, Predicate, Shapes};
+use sdop_judge::verify::{Ledger, Run};
 
 const NAMES: [&str; 4] = ["box", "l-shape", "needle", "plate"];
 

@@ -74,11 +74,14 @@ pub fn boxes(seed: u64, rotation: &Rotation) -> Result<Ledger, RoundError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(BOXES);
     let frames = boxes::draw(&mut |n| rng.random_range(0..n));
-    Ok(Ledger { boxes: in_every_cell(&frames, rotation)?, ..Ledger::default() })
+    Ok(Ledger { boxes: check_boxes(&frames, rotation)?, ..Ledger::default() })
 }
 
-/// Culls the frames in every cell and holds each list against the definition.
-fn in_every_cell(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<ListLedger, CullError> {
+/// Culls the frames in every cell and compares each list with the definition.
+///
+/// # Errors
+/// Threads that the system refuses, invalid boxes.
+pub fn check_boxes(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<ListLedger, CullError> {
     let wanted: Vec<Vec<[u32; 2]>> = frames.iter().map(|boxes| meeting(boxes)).collect();
     let mut ledger = ListLedger {
         required: wanted.iter().map(|pairs| pairs.len() as u64).sum(),
@@ -92,16 +95,12 @@ fn in_every_cell(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<ListLedger
             if let (Some(&[i, j]), None) = (differing.first(), &ledger.failure) {
                 let [one, other] = [i, j].map(|body| boxes[body as usize]);
                 ledger.failure = Some(format!(
-                    "given boxes {i} and {j} of {}, frame {n}: {one:?} and {other:?} ({finder}, {}, {} threads)",
-                    boxes.len(),
-                    mode.tier,
-                    mode.threads
+                    "given boxes {i} and {j}, frame {n}: {one:?} and {other:?} ({finder}, {mode:?})"
                 ));
             }
         }
         ledger.lists += frames.len() as u64;
-        let cell = Cell::of(Judged::Boxes(finder), mode);
-        ledger.coverage.count(cell, frames.len() as u64);
+        ledger.coverage.count(Cell::of(Judged::Boxes(finder), mode), frames.len() as u64);
     }
     Ok(ledger)
 }
