@@ -1,4 +1,4 @@
-//! Judges our culler: in every way that it culls ([`run`]), over rounds of seeds and hard cases
+//! Judges our culler: in each configuration ([`run`]), over rounds of seeds and hard cases
 //! ([`rounds`]), and as a subject like any other program ([`subject`]).
 
 pub mod ledger;

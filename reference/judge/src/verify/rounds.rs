@@ -1,5 +1,5 @@
 //! Rounds of a verification run. The bodies that a seed or a group of hard cases draws are judged
-//! once by every predicate, and then culled in every way, in the modes of this turn.
+//! once by every predicate, and then culled in each configuration, in the modes of this turn.
 
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -27,8 +27,8 @@ use sdop::culler::CullError;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet};
 
-/// Judges runs of frames and culls them in every way; run number `n` takes turn `turn + n` of the
-/// rotation.
+/// Judges runs of frames and culls them in each configuration; run number `n` takes turn `turn + n`
+/// of the rotation.
 ///
 /// # Errors
 /// As [`Run::check`], and poses outside the contract.

@@ -1,5 +1,5 @@
-//! Culls the same frames in every way, and compares each list with the exact answers and with that
-//! of all-pairs.
+//! Culls the same frames in each configuration, and compares each list with the exact answers and
+//! with that of all-pairs.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -57,8 +57,8 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Culls the frames in every way, way number `w` in the mode numbered `w` modulo their number,
-    /// and holds every list against the answers and against that of all-pairs.
+    /// Culls the frames in each configuration, number `w` in the mode numbered `w` modulo their
+    /// number, and compares each list with the answers and with that of all-pairs.
     ///
     /// # Errors
     /// Settings that the bodies can't have.
