@@ -1,4 +1,4 @@
-//! What a frame in which few boxes change costs, by counters.
+//! The cost of frames in which few boxes change, by counters.
 
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, BoxWorld, Groups, Motion};

@@ -114,7 +114,7 @@ impl Case {
         }
     }
 
-    /// The number of questions per frame, 1 if a frame has none.
+    /// Questions per frame; a frame without questions counts as one.
     pub fn questions_asked(&self) -> usize {
         match self.question {
             None | Some(Question::Sets) => 1,

@@ -38,8 +38,8 @@ pub(super) fn sizes(scene: &Scene) -> Vec<usize> {
     sizes
 }
 
-/// A variant per size, with bodies of interest evenly spread: with all or-DOP poses updated, then
-/// with only those that a pair needs.
+/// A variant per size, with bodies of interest evenly spread: first every or-DOP
+/// is posed in each frame, then only those that a pair needs.
 pub(super) fn variants(scene: &Scene) -> Vec<Variant> {
     let mut variants = Vec::new();
     for updates in [Updates::Eager, Updates::Lazy] {

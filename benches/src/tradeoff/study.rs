@@ -124,7 +124,7 @@ struct ComparedVariants {
     hits: f64,
     /// Their names, then those of the interest sets.
     names: Vec<String>,
-    /// Volume / hull volume of each variant that is no interest set.
+    /// Volume / hull volume of each variant, without the interest sets.
     volumes: Vec<Option<f64>>,
     /// The interest sets' sizes.
     sets: Vec<usize>,
@@ -222,7 +222,7 @@ impl Comparison {
         Ok(found)
     }
 
-    /// The interest sets' sizes, and the variants that are none.
+    /// The interest sets' sizes, and all other variants.
     fn split(&self) -> (Vec<usize>, &[Variant]) {
         let sets = interest::sizes(&self.scene);
         let own = self.variants.len() - 2 * sets.len();
@@ -307,8 +307,8 @@ impl Findings {
         Ok(())
     }
 
-    /// The comparison, which this command line repeats. `None` if units are missing or belong to
-    /// another one. `before` are the machine's conditions at the start.
+    /// The comparison, with the command line that repeats it. `None` if units are missing or belong
+    /// to another comparison. `before` are the machine's conditions at the start.
     #[must_use]
     pub fn finish(
         mut self,
@@ -351,7 +351,7 @@ impl Findings {
         })
     }
 
-    /// Every variant that is no interest set.
+    /// Every variant but the interest sets.
     fn rows(&self, compared: &ComparedVariants) -> Vec<VariantResult> {
         let named = compared.names.iter().zip(&compared.volumes).enumerate();
         let mut rows: Vec<VariantResult> =

@@ -145,7 +145,7 @@ impl Boxes {
         }
     }
 
-    /// Replaces a body by another one with the same number.
+    /// Removes a body and inserts a new one under its number.
     fn replace(&mut self, body: u32, bounds: Aabb) {
         let removed = self.world.remove(self.ids[body as usize]);
         assert!(removed.is_ok(), "{removed:?}: the body is there");

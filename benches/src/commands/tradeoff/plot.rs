@@ -229,8 +229,8 @@ mod tests {
             .collect();
         serde_json::from_value(serde_json::json!({
             "command": "", "machine": Machine::here(Tier::SCALAR), "scene": "s", "bodies": 2,
-            "frames": 1, "samples": 1, "seeds": [1], "truth": estimate(1.0), "partners": 1.0, "narrow_phase": {"miss": 1e-6, "hit": 1e-6},
-            "rows": rows, "cheapest": [], "densities": [], "budgets": [],
+            "frames": 1, "samples": 1, "seeds": [1], "truth": estimate(1.0), "partners": 1.0,
+            "narrow_phase": {"miss": 1e-6, "hit": 1e-6}, "rows": rows, "cheapest": [], "densities": [], "budgets": [],
             "clock": [], "interest": [], "conditions": Conditions::default(),
         }))
         .unwrap()

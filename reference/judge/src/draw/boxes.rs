@@ -1,4 +1,4 @@
-//! Draws boxes that are hard to tell apart.
+//! Draws boxes that barely meet or barely miss each other.
 
 use sdop::bodies::Aabb;
 
@@ -14,7 +14,7 @@ const SIDES: [&[[f32; 3]]; 4] = [
 /// Exponents of units: of the least, where nothing underflows, up to the greatest.
 const UNITS: [i32; 4] = [-70, 0, 0, 100];
 
-/// Frames of boxes that are hard to tell apart: each begins where another ends, or a few last
+/// Frames of boxes that barely meet or miss: each begins where another ends, or a few last
 /// places before or after, or lies anywhere; then all move, and some begin at another one's end
 /// again. `below(n)` draws a number below n.
 pub fn draw(below: &mut impl FnMut(u32) -> u32) -> Vec<Vec<Aabb>> {

@@ -27,8 +27,7 @@ pub use queries::{judge_queries_of_boxes, judge_queries_of_meshes};
 pub use robots::Robots;
 pub(crate) use worlds::{CompoundWorld, JudgedWorld, Listing, ReportedPair};
 
-pub use crate::configuration::world_kind::{ChangeKind, WorldKind};
-
+use crate::configuration::world_kind::{ChangeKind, WorldKind};
 use crate::draw::forms::FormError;
 use crate::truth::reference_shapes::InvalidInput;
 use sdop::ThreadsError;

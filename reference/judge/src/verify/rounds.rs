@@ -6,9 +6,9 @@ use rand_chacha::ChaCha8Rng;
 
 use super::ledger::Ledger;
 use super::run::{RoundError, Run};
-use crate::configuration::Rotation;
 use crate::configuration::coverage::{Cell, Judged, ListLedger};
 use crate::configuration::cullers::{box_culler, finders};
+use crate::configuration::{Mode, Rotation};
 use crate::draw::bodies::{ContactSpec, crowd, probe};
 use crate::draw::boxes;
 use crate::draw::forms::{self, Form};
@@ -87,7 +87,7 @@ pub fn check_boxes(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<ListLedg
         required: wanted.iter().map(|pairs| pairs.len() as u64).sum(),
         ..ListLedger::default()
     };
-    for (finder, mode) in finders(rotation) {
+    for (finder, mode @ Mode { tier, threads, .. }) in finders(rotation) {
         let mut culler = box_culler(finder, mode).build()?;
         for (n, (boxes, wanted)) in frames.iter().zip(&wanted).enumerate() {
             let differing = difference(&culler.cull(boxes)?.sorted(), wanted);
@@ -95,7 +95,9 @@ pub fn check_boxes(frames: &[Vec<Aabb>], rotation: &Rotation) -> Result<ListLedg
             if let (Some(&[i, j]), None) = (differing.first(), &ledger.failure) {
                 let [one, other] = [i, j].map(|body| boxes[body as usize]);
                 ledger.failure = Some(format!(
-                    "given boxes {i} and {j}, frame {n}: {one:?} and {other:?} ({finder}, {mode:?})"
+                    "given boxes {i} and {j} of {}, frame {n}: {one:?} and {other:?} ({finder}, \
+                     {tier}, {threads} threads)",
+                    boxes.len()
                 ));
             }
         }

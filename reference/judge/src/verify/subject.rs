@@ -25,13 +25,12 @@ pub fn makes(strategy: Strategy, claim: Claim) -> bool {
     match claim {
         Claim::Sphere => strategy == Strategy::Sphere,
         Claim::OrDop => strategy == Strategy::OrDop,
-        Claim::Hull | Claim::Mesh | Claim::Parts => strategy.scheme().culls(),
-        _ => false,
+        _ => !claim.is_of_boxes() && strategy.scheme().culls(),
     }
 }
 
-/// Every way to cull that makes a claim. What one of them doesn't report counts as not reported, so
-/// a miss in any of them is a miss.
+/// Our cullers, in every configuration that makes a claim. What one of them doesn't report counts
+/// as not reported, so a miss in any of them is a miss.
 pub struct OwnCullers {
     rotation: Rotation,
 }
