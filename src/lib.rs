@@ -128,6 +128,7 @@ pub mod c;
 pub mod compound;
 pub mod counters;
 pub mod culler;
+pub mod living;
 #[cfg(feature = "shapes")]
 pub mod mesh;
 pub mod pairs;
@@ -136,6 +137,7 @@ pub mod query;
 pub mod settings;
 #[cfg(feature = "shapes")]
 pub mod volume;
+#[cfg(feature = "shapes")]
 pub mod world;
 
 mod problem;
@@ -174,6 +176,8 @@ pub use culler::CullError;
 #[cfg(feature = "shapes")]
 #[doc(inline)]
 pub use culler::{Culler, CullerBuilder};
+#[doc(inline)]
+pub use living::{BodyId, Event, Events, LivingSet, WorldError};
 #[cfg(feature = "shapes")]
 #[doc(inline)]
 pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
@@ -199,8 +203,6 @@ pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
 #[cfg(feature = "shapes")]
 #[doc(inline)]
 pub use world::{Body, World};
-#[doc(inline)]
-pub use world::{BodyId, Event, Events, WorldError};
 
 /// The README's example compiles; `.ci/run` runs it in a project of its own.
 #[cfg(all(doctest, feature = "readers"))]

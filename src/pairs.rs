@@ -1,10 +1,12 @@
 //! [`PairList`], the list of candidate or reported pairs.
 
+mod found;
 mod in_step;
 mod partners;
 mod runs;
 mod sort;
 
+pub(crate) use found::Found;
 pub(crate) use in_step::out_of_step;
 pub(crate) use partners::{PartnerPairs, Partners};
 pub(crate) use runs::{ROOM, Run, Runs};

@@ -27,6 +27,7 @@ const LIBRARY: &[&str] = &[
     "overlap",
     "strategy",
     "culler",
+    "living",
     "world",
     "boxes",
     "query",

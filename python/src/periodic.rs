@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sdop::periodic::{ImageWorld, Periodic, PeriodicBox, PeriodicError, PeriodicPair};
+use sdop::periodic::{ImageSource, Periodic, PeriodicBox, PeriodicError, PeriodicPair};
 use sdop::{Body, BodyId, Finder, Groups};
 
 use super::arrays::{check_length, id_column, matrix, one_row, pairs, rows, wide_rows};
@@ -36,10 +36,10 @@ fn periods(given: &Bound<'_, PyAny>) -> PyResult<[Option<f64>; 3]> {
 }
 
 /// Changes a body by what `change` makes of it.
-fn changed<W: ImageWorld>(
-    world: &mut Periodic<W>,
+fn changed<V: ImageSource>(
+    world: &mut Periodic<V>,
     id: u64,
-    change: impl FnOnce(&mut W::Body),
+    change: impl FnOnce(&mut V::Given),
 ) -> Result<(), PeriodicError> {
     let id = BodyId::from_bits(id);
     let mut body = world.body(id)?;

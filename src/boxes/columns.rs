@@ -3,9 +3,9 @@
 use super::BoxWorld;
 use crate::bodies::Aabb;
 use crate::bodies::contract::check_column;
+use crate::living::{BodyId, WorldError};
 use crate::rounding::cube::Cube;
 use crate::simd::{Kernel, LANES, Lanes, MAX_WIDTH, dispatch, in_default_mode, numbers_of};
-use crate::world::{BodyId, WorldError};
 
 /// The number of boxes that are checked before the first of them moves. Their columns fit into the
 /// first cache.
@@ -21,8 +21,8 @@ impl BoxWorld {
     pub fn set_many(&mut self, ids: &[BodyId], bounds: &[Aabb]) -> Result<(), WorldError> {
         check_column("bounds", bounds.len(), ids.len())?;
         for (ids, bounds) in ids.chunks(BLOCK).zip(bounds.chunks(BLOCK)) {
-            let are_sound = || dispatch(self.frames.tier(), AreSound(bounds));
-            if self.ids.have(ids) && in_default_mode(are_sound) {
+            let are_sound = || dispatch(self.volumes.frames.tier(), AreSound(bounds));
+            if self.members.ids.have(ids) && in_default_mode(are_sound) {
                 self.move_all(ids, bounds);
             } else {
                 let mut boxes = ids.iter().zip(bounds);
@@ -34,18 +34,18 @@ impl BoxWorld {
 
     /// Gives present boxes valid bounds.
     fn move_all(&mut self, ids: &[BodyId], bounds: &[Aabb]) {
-        let row_of = |id: &BodyId| self.ids.row_of(id.slot() as u32);
-        let is_dynamic = |id: &BodyId| self.dynamic[row_of(id)];
+        let row_of = |id: &BodyId| self.members.ids.row_of(id.slot() as u32);
+        let is_dynamic = |id: &BodyId| self.volumes.dynamic[row_of(id)];
         // Whether bounds are equal is of no use if the next cull finds all pairs anyway.
-        if self.movers.are_many() && ids.iter().all(is_dynamic) {
-            let all = self.bounds.as_mut_slice();
+        if self.members.movers.are_many() && ids.iter().all(is_dynamic) {
+            let all = self.volumes.bounds.as_mut_slice();
             for (id, &bounds) in ids.iter().zip(bounds) {
                 all[row_of(id)] = bounds;
             }
         } else {
             let boxes = ids.iter().zip(bounds);
             boxes.for_each(|(id, &bounds)| {
-                self.move_to(self.ids.row_of(id.slot() as u32), bounds);
+                self.move_to(self.members.ids.row_of(id.slot() as u32), bounds);
             });
         }
     }
@@ -53,10 +53,9 @@ impl BoxWorld {
     /// Gives a present box valid bounds.
     #[inline(always)]
     pub(super) fn move_to(&mut self, slot: usize, bounds: Aabb) {
-        if !bounds.has_bits_of(&self.bounds[slot]) {
-            self.replaced |= !self.dynamic[slot];
-            self.movers.note(slot, &self.ids);
-            self.bounds[slot] = bounds;
+        if !bounds.has_bits_of(&self.volumes.bounds[slot]) {
+            self.members.note(slot, !self.volumes.dynamic[slot]);
+            self.volumes.bounds[slot] = bounds;
         }
     }
 }

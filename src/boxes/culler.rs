@@ -8,7 +8,6 @@ use crate::culler::CullError;
 use crate::pairs::PairList;
 use crate::settings::Finder;
 use crate::simd::Tier;
-use crate::strategy::Output;
 use crate::threads::{FrameThreads, Threads, WORTH_WAKING};
 
 /// Finds the boxes that meet, frame after frame.
@@ -29,7 +28,6 @@ pub struct BoxCuller {
     frames: BoxFrames,
     groups: Option<Vec<Groups>>,
     pairs: PairList,
-    counters: VolumeCounters,
 }
 
 /// Settings of a [`BoxCuller`] or a [`BoxWorld`](super::BoxWorld). Each has a default.
@@ -114,12 +112,7 @@ impl BoxCuller {
     }
 
     fn with(frames: BoxFrames) -> Self {
-        Self {
-            frames,
-            groups: None,
-            pairs: PairList::default(),
-            counters: VolumeCounters::default(),
-        }
+        Self { frames, groups: None, pairs: PairList::default() }
     }
 
     /// From now on, only pairs of boxes whose groups collide are listed; with `None`, all are. One
@@ -138,12 +131,15 @@ impl BoxCuller {
     /// holds. Then [`Self::pairs`] is empty, and
     /// the next frame is culled as usual.
     pub fn cull(&mut self, boxes: &[Aabb]) -> Result<&PairList, CullError> {
-        let mut pairs = std::mem::take(&mut self.pairs);
-        pairs.clear();
-        let outcome = self.cull_into(boxes, Output::List(&mut pairs));
-        let whole = CullError::check_memory(&mut pairs);
-        self.pairs = pairs;
-        outcome.and(whole).map(|()| &self.pairs)
+        self.list(boxes, None)
+    }
+
+    fn list(&mut self, boxes: &[Aabb], limit: Option<usize>) -> Result<&PairList, CullError> {
+        self.pairs.clear();
+        self.take_in(boxes)?;
+        let filter = PairFilter::of_groups(self.groups.as_deref());
+        self.frames.list(boxes, filter, limit, &mut self.pairs)?;
+        Ok(&self.pairs)
     }
 
     /// Culls one frame as [`Self::cull`] does and passes its pairs to `take`, about 65,000 at a
@@ -158,14 +154,10 @@ impl BoxCuller {
         boxes: &[Aabb],
         mut take: impl FnMut(&PairList) + Send,
     ) -> Result<u64, CullError> {
-        let mut reported = 0;
-        let mut sink = |portion: &mut PairList| {
-            reported += portion.len() as u64;
-            take(portion);
-        };
         self.pairs.clear();
-        self.cull_into(boxes, Output::Portions(&mut sink))?;
-        Ok(reported)
+        self.take_in(boxes)?;
+        let filter = PairFilter::of_groups(self.groups.as_deref());
+        self.frames.pass_on(boxes, filter, &mut take)
     }
 
     /// Culls one frame as [`Self::cull`] does, if it has at most `limit` pairs. Memory for more is
@@ -175,22 +167,12 @@ impl BoxCuller {
     /// There are more pairs, and the error has their number: then [`Self::pairs`] is empty, and the
     /// frame counts as culled. Otherwise as [`Self::cull`].
     pub fn cull_up_to(&mut self, boxes: &[Aabb], limit: usize) -> Result<&PairList, CullError> {
-        let mut kept = std::mem::take(&mut self.pairs);
-        kept.clear();
-        let outcome = self.cull_in_portions(boxes, |portion| kept.append_up_to(portion, limit));
-        CullError::check_memory(&mut kept)?;
-        self.pairs = kept;
-        match outcome {
-            Ok(pairs) if pairs == self.pairs.len() as u64 => Ok(&self.pairs),
-            Ok(pairs) => {
-                self.pairs.clear();
-                Err(CullError::TooManyPairs { pairs, limit })
-            }
-            Err(error) => Err(error),
-        }
+        self.list(boxes, Some(limit))
     }
 
-    fn cull_into(&mut self, boxes: &[Aabb], output: Output<'_>) -> Result<(), CullError> {
+    /// Checks the lengths of a frame's columns, and takes the boxes for new ones if their number
+    /// differs from that of the frame before.
+    fn take_in(&mut self, boxes: &[Aabb]) -> Result<(), CullError> {
         check_number(boxes.len())?;
         if let Some(groups) = &self.groups {
             check_column("groups", groups.len(), boxes.len())?;
@@ -199,8 +181,6 @@ impl BoxCuller {
             let all = vec![true; boxes.len()];
             self.frames.replace(&all, &all);
         }
-        let filter = PairFilter::of_groups(self.groups.as_deref());
-        self.counters += self.frames.cull(boxes, filter, output)?;
         Ok(())
     }
 
@@ -213,7 +193,7 @@ impl BoxCuller {
     /// Counters summed over all frames: boxes updated, candidates tested, pairs reported.
     #[must_use]
     pub fn counters(&self) -> &VolumeCounters {
-        &self.counters
+        &self.frames.counters
     }
 
     /// Candidates that the last frame tested to build a list of neighbours, in addition to the

@@ -8,7 +8,9 @@ use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, PairFilter, Places, read_ahead};
 use crate::broad_phase::{Balls, EndSlots, GivenBoxes, PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
+use crate::culler::CullError;
 use crate::overlap::boxes::CubeTest;
+use crate::pairs::PairList;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
 use crate::simd::{Tier, dispatch, in_default_mode};
@@ -50,6 +52,8 @@ pub(super) struct BoxFrames {
     tasks: Tasks,
     /// Candidates of the frame before.
     candidates: u64,
+    /// Summed over all frames.
+    pub counters: VolumeCounters,
 }
 
 /// The change of the set since the frame before.
@@ -77,6 +81,7 @@ impl BoxFrames {
             ends: EndSlots::default(),
             tasks: Tasks::default(),
             candidates: 0,
+            counters: VolumeCounters::default(),
         }
     }
 
@@ -119,15 +124,48 @@ impl BoxFrames {
         (self.news, self.candidates) = (SetChange::All, 0);
     }
 
-    /// Hands the boxes that meet, not both at rest, that pass the filter, to `output`. `boxes` and
-    /// what the filter has are by name.
-    pub fn cull(
+    /// Lists the boxes that meet, not both fixed, that pass the filter, if there are no more than
+    /// the limit. `boxes` and what the filter has are by name.
+    pub fn list(
+        &mut self,
+        boxes: &[Aabb],
+        filter: Option<PairFilter<'_>>,
+        limit: Option<usize>,
+        list: &mut PairList,
+    ) -> Result<(), CullError> {
+        list.clear();
+        if let Some(limit) = limit {
+            return CullError::list_up_to(limit, list, |take| self.pass_on(boxes, filter, take));
+        }
+        self.cull(boxes, filter, Output::List(list))?;
+        CullError::check_memory(list)
+    }
+
+    /// As [`Self::list`], but passes the pairs on in portions, and returns their number.
+    pub fn pass_on(
+        &mut self,
+        boxes: &[Aabb],
+        filter: Option<PairFilter<'_>>,
+        take: &mut (dyn FnMut(&PairList) + Send),
+    ) -> Result<u64, CullError> {
+        let mut reported = 0;
+        let mut sink = |portion: &mut PairList| {
+            reported += portion.len() as u64;
+            take(portion);
+        };
+        self.cull(boxes, filter, Output::Portions(&mut sink))?;
+        Ok(reported)
+    }
+
+    fn cull(
         &mut self,
         boxes: &[Aabb],
         filter: Option<PairFilter<'_>>,
         output: Output<'_>,
-    ) -> Result<VolumeCounters, ContractError> {
-        in_default_mode(|| self.cull_frame(boxes, filter, output))
+    ) -> Result<(), ContractError> {
+        let counted = in_default_mode(|| self.cull_frame(boxes, filter, output))?;
+        self.counters += counted;
+        Ok(())
     }
 
     fn cull_frame(
@@ -259,7 +297,6 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
-    use crate::pairs::PairList;
     use crate::threads::Threads;
 
     /// Cubes decide if at most one box in sixteen is small compared with the gap.
@@ -304,7 +341,7 @@ mod tests {
         assert_eq!(set(&mut frames, 1001), SetChange::All, "nothing was culled yet");
         let mut pairs = PairList::default();
         let boxes = all_in_a_row(2000);
-        frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
+        frames.list(&boxes, None, None, &mut pairs).unwrap();
         assert_eq!((frames.news, frames.candidates > 0), (SetChange::None, true));
         assert_eq!(set(&mut frames, 1010), SetChange::Some);
         assert_eq!(set(&mut frames, 2000), SetChange::All);
@@ -321,8 +358,9 @@ mod tests {
         let mut boxes = all_in_a_row(2000);
         boxes[1000] = Aabb::new([0.0, 5.0, 0.0], [2000.0, 6.0, 1.0]);
         let mut pairs = PairList::default();
-        let counted = frames(Finder::Grid, 2000).cull(&boxes, None, Output::List(&mut pairs));
-        let tests = counted.unwrap().tests;
+        let mut frames = frames(Finder::Grid, 2000);
+        frames.list(&boxes, None, None, &mut pairs).unwrap();
+        let tests = frames.counters.tests;
         assert!((2000..20_000).contains(&tests), "{tests}");
     }
 
@@ -334,7 +372,7 @@ mod tests {
         let boxes = vec![Aabb::new([0.0; 3], [1.0; 3]); 200];
         frames.replace(&[true; 200], &[true; 200]);
         let mut pairs = PairList::default();
-        frames.cull(&boxes, None, Output::List(&mut pairs)).unwrap();
+        frames.list(&boxes, None, None, &mut pairs).unwrap();
         assert_eq!(pairs.len(), 200 * 199 / 2);
         // Two numbers per pair, of at least half of the pairs.
         assert!(frames.pair_bytes() > 4 * pairs.len());

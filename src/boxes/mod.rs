@@ -10,12 +10,9 @@
 //! CPU or on threads.
 
 mod columns;
-mod crowds;
 mod cubes;
 mod culler;
-mod excluded;
 mod frame;
-mod movers;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod world;
@@ -24,4 +21,4 @@ pub use crate::bodies::{Aabb, Motion};
 pub use culler::{BoxCuller, BoxCullerBuilder};
 #[cfg(feature = "serde")]
 pub use snapshot::BoxWorldSnapshot;
-pub use world::{BoxBody, BoxWorld};
+pub use world::{BoxBody, BoxWorld, Boxes};

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::BoxWorld;
-use crate::bodies::{Aabb, Groups};
-use crate::world::{
-    IdsSnapshot, LivePairs, PairsSnapshot, SnapshotError, Version, excluded_slots, flag_column,
-    flagged_slots, restored_column, restored_excluded,
+use crate::bodies::Aabb;
+use crate::living::{
+    IdsSnapshot, Members, PairsSnapshot, SnapshotError, Version, excluded_slots, flagged_slots,
+    restored_column,
 };
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
@@ -36,17 +36,18 @@ impl BoxWorld {
     #[must_use]
     pub fn snapshot(&self) -> BoxWorldSnapshot {
         let bits = |aabb: &Aabb| [aabb.min, aabb.max].map(|corner| corner.map(f32::to_bits));
-        let rows = || self.ids.filled();
-        let log = self.log.to_log(&self.ids);
+        let Self { members, volumes } = self;
+        let Members { ids, groups, .. } = members;
+        let rows = || ids.filled();
         BoxWorldSnapshot {
             version: Version,
-            ids: IdsSnapshot::of(&self.ids),
-            bounds: rows().map(|row| bits(&self.bounds[row])).collect(),
-            dynamic: rows().map(|row| self.dynamic[row]).collect(),
-            resting: flagged_slots(&self.resting, &self.ids),
-            groups: rows().map(|row| self.groups[row]).map(|g| [g.member, g.mask]).collect(),
-            pairs: PairsSnapshot::of(&log, self.movers.all_changed(), &self.ids),
-            excluded: excluded_slots(&self.excluded, &self.ids),
+            ids: IdsSnapshot::of(ids),
+            bounds: rows().map(|row| bits(&volumes.bounds[row])).collect(),
+            dynamic: rows().map(|row| volumes.dynamic[row]).collect(),
+            resting: flagged_slots(&members.resting, ids),
+            groups: rows().map(|row| groups[row]).map(|g| [g.member, g.mask]).collect(),
+            pairs: PairsSnapshot::of(&members.pairs, members.movers.all_changed(), ids),
+            excluded: excluded_slots(&members.excluded, ids),
         }
     }
 
@@ -57,29 +58,20 @@ impl BoxWorld {
     /// # Errors
     /// The snapshot is inconsistent. The world stays unchanged.
     pub fn restore(&mut self, snapshot: &BoxWorldSnapshot) -> Result<(), SnapshotError> {
-        let (ids, plan) = snapshot.ids.restored()?;
+        let BoxWorldSnapshot { ids, resting, groups, pairs, excluded, .. } = snapshot;
+        let (members, plan, changed) = Members::restored(ids, resting, groups, pairs, excluded)?;
         let corners = |corners: &[[u32; 3]; 2]| corners.map(|corner| corner.map(f32::from_bits));
         let bounds = snapshot.bounds.iter().map(corners).map(|[min, max]| Aabb { min, max });
         let bounds = restored_column("bounds", bounds, &plan, Aabb::default())?;
-        for row in ids.filled() {
-            bounds[row].check(ids.id(row as u32).slot())?;
+        for row in members.ids.filled() {
+            bounds[row].check(members.ids.id(row as u32).slot())?;
         }
         let dynamic = restored_column("dynamic", snapshot.dynamic.iter().copied(), &plan, true)?;
-        let groups = snapshot.groups.iter().map(|&[member, mask]| Groups { member, mask });
-        let groups = restored_column("groups", groups, &plan, Groups::ALL)?;
-        let (log, changed) = snapshot.pairs.restored(&ids)?;
-        let excluded = restored_excluded(&snapshot.excluded, &ids)?;
-        let resting = flag_column(&snapshot.resting, &ids, "at rest")?;
 
-        (self.ids, self.log, self.bounds) = (ids, LivePairs::of(log), bounds);
-        (self.dynamic, self.resting, self.groups) = (dynamic, resting, groups);
-        self.excluded = excluded;
-        self.count_groups();
-        self.movers.forget();
-        self.replaced = true;
+        self.members = members;
+        (self.volumes.bounds, self.volumes.dynamic) = (bounds, dynamic);
         if let Some(changed) = changed {
-            self.movers.resume(&changed, &self.ids);
-            self.warm_up();
+            self.resume(&changed);
         }
         Ok(())
     }

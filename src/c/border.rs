@@ -10,12 +10,12 @@ use crate::bodies::contract::ContractError;
 use crate::choice::UnknownChoice;
 use crate::compound::CompoundError;
 use crate::culler::CullError;
+use crate::living::{BodyId, Event, Events, SnapshotError, WorldError};
 use crate::mesh::MeshError;
 use crate::pairs::PairList;
 use crate::periodic::PeriodicError;
 use crate::query::QueryError;
 use crate::volume::VolumeError;
-use crate::world::{BodyId, Event, Events, SnapshotError, WorldError};
 
 /// How a call ended.
 #[repr(C)]

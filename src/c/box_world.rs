@@ -9,7 +9,7 @@ use super::border::{
 use super::boxes::builder;
 use crate::bodies::{Aabb, Groups, Motion};
 use crate::boxes::{BoxBody, BoxWorld};
-use crate::world::BodyId;
+use crate::living::BodyId;
 
 /// A long-lived set of boxes: ids that stay, groups, pairs and events.
 #[derive(Debug)]

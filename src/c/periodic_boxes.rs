@@ -8,8 +8,8 @@ use super::border::{
 };
 use super::boxes::builder;
 use crate::bodies::{Groups, Motion};
+use crate::living::BodyId;
 use crate::periodic::{PeriodicBox, PeriodicBoxes, PeriodicEvents, PeriodicPair};
-use crate::world::BodyId;
 
 /// A long-lived set of boxes in space that repeats along some axes.
 #[derive(Debug)]

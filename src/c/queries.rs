@@ -3,8 +3,8 @@
 use super::border::{Buffer, Out, SdopStatus, answer, call, free, handle, list, make, shared};
 use super::box_world::SdopBoxWorld;
 use super::world::SdopWorld;
+use crate::living::BodyId;
 use crate::query::{Line, LineHit, QueryIndex, QueryVolume};
-use crate::world::BodyId;
 
 /// The bodies of a world, prepared for queries. Many threads may query it at the same time, while
 /// none updates it.

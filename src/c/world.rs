@@ -136,7 +136,7 @@ pub unsafe extern "C" fn sdop_world_insert(
     answer(unsafe { Out::new(id) }, "id", || {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
-        Ok(it.0.insert(body.into())?.to_bits())
+        Ok(it.0.insert(Body::from(body))?.to_bits())
     })
 }
 
@@ -157,7 +157,7 @@ pub unsafe extern "C" fn sdop_world_set(
     call(|| {
         // SAFETY: the caller's promise.
         let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
-        Ok(it.0.set(BodyId::from_bits(id), body.into())?)
+        Ok(it.0.set(BodyId::from_bits(id), Body::from(body))?)
     })
 }
 

@@ -33,8 +33,6 @@ pub use builder::CullerBuilder;
 #[cfg(feature = "shapes")]
 pub(crate) use check::FAR_SHAPE_HELP;
 pub use error::CullError;
-#[cfg(feature = "shapes")]
-pub(crate) use sample::FoundPairs;
 
 #[cfg(feature = "shapes")]
 use std::{ops::Range, time::Instant};
@@ -46,7 +44,7 @@ use crate::strategy::RefinementRanks;
 #[cfg(feature = "shapes")]
 use crate::{
     bodies::contract::{check_bodies, check_column},
-    bodies::{Bodies, ExcludedPairs, Groups, Places},
+    bodies::{Bodies, Groups, PairFilter, Places},
     broad_phase::{Balls, PairFinder},
     counters::{Counters, Seconds},
     overlap::intervals::IntervalSlots,
@@ -87,7 +85,6 @@ pub struct Culler {
 struct BodySet {
     places: Places,
     groups: Option<Vec<Groups>>,
-    excluded: ExcludedPairs,
     /// What doesn't change between two frames, as it was at the last [`Culler::refresh`], or when
     /// static bodies were last found elsewhere.
     fixed: Bodies,
@@ -160,7 +157,6 @@ impl Culler {
             set: BodySet {
                 places,
                 groups: None,
-                excluded: ExcludedPairs::default(),
                 fixed: check::fixed(bodies),
                 watched: check::static_runs(bodies),
                 numbers: (0..n as u32).collect(),
@@ -202,26 +198,10 @@ impl Culler {
         Ok(())
     }
 
-    /// Pairs that are not listed, to be changed.
-    pub(crate) fn excluded_mut(&mut self) -> &mut ExcludedPairs {
-        &mut self.set.excluded
-    }
-
-    /// Pairs that are not listed.
-    pub(crate) fn excluded(&self) -> &ExcludedPairs {
-        &self.set.excluded
-    }
-
     /// From now on, a budget that is spent on pairs as they are found is spent on them in the order
     /// of their bodies.
     pub(crate) fn set_canonical(&mut self) {
         self.setup.is_canonical = true;
-    }
-
-    /// Exchanges the list of the last frame with `pairs`, whose memory is reused for the next
-    /// frame.
-    pub(crate) fn swap_pairs(&mut self, pairs: &mut PairList) {
-        std::mem::swap(&mut self.pairs, pairs);
     }
 
     /// When each pair of the last frame was last refined, for the order
@@ -293,32 +273,48 @@ impl Culler {
     /// strategies that test balls first. If it is zero or not finite, the or-DOP test rejects no
     /// pair of this body, so every pair whose balls meet is reported.
     pub fn cull(&mut self, bodies: &Bodies) -> Result<&PairList, CullError> {
+        let mut pairs = std::mem::take(&mut self.pairs);
+        let outcome = self.list(bodies, None, None, &mut pairs);
+        self.pairs = pairs;
+        outcome.map(|()| &self.pairs)
+    }
+
+    /// Culls one frame into an empty list, if it has no more pairs than the limit. Pairs pass this
+    /// filter, or that of the culler's groups.
+    pub(crate) fn list(
+        &mut self,
+        bodies: &Bodies,
+        filter: Option<PairFilter<'_>>,
+        limit: Option<usize>,
+        pairs: &mut PairList,
+    ) -> Result<(), CullError> {
+        pairs.clear();
+        if let Some(limit) = limit {
+            return CullError::list_up_to(limit, pairs, |take| self.pass_on(bodies, filter, take));
+        }
         let start = Instant::now();
         self.check_set(bodies)?;
         self.follow_static(bodies)?;
-        let mut pairs = std::mem::take(&mut self.pairs);
-        pairs.clear();
-        let outcome = self.cull_into(bodies, Output::List(&mut pairs), start);
+        let outcome = self.cull_into(bodies, filter, Output::List(pairs), start);
         self.counters.reported += pairs.len() as u64;
-        let whole = CullError::check_memory(&mut pairs);
-        self.pairs = pairs;
-        outcome.and(whole)?;
-        Ok(&self.pairs)
+        outcome.and(CullError::check_memory(pairs))
     }
 
     /// Culls one frame, which began at `start`, and writes its pairs to `output`.
     fn cull_into(
         &mut self,
         bodies: &Bodies,
+        filter: Option<PairFilter<'_>>,
         output: Output<'_>,
         start: Instant,
     ) -> Result<(), CullError> {
-        in_default_mode(|| self.cull_frame(bodies, output, start))
+        in_default_mode(|| self.cull_frame(bodies, filter, output, start))
     }
 
     fn cull_frame(
         &mut self,
         bodies: &Bodies,
+        filter: Option<PairFilter<'_>>,
         output: Output<'_>,
         start: Instant,
     ) -> Result<(), CullError> {
@@ -336,7 +332,7 @@ impl Culler {
         self.count_updates();
         let updated = Instant::now();
         self.arrange();
-        let totals = self.run(bodies, output, row_timing);
+        let totals = self.run(bodies, filter, output, row_timing);
 
         let finding = (reordered - start) + updated.elapsed();
         let refining = totals.refining_seconds + totals.update_seconds;

@@ -6,7 +6,7 @@
 use std::time::{Duration, Instant};
 
 use super::{CullError, Culler};
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, PairFilter};
 use crate::pairs::PairList;
 use crate::strategy::Output;
 
@@ -27,6 +27,17 @@ impl Culler {
         bodies: &Bodies,
         mut take: impl FnMut(&PairList) + Send,
     ) -> Result<u64, CullError> {
+        self.pairs.clear();
+        self.pass_on(bodies, None, &mut take)
+    }
+
+    /// [`Self::cull_in_portions`] of pairs that pass this filter, or that of the culler's groups.
+    pub(crate) fn pass_on(
+        &mut self,
+        bodies: &Bodies,
+        filter: Option<PairFilter<'_>>,
+        take: &mut (dyn FnMut(&PairList) + Send),
+    ) -> Result<u64, CullError> {
         let start = Instant::now();
         self.check_set(bodies)?;
         self.follow_static(bodies)?;
@@ -40,8 +51,7 @@ impl Culler {
             take(portion);
             taking += start.elapsed();
         };
-        self.pairs.clear();
-        let outcome = self.cull_into(bodies, Output::Portions(&mut sink), start);
+        let outcome = self.cull_into(bodies, filter, Output::Portions(&mut sink), start);
         self.counters.reported += reported;
         self.seconds.pair_finding -= taking.as_secs_f64();
         self.seconds.total -= taking.as_secs_f64();
@@ -56,18 +66,10 @@ impl Culler {
     /// More than `limit` pairs; the error has their number, [`Self::pairs`] is empty and the frame
     /// counts as culled. Otherwise as [`Self::cull`].
     pub fn cull_up_to(&mut self, bodies: &Bodies, limit: usize) -> Result<&PairList, CullError> {
-        let mut kept = std::mem::take(&mut self.pairs);
-        kept.clear();
-        let outcome = self.cull_in_portions(bodies, |portion| kept.append_up_to(portion, limit));
-        let pairs = outcome?;
-        CullError::check_memory(&mut kept)?;
-        let is_whole = kept.len() as u64 == pairs;
-        self.pairs = kept;
-        if is_whole {
-            return Ok(&self.pairs);
-        }
-        self.pairs.clear();
-        Err(CullError::TooManyPairs { pairs, limit })
+        let mut pairs = std::mem::take(&mut self.pairs);
+        let outcome = self.list(bodies, None, Some(limit), &mut pairs);
+        self.pairs = pairs;
+        outcome.map(|()| &self.pairs)
     }
 
     /// Bytes that lists of pairs hold, including intermediate lists.

@@ -11,7 +11,7 @@ use crate::bodies::{Aabb, Bodies, Places};
 use crate::broad_phase::Balls;
 use crate::counters::{RestCounters, VolumeCounters};
 use crate::overlap::ordop::OrDopColumns;
-use crate::pairs::PairList;
+use crate::pairs::{Found, PairList};
 use crate::rounding::{down, sphere::apart, up, widen};
 use crate::settings::Flow;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
@@ -29,17 +29,6 @@ pub(super) struct Sample {
     /// Pairs of places, the one of the lower body first.
     pairs: PairList,
     survivors: PairList,
-}
-
-/// Pairs to be tested: each of some bodies with its list of others.
-pub(crate) struct FoundPairs<'a> {
-    /// The bodies, each of which may have others.
-    pub bodies: &'a [u32],
-    /// The others of all bodies in one list, and the end of each body's part.
-    pub others: &'a mut Vec<u32>,
-    pub ends: &'a mut [usize],
-    /// Whether each body is of interest.
-    pub interest: &'a [bool],
 }
 
 impl Culler {
@@ -70,21 +59,21 @@ impl Culler {
     }
 
     /// Keeps the reported pairs among those whose boxes meet. The bodies are those of the last call
-    /// of [`Self::boxes_of`].
-    pub(crate) fn test_found(&mut self, bodies: &Bodies, found: FoundPairs<'_>) {
-        let FoundPairs { bodies: some, others, ends, interest } = found;
+    /// of [`Self::boxes_of`]; `interest` has whether each is of interest.
+    pub(crate) fn test_found(&mut self, bodies: &Bodies, found: &mut Found, interest: &[bool]) {
         let start = Instant::now();
-        self.place_sample(bodies, others);
-        self.count_sample_updates(others.len());
+        self.place_sample(bodies, &found.partners);
+        let candidates = found.partners.len();
+        self.count_sample_updates(candidates);
         let updated = Instant::now();
         if let Some(volume) = self.setup.scheme.first {
-            let counted = self.keep_near(some.len(), others, ends);
+            let counted = self.keep_near(found);
             *self.counters.of_mut(volume) += counted;
         }
         let tested = Instant::now();
         let mut refined = 0;
         if let Some(volume) = self.setup.scheme.refining {
-            let counted = self.refine_found(bodies, some, others, ends, interest);
+            let counted = self.refine_found(bodies, found, interest);
             refined = counted.tests;
             *self.counters.of_mut(volume) += counted;
         }
@@ -93,7 +82,7 @@ impl Culler {
         self.seconds.ordop += tested.elapsed().as_secs_f64();
         self.threads.expect(FrameWork {
             updates: self.sample.places.len() as u64,
-            candidates: others.len() as u64,
+            candidates: found.partners.len() as u64,
             refined,
         });
     }
@@ -136,28 +125,26 @@ impl Culler {
         }
     }
 
-    /// Keeps the pairs that pass the first test, of bodies in the first `count` places with those
-    /// in the places after them.
-    fn keep_near(&self, count: usize, others: &mut Vec<u32>, ends: &mut [usize]) -> VolumeCounters {
+    /// Keeps the pairs that pass the first test, of bodies in the first places with partners in the
+    /// places after them.
+    fn keep_near(&self, found: &mut Found) -> VolumeCounters {
         let Sample { balls, ends: slabs, places, .. } = &self.sample;
-        let tests = others.len() as u64;
+        let (tests, count) = (found.partners.len() as u64, found.present);
         if self.volumes.intervals.is_some() {
             let each = slabs.len() / places.len().max(1);
             let of = |place: usize| &slabs[place * each..(place + 1) * each];
-            keep(others, ends, |number, at, _| meet(of(number), of(count + at)));
+            found.retain(|number, at, _| meet(of(number), of(count + at)));
         } else {
-            dispatch(Tier::SCALAR, KeepNear { balls, count, others, ends });
+            dispatch(Tier::SCALAR, KeepNear { balls, found });
         }
-        VolumeCounters { updates: 0, tests, hits: others.len() as u64 }
+        VolumeCounters { updates: 0, tests, hits: found.partners.len() as u64 }
     }
 
     /// Keeps the pairs that pass the refining test, and those that need no refinement.
     fn refine_found(
         &mut self,
         bodies: &Bodies,
-        some: &[u32],
-        others: &mut Vec<u32>,
-        ends: &mut [usize],
+        found: &mut Found,
         interest: &[bool],
     ) -> VolumeCounters {
         let is_refined = |a: u32, b: u32| {
@@ -166,8 +153,8 @@ impl Culler {
                 || interest[b as usize]
         };
         let Sample { places, rows, pairs, survivors, .. } = &mut self.sample;
-        places.body.truncate(some.len());
-        places.body.extend_from_slice(others);
+        places.body.truncate(found.present);
+        places.body.extend_from_slice(&found.partners);
         places.reread_shapes(bodies);
         places.moving = places.len();
         rows.resize(places.len());
@@ -176,16 +163,14 @@ impl Culler {
         rows.update(executor, posed, 0..places.len(), self.volumes.stamp);
         pairs.clear();
         survivors.clear();
-        for (number, range) in ranges(ends) {
-            for at in range {
-                if is_refined(some[number], others[at]) {
-                    let [i, j] = [number as u32, (some.len() + at) as u32];
-                    if some[number] < others[at] {
-                        pairs.push(i, j);
-                    } else {
-                        pairs.push(j, i);
-                    }
+        let mut at = found.present as u32;
+        for (number, (body, partners)) in (0..).zip(found.iter()) {
+            for &other in partners {
+                if is_refined(body, other) {
+                    let [i, j] = if body < other { [number, at] } else { [at, number] };
+                    pairs.push(i, j);
                 }
+                at += 1;
             }
         }
         let columns = OrDopColumns {
@@ -195,56 +180,30 @@ impl Culler {
         };
         let tested = columns.test_pairs(self.tier, pairs.first(), pairs.second(), survivors);
         let mut survivors = survivors.iter().map(|[i, j]| i.max(j) as usize).peekable();
-        keep(others, ends, |number, at, other| {
-            let passed = survivors.next_if_eq(&(some.len() + at)).is_some();
+        let (count, some) = (found.present, std::mem::take(&mut found.bodies));
+        found.retain(|number, at, other| {
+            let passed = survivors.next_if_eq(&(count + at)).is_some();
             passed || !is_refined(some[number], other)
         });
+        found.bodies = some;
         VolumeCounters { updates: places.len() as u64, tests: tested.tests, hits: tested.hits }
     }
 }
 
-/// The range of each body's others.
-fn ranges(ends: &[usize]) -> impl Iterator<Item = (usize, std::ops::Range<usize>)> {
-    let starts = [0].into_iter().chain(ends.iter().copied());
-    starts.zip(ends).map(|(start, &end)| start..end).enumerate()
-}
-
-/// Filters the others of each body in their order. `is_kept` gets the body's number, the other
-/// one's index in the list, and the other one.
-fn keep(
-    others: &mut Vec<u32>,
-    ends: &mut [usize],
-    mut is_kept: impl FnMut(usize, usize, u32) -> bool,
-) {
-    let (mut start, mut kept) = (0, 0);
-    for (number, end) in ends.iter_mut().enumerate() {
-        for at in std::mem::replace(&mut start, *end)..*end {
-            if is_kept(number, at, others[at]) {
-                others[kept] = others[at];
-                kept += 1;
-            }
-        }
-        *end = kept;
-    }
-    others.truncate(kept);
-}
-
 /// The sphere test of listed pairs.
 struct KeepNear<'a> {
+    /// Those of the bodies, then those of their partners.
     balls: &'a [[f32; 4]],
-    /// The number of bodies, whose balls come before those of the others.
-    count: usize,
-    others: &'a mut Vec<u32>,
-    ends: &'a mut [usize],
+    found: &'a mut Found,
 }
 
 impl Kernel for KeepNear<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
-        keep(self.others, self.ends, |number, at, _| {
-            let [a, b] =
-                [number, self.count + at].map(|place| self.balls[place].map(|x| l.splat(x)));
+        let count = self.found.present;
+        self.found.retain(|number, at, _| {
+            let [a, b] = [number, count + at].map(|place| self.balls[place].map(|x| l.splat(x)));
             let between = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
             l.bits(apart(l, between, a[3] + b[3])) & 1 == 0
         });

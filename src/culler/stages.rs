@@ -77,6 +77,7 @@ impl Culler {
     pub(super) fn run(
         &mut self,
         bodies: &Bodies,
+        filter: Option<PairFilter<'_>>,
         output: Output<'_>,
         row_timing: RowTiming,
     ) -> Totals {
@@ -103,7 +104,7 @@ impl Culler {
                 finder: &self.set.finder,
                 slots: self.set.finder.slots(&self.volumes.balls),
                 names,
-                filter: PairFilter::new(self.set.groups.as_deref(), &self.set.excluded),
+                filter: filter.or(PairFilter::of_groups(self.set.groups.as_deref())),
             },
             volumes: FrameVolumes {
                 posed: UpdateInputs {

@@ -2,15 +2,14 @@
 //! then decide each pair of images exactly.
 
 use super::PeriodicError;
-use super::images::{ImageWorld, PlacedBody, Placement, forward_images};
+use super::images::{ImageSource, PlacedBody, Placement};
 use super::periods::Periods;
 use crate::bodies::contract::refuse;
 use crate::bodies::{Groups, Motion};
-use crate::boxes::{BoxBody, BoxWorld};
+use crate::boxes::{BoxBody, BoxWorld, Boxes};
 use crate::query::QueryVolume;
 use crate::rounding::period::{is_below_half, is_within, wrap};
 use crate::rounding::{LIMIT, outward_box};
-use crate::world::{BodyId, WorldError, WorldPairs};
 
 /// A box of [`PeriodicBoxes`](super::PeriodicBoxes).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,15 +44,6 @@ impl PeriodicBox {
         let hint =
             "ends are finite and at most 2^60 in size, and `min` is at most `max` on each axis";
         Ok(refuse(slot, "box", value, hint)?)
-    }
-
-    /// The box in f32 about this one, moved by whole periods.
-    #[inline]
-    fn image(&self, shift: [i32; 3], periods: &Periods) -> BoxBody {
-        // An end that is moved is where it is half of the period or more, exactly or off by 2⁻⁵³ of
-        // itself.
-        let [min, max] = [self.min, self.max].map(|ends| periods.moved(ends, shift).0);
-        BoxBody { bounds: outward_box(&min, &max), motion: self.motion, groups: self.groups }
     }
 }
 
@@ -91,16 +81,14 @@ fn meets(
     })
 }
 
-impl ImageWorld for BoxWorld {
-    type Body = PeriodicBox;
+impl ImageSource for Boxes {
+    type Given = PeriodicBox;
 
     const IS_EXACT: bool = true;
 
-    forward_images!(PeriodicBox, PeriodicBox::image);
-
     #[inline]
     fn place(
-        &self,
+        _: &BoxWorld,
         slot: usize,
         body: &PeriodicBox,
         periods: &Periods,
@@ -110,6 +98,14 @@ impl ImageWorld for BoxWorld {
             return Ok(Placement { lo: body.min, hi: body.max, ..Placement::default() });
         }
         wrapped(slot, body, periods)
+    }
+
+    #[inline]
+    fn image(body: &PeriodicBox, shift: [i32; 3], periods: &Periods) -> BoxBody {
+        // An end that is moved is where it is half of the period or more, exactly or off by 2⁻⁵³ of
+        // itself.
+        let [min, max] = [body.min, body.max].map(|ends| periods.moved(ends, shift).0);
+        BoxBody { bounds: outward_box(&min, &max), motion: body.motion, groups: body.groups }
     }
 
     fn may_touch(

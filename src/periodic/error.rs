@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use crate::bodies::contract::ContractError;
+use crate::living::WorldError;
 use crate::rounding::period::MOST_PERIODS;
-use crate::world::WorldError;
 
 /// The error of a request that a periodic world can't carry out. The world stays unchanged.
 #[derive(Clone, PartialEq, Error)]

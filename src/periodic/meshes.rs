@@ -2,13 +2,13 @@
 //! translation, the image is grown by a bound of the error.
 
 use super::PeriodicError;
-use super::images::{ImageWorld, PlacedBody, Placement, forward_images};
+use super::images::{ImageSource, PlacedBody, Placement};
 use super::periods::{Periods, margin_about};
 use crate::rounding::exp2;
 use crate::rounding::narrow::turn_error;
 use crate::rounding::period::wrap;
 use crate::rounding::query::largest;
-use crate::world::{Body, BodyId, World, WorldError, WorldPairs, compose, reach_about_pose};
+use crate::world::{Body, Meshes, World, compose, reach_about_pose};
 
 /// 2⁻⁴⁸, as a multiple of the period: more than rounding takes from the ends of a placed body, and
 /// from differences of ends.
@@ -27,26 +27,18 @@ const SMALL_SHARE: f64 = 0.2;
 /// than a margin's class adds for rounding.
 const REACH_SHARE: f64 = exp2(-9);
 
-/// The image of a body that is moved by whole periods.
-fn image(body: &Body, shift: [i32; 3], periods: &Periods) -> Body {
-    let (translation, errors) = periods.moved(body.translation, shift);
-    Body { translation, margin: margin_about(body.margin, errors), ..*body }
-}
-
-impl ImageWorld for World {
-    type Body = Body;
+impl ImageSource for Meshes {
+    type Given = Body;
 
     const IS_EXACT: bool = false;
 
-    forward_images!(Body, image);
-
     fn place(
-        &self,
+        set: &World,
         slot: usize,
         body: &Body,
         periods: &Periods,
     ) -> Result<Placement, PeriodicError> {
-        self.check(slot, body)?;
+        set.check(slot, body)?;
         let mut place = Placement::default();
         let mut wrapped = body.translation;
         for (axis, period) in periods.iter() {
@@ -54,7 +46,7 @@ impl ImageWorld for World {
             let (rest, n) = wrap(wrapped[axis], period);
             (wrapped[axis], place.shift[axis]) = (rest, -n);
         }
-        let (centre, radius) = self.ball(body.shape);
+        let (centre, radius) = set.volumes.ball(body.shape);
         let (middle, error) = compose(body.rotation, wrapped, centre);
         // Twice the bound for the sum that is the centre, and again for roundings of the sum here.
         let turned = turn_error(body.rounded, reach_about_pose(radius, centre));
@@ -78,6 +70,11 @@ impl ImageWorld for World {
             (place.lo[axis], place.hi[axis]) = (middle - half, middle + half);
         }
         Ok(place)
+    }
+
+    fn image(body: &Body, shift: [i32; 3], periods: &Periods) -> Body {
+        let (translation, errors) = periods.moved(body.translation, shift);
+        Body { translation, margin: margin_about(body.margin, errors), ..*body }
     }
 
     fn may_touch(

@@ -50,20 +50,24 @@ mod world;
 pub use boxes::PeriodicBox;
 pub use error::PeriodicError;
 pub use events::PeriodicEvents;
-pub use images::ImageWorld;
+pub use images::ImageSource;
 pub use query::{PeriodicHit, PeriodicIndex};
 pub use world::{Periodic, PeriodicPair};
 
-use crate::boxes::{BoxCullerBuilder, BoxWorld};
+use crate::boxes::{BoxCullerBuilder, BoxWorld, Boxes};
 #[cfg(feature = "shapes")]
-use crate::{culler::CullerBuilder, volume::Shape, world::World};
+use crate::{
+    culler::CullerBuilder,
+    volume::Shape,
+    world::{Meshes, World},
+};
 
 /// A long-lived set of boxes in space that repeats along some axes.
-pub type PeriodicBoxes = Periodic<BoxWorld>;
+pub type PeriodicBoxes = Periodic<Boxes>;
 
 /// A long-lived set of posed meshes in space that repeats along some axes.
 #[cfg(feature = "shapes")]
-pub type PeriodicWorld = Periodic<World>;
+pub type PeriodicWorld = Periodic<Meshes>;
 
 impl PeriodicBoxes {
     /// No boxes yet, culled with all defaults. `None` is an axis without a period.

@@ -1,15 +1,15 @@
 //! Queries of periodic worlds: which bodies have an image that may touch a volume?
 
-use super::images::{Image, ImageWorld, PlacedBody};
+use super::images::{Image, ImageSource, PlacedBody};
 use super::periods::{Periods, distance, margin_about};
 use super::world::Periodic;
+use crate::living::{BodyId, LivingSet};
 use crate::query::{Answers, QueryError, QueryIndex, QuerySource, QueryVolume};
 use crate::rounding::exp2;
 use crate::rounding::period::MOST_PERIODS;
 use crate::rounding::query::largest;
 use crate::simd::{Tier, in_default_mode};
 use crate::threads::ThreadsError;
-use crate::world::BodyId;
 
 /// The longest volume, in periods of each axis.
 const MOST_LENGTH: f64 = 16.0;
@@ -51,22 +51,28 @@ pub struct PeriodicHit {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct PeriodicIndex<W: ImageWorld> {
+pub struct PeriodicIndex<V: ImageSource> {
     index: QueryIndex,
     periods: Periods,
     /// How far bodies reach from the middle of the period.
     reach: [f64; 3],
     images: Vec<Image>,
-    bodies: Vec<PlacedBody<W::Body>>,
+    bodies: Vec<PlacedBody<V::Given>>,
 }
 
-impl<W: ImageWorld + QuerySource> Default for PeriodicIndex<W> {
+impl<V: ImageSource> Default for PeriodicIndex<V>
+where
+    LivingSet<V>: QuerySource,
+{
     fn default() -> Self {
         Self::of(QueryIndex::new())
     }
 }
 
-impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
+impl<V: ImageSource> PeriodicIndex<V>
+where
+    LivingSet<V>: QuerySource,
+{
     /// As [`QueryIndex::new`].
     #[must_use]
     pub fn new() -> Self {
@@ -107,7 +113,7 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
 
     /// Brings the index up to date with a periodic world, as [`QueryIndex::update`] does. No cull
     /// is needed.
-    pub fn update(&mut self, world: &Periodic<W>) {
+    pub fn update(&mut self, world: &Periodic<V>) {
         self.index.update(world.images());
         (self.periods, self.reach) = (world.periods, world.borders.reach(&world.periods));
         self.images.clone_from(&world.images);
@@ -190,7 +196,7 @@ impl<W: ImageWorld + QuerySource> PeriodicIndex<W> {
             let image = [0, 1, 2].map(|axis| shift[axis] + way[axis]);
             let body = &self.bodies[id.slot()];
             // The other images of a body are found without their own slots.
-            if axes == 0 && W::may_touch_volume(&self.periods, body, image, volume) {
+            if axes == 0 && V::may_touch_volume(&self.periods, body, image, volume) {
                 found.push(PeriodicHit { body: of, image });
             }
         }

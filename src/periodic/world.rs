@@ -1,12 +1,12 @@
 //! A world with periodic axes: bodies, their images, and the pairs of both.
 
 use super::borders::Borders;
-use super::images::{Image, ImageWorld, PlacedBody, Placement};
+use super::images::{Image, ImageSource, PlacedBody, Placement};
 use super::periods::Periods;
 use super::{PeriodicError, PeriodicEvents};
 use crate::culler::CullError;
+use crate::living::{BodyId, LivingSet, WorldError};
 use crate::simd::in_default_mode;
-use crate::world::{BodyId, WorldError};
 
 /// The images of all bodies are placed anew if more than one in this number of bodies was set.
 const BODIES_PER_CHANGE: usize = 16;
@@ -25,12 +25,12 @@ pub struct PeriodicPair {
 ///
 /// A clone continues as the original would, on its own threads.
 #[derive(Clone, Debug)]
-pub struct Periodic<W: ImageWorld> {
+pub struct Periodic<V: ImageSource> {
     pub(super) periods: Periods,
     /// All images. An image that is not moved has the id of its body.
-    world: W,
+    world: LivingSet<V>,
     /// The bodies by slot of the world; slots of images have invalid entries.
-    pub(super) bodies: Vec<PlacedBody<W::Body>>,
+    pub(super) bodies: Vec<PlacedBody<V::Given>>,
     /// The images by slot of the world.
     pub(super) images: Vec<Image>,
     /// The other images of each body, by slot.
@@ -51,8 +51,11 @@ pub struct Periodic<W: ImageWorld> {
     seen: Vec<PeriodicPair>,
 }
 
-impl<W: ImageWorld> Periodic<W> {
-    pub(super) fn of(world: W, periods: [Option<f64>; 3]) -> Result<Self, PeriodicError> {
+impl<V: ImageSource> Periodic<V> {
+    pub(super) fn of(
+        world: LivingSet<V>,
+        periods: [Option<f64>; 3],
+    ) -> Result<Self, PeriodicError> {
         let periods = Periods::new(periods)?;
         Ok(Self {
             periods,
@@ -85,7 +88,7 @@ impl<W: ImageWorld> Periodic<W> {
     pub fn set_periods(&mut self, periods: [Option<f64>; 3]) -> Result<(), PeriodicError> {
         let periods = Periods::new(periods)?;
         let slots: Vec<usize> = self.slots_of_bodies().collect();
-        let place = |&slot: &usize| self.world.place(slot, &self.bodies[slot].body, &periods);
+        let place = |&slot: &usize| V::place(&self.world, slot, &self.bodies[slot].body, &periods);
         let places = in_default_mode(|| slots.iter().map(place).collect::<Result<Vec<_>, _>>())?;
         (self.periods, self.borders) = (periods, Borders::new(&periods));
         self.are_all_late = true;
@@ -103,12 +106,12 @@ impl<W: ImageWorld> Periodic<W> {
     /// # Errors
     /// Along a periodic axis, the body is as long as half of the period or longer, or farther than
     /// 2²⁸ periods from the origin; or it is outside of the contract.
-    pub fn insert(&mut self, body: impl Into<W::Body>) -> Result<BodyId, PeriodicError> {
+    pub fn insert(&mut self, body: impl Into<V::Given>) -> Result<BodyId, PeriodicError> {
         let body = body.into();
         in_default_mode(|| {
-            let slot = self.world.next_image_slot();
-            let place = self.world.place(slot, &body, &self.periods)?;
-            let id = self.world.add_image(&body, place.shift, &self.periods)?;
+            let slot = self.world.next_slot();
+            let place = V::place(&self.world, slot, &body, &self.periods)?;
+            let id = self.world.insert(V::image(&body, place.shift, &self.periods))?;
             self.name(id, Image::new(id, 0, &place), PlacedBody { body, place });
             self.look_across(id.slot(), &place);
             Ok(id)
@@ -122,16 +125,16 @@ impl<W: ImageWorld> Periodic<W> {
     pub fn remove(&mut self, id: BodyId) -> Result<(), PeriodicError> {
         let slot = self.slot(id)?;
         for ghost in self.ghosts[slot].drain(..) {
-            self.world.remove_image(ghost)?;
+            self.world.remove(ghost)?;
         }
-        Ok(self.world.remove_image(id)?)
+        Ok(self.world.remove(id)?)
     }
 
     /// The body as it was inserted or set.
     ///
     /// # Errors
     /// The body has been removed.
-    pub fn body(&self, id: BodyId) -> Result<W::Body, PeriodicError> {
+    pub fn body(&self, id: BodyId) -> Result<V::Given, PeriodicError> {
         Ok(self.bodies[self.slot(id)?].body)
     }
 
@@ -139,11 +142,11 @@ impl<W: ImageWorld> Periodic<W> {
     ///
     /// # Errors
     /// The body has been removed, or as [`Self::insert`].
-    pub fn set(&mut self, id: BodyId, body: impl Into<W::Body>) -> Result<(), PeriodicError> {
+    pub fn set(&mut self, id: BodyId, body: impl Into<V::Given>) -> Result<(), PeriodicError> {
         let (slot, body) = (self.slot(id)?, body.into());
         in_default_mode(|| {
-            let mut place = self.world.place(slot, &body, &self.periods)?;
-            if W::IS_EXACT {
+            let mut place = V::place(&self.world, slot, &body, &self.periods)?;
+            if V::IS_EXACT {
                 self.settle(slot, &mut place);
             }
             self.put(slot, &body, &place);
@@ -171,7 +174,7 @@ impl<W: ImageWorld> Periodic<W> {
     pub fn exclude(&mut self, a: BodyId, b: BodyId) -> Result<bool, PeriodicError> {
         self.slot(a)?;
         self.slot(b)?;
-        Ok(self.world.set_excluded([a, b], true)?)
+        Ok(self.world.exclude(a, b)?)
     }
 
     /// Includes an excluded pair again. Returns whether it was excluded.
@@ -181,19 +184,19 @@ impl<W: ImageWorld> Periodic<W> {
     pub fn include(&mut self, a: BodyId, b: BodyId) -> Result<bool, PeriodicError> {
         self.slot(a)?;
         self.slot(b)?;
-        Ok(self.world.set_excluded([a, b], false)?)
+        Ok(self.world.include(a, b)?)
     }
 
     /// Whether a pair is excluded.
     #[must_use]
     pub fn is_excluded(&self, a: BodyId, b: BodyId) -> bool {
-        self.world.has_excluded([a, b])
+        self.world.is_excluded(a, b)
     }
 
     /// The world that holds the bodies and their images across borders, for its counters. A body
     /// has the same id there.
     #[must_use]
-    pub fn images(&self) -> &W {
+    pub fn images(&self) -> &LivingSet<V> {
         &self.world
     }
 
@@ -243,18 +246,18 @@ impl<W: ImageWorld> Periodic<W> {
     /// The slot of a present body.
     fn slot(&self, id: BodyId) -> Result<usize, WorldError> {
         let slot = id.slot();
-        let is_body = self.world.has_image(id) && self.images[slot].axes == 0;
+        let is_body = self.world.contains(id) && self.images[slot].axes == 0;
         is_body.then_some(slot).ok_or(WorldError::Gone(id))
     }
 
     fn slots_of_bodies(&self) -> impl Iterator<Item = usize> + '_ {
         let slots = self.images.iter().enumerate();
-        let bodies = slots.filter(|(_, image)| image.axes == 0 && self.world.has_image(image.of));
+        let bodies = slots.filter(|(_, image)| image.axes == 0 && self.world.contains(image.of));
         bodies.map(|(slot, _)| slot)
     }
 
     /// Notes what a slot of the world has got.
-    fn name(&mut self, id: BodyId, image: Image, body: PlacedBody<W::Body>) {
+    fn name(&mut self, id: BodyId, image: Image, body: PlacedBody<V::Given>) {
         let slot = id.slot();
         if self.images.len() <= slot {
             self.images.resize(slot + 1, image);
@@ -280,12 +283,12 @@ impl<W: ImageWorld> Periodic<W> {
 
     /// Sets a present body and the images that it has.
     #[inline]
-    fn put(&mut self, slot: usize, body: &W::Body, place: &Placement) {
+    fn put(&mut self, slot: usize, body: &V::Given, place: &Placement) {
         let (image, placed) = (&mut self.images[slot], &mut self.bodies[slot]);
         (placed.body, placed.place) = (*body, *place);
         (image.shift, image.is_small) = (place.shift, place.is_small);
         let of = image.of;
-        self.world.set_image(of, body, place.shift, &self.periods);
+        self.world.set_checked(of, &V::image(body, place.shift, &self.periods));
         if self.images[slot].across != 0 {
             self.put_ghosts(slot);
         }
@@ -297,7 +300,7 @@ impl<W: ImageWorld> Periodic<W> {
         let (of, PlacedBody { body, place }) = (self.images[slot].of, &self.bodies[slot]);
         for &ghost in &self.ghosts[slot] {
             let image = Image::new(of, self.images[ghost.slot()].axes, place);
-            self.world.set_image(ghost, body, image.shift, &self.periods);
+            self.world.set_checked(ghost, &V::image(body, image.shift, &self.periods));
             self.images[ghost.slot()] = image;
         }
     }
@@ -346,15 +349,15 @@ impl<W: ImageWorld> Periodic<W> {
     /// Wraps the body in a slot, if there is one, and places its images.
     fn place_anew(&mut self, slot: usize) -> Result<(), WorldError> {
         let Image { of, axes, .. } = self.images[slot];
-        if axes != 0 || !self.world.has_image(of) {
+        if axes != 0 || !self.world.contains(of) {
             return Ok(());
         }
         let (body, periods) = (&self.bodies[slot].body, &self.periods);
-        if W::IS_EXACT // others are wrapped whenever they are set
-            && let Ok(place) = self.world.place(slot, body, periods)
+        if V::IS_EXACT // others are wrapped whenever they are set
+            && let Ok(place) = V::place(&self.world, slot, body, periods)
             && place.shift != self.images[slot].shift
         {
-            self.world.set_image(of, body, place.shift, periods);
+            self.world.set_checked(of, &V::image(body, place.shift, periods));
             self.images[slot] =
                 Image { across: self.images[slot].across, ..Image::new(of, 0, &place) };
             self.bodies[slot].place = place;
@@ -377,17 +380,17 @@ impl<W: ImageWorld> Periodic<W> {
             let (body, shift, periods) = (&placed.body, image.shift, &self.periods);
             let ghost = match former.pop() {
                 Some(ghost) => {
-                    self.world.set_image(ghost, body, shift, periods);
+                    self.world.set_checked(ghost, &V::image(body, shift, periods));
                     ghost
                 }
-                None => self.world.add_image(body, shift, periods)?,
+                None => self.world.insert(V::image(body, shift, periods))?,
             };
             ghosts.push(ghost);
             self.name(ghost, image, placed);
             Ok(())
         });
         for ghost in former {
-            self.world.remove_image(ghost)?;
+            self.world.remove(ghost)?;
         }
         self.ghosts[slot] = ghosts;
         self.images[slot].across = across;
@@ -396,7 +399,7 @@ impl<W: ImageWorld> Periodic<W> {
 
     /// Culls the images and lists the pairs of their bodies.
     fn find(&mut self, limit: Option<usize>) -> Result<(), WorldError> {
-        let found = self.world.cull_images(limit)?;
+        let found = self.world.cull_within(limit)?;
         self.pairs.clear();
         self.across.clear();
         // Those across borders are few, and are merged into them.
@@ -412,7 +415,7 @@ impl<W: ImageWorld> Periodic<W> {
             let image = [0, 1, 2].map(|axis| second.shift[axis] - first.shift[axis]);
             if !(one.is_small && two.is_small) {
                 let [placed, other] = bodies.map(|id| &self.bodies[id.slot()]);
-                if !W::may_touch(&self.periods, placed, other, image) {
+                if !V::may_touch(&self.periods, placed, other, image) {
                     continue;
                 }
             }
@@ -424,7 +427,7 @@ impl<W: ImageWorld> Periodic<W> {
             }
         }
         let world = &self.world;
-        self.across.retain(|pair| !world.has_excluded(pair.bodies));
+        self.across.retain(|pair| !world.is_excluded(pair.bodies[0], pair.bodies[1]));
         self.across.sort_unstable();
         merge(&mut self.pairs, &self.across);
         Ok(())

@@ -7,10 +7,10 @@ use super::shape::PosedShape;
 use super::tree::Tree;
 use super::volume::{QueryError, QueryVolume};
 use crate::bodies::Aabb;
+use crate::living::BodyId;
 use crate::rounding::query::is_beyond;
 use crate::rounding::{down, up};
 use crate::simd::{Kernel, Lanes, Tier, dispatch, in_default_mode};
-use crate::world::BodyId;
 
 /// Queries that one thread answers at a time.
 const QUERIES_PER_TASK: usize = 32;

@@ -5,10 +5,10 @@ use super::source::QuerySource;
 use super::tree::Tree;
 use super::volume::QueryError;
 use crate::bodies::Aabb;
+use crate::living::BodyId;
 use crate::rounding::{down, up};
 use crate::simd::{Tier, in_default_mode};
 use crate::threads::{Threads, ThreadsError};
-use crate::world::BodyId;
 
 /// One tree for fixed bodies and one for the others.
 pub(super) const TREES: usize = 2;

@@ -5,9 +5,9 @@ use super::answers::Answers;
 use super::index::{QueryIndex, SolidBody, TREES};
 use super::tree::{BOXES_PER_GROUP, BoxGroup, LaneContent, MOST_WAITING, Node, lanes_of};
 use super::volume::{Line, QueryError};
+use crate::living::BodyId;
 use crate::rounding::query::{ALL, Course, earlier, later};
 use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};
-use crate::world::BodyId;
 
 /// A body that a line may meet.
 #[derive(Clone, Copy, Debug, PartialEq)]

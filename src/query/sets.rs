@@ -5,8 +5,8 @@ use super::answers::AnswerCount;
 use super::index::{QueryIndex, SolidBody, TREES, moved};
 use super::tree::{BOXES_PER_GROUP, BoxGroup, lanes_of};
 use crate::bodies::Aabb;
+use crate::living::BodyId;
 use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};
-use crate::world::BodyId;
 
 /// Groups of the first set that one thread tests at a time.
 const GROUPS_PER_TASK: usize = 16;

@@ -90,7 +90,7 @@ impl QuerySource for World {
 #[cfg(feature = "shapes")]
 pub(crate) fn renew(shapes: &mut Vec<Option<QueryShape>>, world: &World) -> Vec<bool> {
     let mut renewed = Vec::new();
-    for (number, volumes) in world.shape_volumes().enumerate() {
+    for (number, volumes) in world.volumes.shape_volumes().enumerate() {
         if shapes.len() == number {
             shapes.push(None);
         }

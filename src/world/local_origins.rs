@@ -10,8 +10,9 @@ use super::bounds::{BodyBounds, is_placed};
 use super::bounds_tree::BoundsTree;
 use super::region::{PlacedBody, Region};
 use super::regions::{Regions, regions};
-use super::{World, WorldError, offset};
+use super::{Meshes, WorldError, offset};
 use crate::bodies::contract::is_within_limit;
+use crate::living::Members;
 use crate::rounding::narrow::turn_error;
 use crate::simd::{CACHE_LINE, prefetch};
 
@@ -95,38 +96,38 @@ impl Origins {
     }
 }
 
-impl World {
+impl Meshes {
     /// Places all bodies about the origins of the last cull.
     #[cfg(feature = "serde")]
-    pub(super) fn place_again(&mut self) -> Result<(), WorldError> {
-        self.place_all(self.origins.local.clone())
+    pub(super) fn place_again(&mut self, members: &mut Members) -> Result<(), WorldError> {
+        self.place_all(self.origins.local.clone(), members)
     }
 
     /// Reads the bounds of all bodies, before single ones change.
-    pub(super) fn read_bounds(&mut self) {
-        let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(range));
-        self.origins.bounds = Some(BoundsTree::new(self.ids.rows(), of_slots));
+    pub(super) fn read_bounds(&mut self, members: &Members) {
+        let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(members, range));
+        self.origins.bounds = Some(BoundsTree::new(members.ids.rows(), of_slots));
     }
 
     /// Places all bodies about local origins, in the models that their margins and rounding need.
-    pub(super) fn place(&mut self) -> Result<(), WorldError> {
-        let local = LocalOrigins::of(self.placed_in(0..self.ids.rows()));
+    pub(super) fn place(&mut self, members: &mut Members) -> Result<(), WorldError> {
+        let local = LocalOrigins::of(self.placed_in(members, 0..members.ids.rows()));
         self.origins.bounds = None;
-        self.place_all(local)
+        self.place_all(local, members)
     }
 
     /// Places the bodies that have changed since the last cull, and all others if an origin has
     /// changed. Notes those whose place or model has changed.
-    pub(super) fn place_changed(&mut self) -> Result<(), WorldError> {
-        let slots = self.ids.rows();
+    pub(super) fn place_changed(&mut self, members: &mut Members) -> Result<(), WorldError> {
+        let slots = members.ids.rows();
         let bounds = self.origins.bounds.take();
-        let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(range));
+        let of_slots = |range: Range<usize>| BodyBounds::of(self.placed_in(members, range));
         let bounds = match bounds.filter(|bounds| bounds.has_room_for(slots)) {
             Some(mut bounds) => {
-                let changed = self.movers.changed();
+                let changed = members.movers.changed();
                 for (number, &slot) in changed.iter().enumerate() {
                     if let Some(&ahead) = changed.get(number + PREFETCH_DISTANCE) {
-                        bounds.prefetch(ahead as usize, |range| self.prefetch(range));
+                        bounds.prefetch(ahead as usize, |range| self.prefetch(members, range));
                         self.prefetch_place(ahead as usize);
                     }
                     bounds.update(slot as usize, of_slots);
@@ -135,25 +136,25 @@ impl World {
             }
             None => BoundsTree::new(slots, of_slots),
         };
-        let local = LocalOrigins::within(bounds.whole(), self.placed_in(0..slots));
+        let local = LocalOrigins::within(bounds.whole(), self.placed_in(members, 0..slots));
         self.origins.bounds = Some(bounds);
         if local != self.origins.local {
-            return self.place_all(local);
+            return self.place_all(local, members);
         }
-        for number in 0..self.movers.changed().len() {
-            let slot = self.movers.changed()[number] as usize;
-            if self.ids.present()[slot] {
-                self.place_body(slot, &local)?;
+        for number in 0..members.movers.changed().len() {
+            let slot = members.movers.changed()[number] as usize;
+            if members.ids.present()[slot] {
+                self.place_body(slot, &local, members)?;
             }
         }
         Ok(())
     }
 
     /// Places all bodies about these origins, and notes those whose place or model changes.
-    fn place_all(&mut self, local: LocalOrigins) -> Result<(), WorldError> {
-        for slot in 0..self.ids.rows() {
-            if self.ids.present()[slot] && self.place_body(slot, &local)? {
-                self.movers.note(slot, &self.ids);
+    fn place_all(&mut self, local: LocalOrigins, members: &mut Members) -> Result<(), WorldError> {
+        for slot in 0..members.ids.rows() {
+            if members.ids.present()[slot] && self.place_body(slot, &local, members)? {
+                members.note(slot, false);
             }
         }
         self.origins.local = local;
@@ -162,11 +163,16 @@ impl World {
 
     /// Places the body in a slot. Returns whether its place or its model has changed.
     #[inline]
-    fn place_body(&mut self, slot: usize, local: &LocalOrigins) -> Result<bool, WorldError> {
+    fn place_body(
+        &mut self,
+        slot: usize,
+        local: &LocalOrigins,
+        members: &mut Members,
+    ) -> Result<bool, WorldError> {
         let (translation, composed) = self.composed(slot);
         let (place, moved) = local.place(slot, translation);
         if !is_within_limit(&place) {
-            return Err(WorldError::Apart(self.ids.id(slot as u32)));
+            return Err(WorldError::Apart(members.ids.id(slot as u32)));
         }
         let moved = moved + composed;
         let shape = self.shape[slot] as usize;
@@ -176,20 +182,20 @@ impl World {
         let is_new = self.bodies.shape[slot] != model;
         let is_moved = self.bodies.translation[slot] != place;
         self.remodelled |= is_new;
-        self.replaced |= !self.bodies.dynamic[slot] && (is_new || is_moved);
+        members.replaced |= !self.bodies.dynamic[slot] && (is_new || is_moved);
         self.bodies.shape[slot] = model;
         self.bodies.translation[slot] = place;
         Ok(is_new || is_moved)
     }
 
     /// Prefetches what [`Self::placed_in`] reads of these slots.
-    fn prefetch(&self, slots: Range<usize>) {
+    fn prefetch(&self, members: &Members, slots: Range<usize>) {
         let lines = slots.clone().step_by(CACHE_LINE / size_of::<[f64; 3]>());
         for slot in lines {
             self.translation.get(slot).map(prefetch);
         }
         let slot = slots.start;
-        self.ids.present().get(slot).map(prefetch);
+        members.ids.present().get(slot).map(prefetch);
         self.shape.get(slot).map(prefetch);
         self.margin.get(slot).map(prefetch);
     }
@@ -202,9 +208,13 @@ impl World {
     }
 
     /// Number, translation and reach of the bodies in some slots.
-    fn placed_in(&self, slots: Range<usize>) -> impl Iterator<Item = PlacedBody> + Clone + '_ {
-        let slots = slots.start..slots.end.min(self.ids.rows());
-        let present = slots.filter(move |&slot| self.ids.present()[slot]);
+    fn placed_in<'a>(
+        &'a self,
+        members: &'a Members,
+        slots: Range<usize>,
+    ) -> impl Iterator<Item = PlacedBody> + Clone + 'a {
+        let slots = slots.start..slots.end.min(members.ids.rows());
+        let present = slots.filter(move |&slot| members.ids.present()[slot]);
         present.map(move |slot| {
             let (translation, composed) = self.composed(slot);
             let reach = f64::from(self.shapes[self.shape[slot] as usize].reach);

@@ -1,6 +1,6 @@
 //! The shapes of a world, for queries.
 
-use super::World;
+use super::Meshes;
 use crate::update::ShapeFrame;
 use crate::volume::OrDop;
 
@@ -20,7 +20,7 @@ pub(crate) struct ShapeVolumes<'a> {
     pub stamp: u64,
 }
 
-impl World {
+impl Meshes {
     /// The ball about a present shape: its centre relative to the point that poses place, and its
     /// radius.
     pub(crate) fn ball(&self, shape: u32) -> ([f64; 3], f64) {

@@ -5,8 +5,9 @@
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use super::{World, WorldError};
+use super::{Meshes, World, WorldError};
 use crate::bodies::contract::{ContractError, refuse};
+use crate::living::Members;
 use crate::volume::Shape;
 
 /// The next [`ShapeSlot::stamp`].
@@ -75,15 +76,15 @@ impl World {
     /// The shape is outside of the contract, or has other slab directions than the present ones.
     /// Nothing is added.
     pub fn add_shape(&mut self, shape: Shape) -> Result<u32, WorldError> {
-        let model = self.culler.add_shape_about_vertices(&shape)?;
+        let model = self.volumes.culler.add_shape_about_vertices(&shape)?;
         let slot = ShapeSlot::new(&shape);
-        let number = self.shapes.iter().position(|slot| !slot.is_present);
-        let number = number.unwrap_or(self.shapes.len());
-        if number == self.shapes.len() {
-            self.shapes.push(slot);
-            self.models.push(model);
+        let number = self.volumes.shapes.iter().position(|slot| !slot.is_present);
+        let number = number.unwrap_or(self.volumes.shapes.len());
+        if number == self.volumes.shapes.len() {
+            self.volumes.shapes.push(slot);
+            self.volumes.models.push(model);
         } else {
-            (self.shapes[number], self.models[number]) = (slot, model);
+            (self.volumes.shapes[number], self.volumes.models[number]) = (slot, model);
         }
         Ok(number as u32)
     }
@@ -94,18 +95,18 @@ impl World {
     /// # Errors
     /// No shape has the number, or a body uses the shape. Nothing is removed.
     pub fn remove_shape(&mut self, shape: u32) -> Result<(), WorldError> {
-        let at = self.shape_at(shape)?;
-        if self.shapes[at].bodies > 0 {
-            let has = self.ids.filled().find(|&slot| self.shape[slot] == shape);
+        let at = self.volumes.shape_at(shape)?;
+        if self.volumes.shapes[at].bodies > 0 {
+            let has = self.members.ids.filled().find(|&slot| self.volumes.shape[slot] == shape);
             return Err(has.map_or(WorldError::NoShape(shape), |slot| WorldError::ShapeInUse {
                 shape,
-                name: self.shapes[at].name.clone(),
-                body: self.ids.id(slot as u32),
+                name: self.volumes.shapes[at].name.clone(),
+                body: self.members.ids.id(slot as u32),
             }));
         }
-        self.remove_grown(self.models[at]);
-        self.culler.remove_shape(self.models[at]);
-        self.shapes[at].is_present = false;
+        self.volumes.remove_grown(self.volumes.models[at]);
+        self.volumes.culler.remove_shape(self.volumes.models[at]);
+        self.volumes.shapes[at].is_present = false;
         Ok(())
     }
 
@@ -115,35 +116,38 @@ impl World {
     /// No shape has the number, the new shape is outside of the contract, alone or with the margin
     /// of a body, or it has other slab directions than the other shapes. Nothing is replaced.
     pub fn replace_shape(&mut self, number: u32, shape: &Shape) -> Result<(), WorldError> {
-        let at = self.shape_at(number)?;
-        let filled = self.ids.filled();
-        let with_shape: Vec<usize> = filled.filter(|&slot| self.shape[slot] == number).collect();
+        let at = self.volumes.shape_at(number)?;
+        let filled = self.members.ids.filled();
+        let with_shape: Vec<usize> =
+            filled.filter(|&slot| self.volumes.shape[slot] == number).collect();
         for &slot in &with_shape {
-            let body = self.ids.id(slot as u32).slot();
-            super::check_margin(body, shape.reach, self.margin[slot])?;
+            let body = self.members.ids.id(slot as u32).slot();
+            super::check_margin(body, shape.reach, self.volumes.margin[slot])?;
         }
-        self.culler.replace_shape(self.models[at], shape)?;
-        self.remove_grown(self.models[at]);
-        let bodies = self.shapes[at].bodies;
-        self.shapes[at] = ShapeSlot { bodies, ..ShapeSlot::new(shape) };
+        self.volumes.culler.replace_shape(self.volumes.models[at], shape)?;
+        self.volumes.remove_grown(self.volumes.models[at]);
+        let bodies = self.volumes.shapes[at].bodies;
+        self.volumes.shapes[at] = ShapeSlot { bodies, ..ShapeSlot::new(shape) };
         for slot in with_shape {
-            self.movers.note(slot, &self.ids);
+            self.members.note(slot, false);
         }
-        self.replaced = true; // bodies that don't move have it, too
+        self.members.replaced = true; // bodies that don't move have it, too
         Ok(())
     }
 
     /// The numbers of all shapes.
     pub fn shapes(&self) -> impl Iterator<Item = u32> + '_ {
-        let slots = (0..).zip(&self.shapes);
+        let slots = (0..).zip(&self.volumes.shapes);
         slots.filter(|(_, slot)| slot.is_present).map(|(number, _)| number)
     }
 
     /// The digest of a present shape.
     pub(crate) fn shape_digest(&self, number: u32) -> Option<u64> {
-        self.shape_at(number).ok().map(|at| self.shapes[at].digest)
+        self.volumes.shape_at(number).ok().map(|at| self.volumes.shapes[at].digest)
     }
+}
 
+impl Meshes {
     /// One more than the largest shape number.
     pub(super) fn shape_numbers(&self) -> usize {
         let last = self.shapes.iter().rposition(|slot| slot.is_present);
@@ -164,12 +168,12 @@ impl World {
 
     /// Removes the models of margins that no body uses any more, if there are many. Every body
     /// keeps its model.
-    pub(super) fn sweep_margins(&mut self, are_many: bool) {
+    pub(super) fn sweep_margins(&mut self, members: &Members, are_many: bool) {
         if are_many && !self.margins.are_many() {
             return;
         }
         let mut used = vec![false; self.culler.models()];
-        for slot in self.ids.filled() {
+        for slot in members.ids.filled() {
             used[self.bodies.shape[slot] as usize] = true;
         }
         let culler = &mut self.culler;

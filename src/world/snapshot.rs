@@ -11,12 +11,12 @@ use serde::{Deserialize, Serialize};
 
 use super::local_origins::Origins;
 use super::shapes::{ShapeSlot, check_shape};
-use super::snapshot_parts::{
-    IdsSnapshot, PairsSnapshot, SnapshotError, Version, damaged, excluded_slots, flag_column,
-    flagged_slots, restored_column, restored_excluded,
-};
-use super::{BodyId, Groups, Ids, LivePairs, UNTURNED, World, check_margin, check_pose};
+use super::{BodyId, SnapshotError, UNTURNED, World, check_margin, check_pose};
 use crate::bodies::Bodies;
+use crate::living::{
+    Ids, IdsSnapshot, Members, PairsSnapshot, Version, damaged, excluded_slots, flag_column,
+    flagged_slots, restored_column,
+};
 use crate::simd::in_default_mode;
 use crate::strategy::RefinementRanks;
 
@@ -83,28 +83,30 @@ impl World {
         let saved = |slot: &ShapeSlot| {
             slot.is_present.then(|| ShapeSnapshot { name: slot.name.clone(), digest: slot.digest })
         };
-        let rows = || self.ids.filled();
-        let origin = self.origins.saved().filter(|_| self.movers.all_changed().is_some());
-        let changed = origin.and(self.movers.all_changed());
-        let slots = |pair: [u32; 2]| pair.map(|row| self.ids.id(row).slot);
-        let answers = self.culler.answers().0.into_iter();
+        let Self { members, volumes } = self;
+        let Members { ids, groups, .. } = members;
+        let rows = || ids.filled();
+        let changed = members.movers.all_changed();
+        let origin = volumes.origins.saved().filter(|_| changed.is_some());
+        let slots = |pair: [u32; 2]| pair.map(|row| ids.id(row).slot() as u32);
+        let answers = volumes.culler.answers().0.into_iter();
         WorldSnapshot {
             version: Version,
-            shapes: self.shapes[..self.shape_numbers()].iter().map(saved).collect(),
-            ids: IdsSnapshot::of(&self.ids),
-            shape: rows().map(|row| self.shape[row]).collect(),
-            dynamic: rows().map(|row| self.bodies.dynamic[row]).collect(),
-            resting: flagged_slots(&self.resting, &self.ids),
-            rotation: rows().map(|row| self.bodies.rotation[row].map(bits)).collect(),
-            translation: rows().map(|row| self.translation[row].map(f64::to_bits)).collect(),
-            margin: rows().map(|row| bits(self.margin[row])).collect(),
-            groups: rows().map(|row| self.groups[row]).map(|g| [g.member, g.mask]).collect(),
-            interest: self.interest.clone(),
-            pairs: PairsSnapshot::of(&self.log.to_log(&self.ids), changed, &self.ids),
+            shapes: volumes.shapes[..volumes.shape_numbers()].iter().map(saved).collect(),
+            ids: IdsSnapshot::of(ids),
+            shape: rows().map(|row| volumes.shape[row]).collect(),
+            dynamic: rows().map(|row| volumes.bodies.dynamic[row]).collect(),
+            resting: flagged_slots(&members.resting, ids),
+            rotation: rows().map(|row| volumes.bodies.rotation[row].map(bits)).collect(),
+            translation: rows().map(|row| volumes.translation[row].map(f64::to_bits)).collect(),
+            margin: rows().map(|row| bits(volumes.margin[row])).collect(),
+            groups: rows().map(|row| groups[row]).map(|g| [g.member, g.mask]).collect(),
+            interest: volumes.interest.clone(),
+            pairs: PairsSnapshot::of(&members.pairs, origin.and(changed), ids),
             origin: origin.flatten(),
             answers: answers.map(|(pair, rank)| (slots(pair), rank)).collect(),
-            excluded: excluded_slots(self.culler.excluded(), &self.ids),
-            rounded: flagged_slots(&self.rounded, &self.ids),
+            excluded: excluded_slots(&members.excluded, ids),
+            rounded: flagged_slots(&volumes.rounded, ids),
         }
     }
 
@@ -119,8 +121,12 @@ impl World {
     /// The world lacks a shape, or has another one under its number, or the snapshot is
     /// inconsistent. The world stays unchanged.
     pub fn restore(&mut self, snapshot: &WorldSnapshot) -> Result<(), SnapshotError> {
-        check_shapes(&snapshot.shapes, &self.shapes)?;
-        let (ids, plan) = snapshot.ids.restored()?;
+        let present = &self.volumes.shapes;
+        check_shapes(&snapshot.shapes, present)?;
+        let WorldSnapshot { ids, resting, groups, pairs, excluded, .. } = snapshot;
+        let (mut members, plan, changed) =
+            Members::restored(ids, resting, groups, pairs, excluded)?;
+        let ids = &members.ids;
         let shape = restored_column("shape", snapshot.shape.iter().copied(), &plan, 0)?;
         let dynamic = restored_column("dynamic", snapshot.dynamic.iter().copied(), &plan, true)?;
         let rotation = snapshot.rotation.iter().map(|q| q.map(f32::from_bits));
@@ -129,49 +135,38 @@ impl World {
         let translation = restored_column("translation", translation, &plan, [0.0; 3])?;
         let margin = snapshot.margin.iter().copied().map(f32::from_bits);
         let margin = restored_column("margin", margin, &plan, 0.0)?;
-        let groups = snapshot.groups.iter().map(|&[member, mask]| Groups { member, mask });
-        let groups = restored_column("groups", groups, &plan, Groups::ALL)?;
-        let mut counts = vec![0; self.shapes.len()];
+        let mut counts = vec![0; present.len()];
         for row in ids.filled() {
             let (slot, shape) = (ids.id(row as u32).slot(), shape[row]);
             check_pose(slot, &rotation[row], &translation[row])?;
             if !matches!(snapshot.shapes.get(shape as usize), Some(Some(_))) {
                 return damaged(format!("slot {slot} has shape {shape}, which isn't in it"));
             }
-            let reach = check_shape(slot, shape, &self.shapes)?;
+            let reach = check_shape(slot, shape, present)?;
             check_margin(slot, reach, margin[row])?;
             counts[shape as usize] += 1;
         }
-        let (log, changed) = snapshot.pairs.restored(&ids)?;
-        let origins = Origins::restored(snapshot.origin.filter(|_| changed.is_some()));
-        let resting = flag_column(&snapshot.resting, &ids, "at rest")?;
-        let rounded = flag_column(&snapshot.rounded, &ids, "rounded")?;
-        let answers = checked(&snapshot.answers, &ids)?;
-        let excluded = restored_excluded(&snapshot.excluded, &ids)?;
+        let rounded = flag_column(&snapshot.rounded, ids, "rounded")?;
+        let answers = checked(&snapshot.answers, ids)?;
 
-        let slots = ids.rows();
-        self.bodies =
-            Bodies { shape: vec![0; slots], dynamic, rotation, translation: vec![[0.0; 3]; slots] };
-        (self.ids, self.log, self.resting) = (ids, LivePairs::of(log), resting);
-        self.rounded = rounded;
-        (self.shape, self.translation, self.margin) = (shape, translation, margin);
-        self.groups = groups;
-        for (shape, bodies) in self.shapes.iter_mut().zip(counts) {
+        let (rows, volumes) = (ids.rows(), &mut self.volumes);
+        volumes.bodies =
+            Bodies { shape: vec![0; rows], dynamic, rotation, translation: vec![[0.0; 3]; rows] };
+        (volumes.shape, volumes.translation, volumes.margin) = (shape, translation, margin);
+        volumes.rounded = rounded;
+        for (shape, bodies) in volumes.shapes.iter_mut().zip(counts) {
             shape.bodies = bodies;
         }
-        self.interest.clone_from(&snapshot.interest);
-        self.is_of_interest = vec![false; slots];
-        self.culler.set_answers(&answers);
-        *self.culler.excluded_mut() = excluded;
-        self.look();
-        self.movers.forget();
-        self.origins = origins;
-        (self.replaced, self.regrouped) = (true, true);
-        if let Some(changed) = changed
-            && in_default_mode(|| self.place_again()).is_ok()
-        {
-            self.movers.resume(&changed, &self.ids);
-            self.warm_up();
+        volumes.interest.clone_from(&snapshot.interest);
+        volumes.is_of_interest = vec![false; rows];
+        volumes.culler.set_answers(&answers);
+        volumes.look(ids);
+        volumes.origins = Origins::restored(snapshot.origin.filter(|_| changed.is_some()));
+        let changed =
+            changed.filter(|_| in_default_mode(|| volumes.place_again(&mut members)).is_ok());
+        self.members = members;
+        if let Some(changed) = changed {
+            self.resume(&changed);
         }
         Ok(())
     }

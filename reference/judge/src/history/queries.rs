@@ -5,10 +5,11 @@
 
 use std::collections::HashSet;
 
+use sdop::LivingSet;
 use sdop::Motion;
 use sdop::bodies::Aabb;
 use sdop::boxes::{BoxBody, BoxWorld};
-use sdop::periodic::{ImageWorld, Periodic, PeriodicBox, PeriodicHit, PeriodicIndex};
+use sdop::periodic::{ImageSource, Periodic, PeriodicBox, PeriodicHit, PeriodicIndex};
 use sdop::query::{Line, QueryIndex, QueryShape, QuerySource, QueryVolume};
 use sdop::settings::{CullSettings, Finder, Overlap, Strategy};
 use sdop::simd::Tier;
@@ -151,15 +152,15 @@ impl AskedWorld for World {
     }
 }
 
-impl<W> AskedWorld for Periodic<W>
+impl<V: ImageSource> AskedWorld for Periodic<V>
 where
-    W: AskedWorld + ImageWorld + QuerySource,
-    Self: JudgedWorld<Body = <W as ImageWorld>::Body>,
-    <W as ImageWorld>::Body: AskedBody,
+    LivingSet<V>: QuerySource,
+    Self: JudgedWorld<Body = V::Given>,
+    V::Given: AskedBody,
 {
-    type Index = PeriodicIndex<W>;
+    type Index = PeriodicIndex<V>;
 
-    fn index(mode: Mode) -> Result<PeriodicIndex<W>, HistoryError> {
+    fn index(mode: Mode) -> Result<PeriodicIndex<V>, HistoryError> {
         Ok(PeriodicIndex::with_threads(mode.threads)?.on_tier(mode.tier))
     }
 
@@ -169,8 +170,8 @@ where
 
     fn ask(
         &self,
-        index: &mut PeriodicIndex<W>,
-        _: &[(BodyId, <W as ImageWorld>::Body)],
+        index: &mut PeriodicIndex<V>,
+        _: &[(BodyId, V::Given)],
         volumes: &[QueryVolume<'_>],
     ) -> Result<Option<Vec<Found>>, HistoryError> {
         index.update(self);

@@ -3,7 +3,7 @@
 use super::{ChangeKind, HistoryError};
 use sdop::boxes::{BoxBody, BoxWorld, BoxWorldSnapshot};
 use sdop::compound::PartCuller;
-use sdop::periodic::{ImageWorld, Periodic, PeriodicBox, PeriodicPair};
+use sdop::periodic::{ImageSource, Periodic, PeriodicBox, PeriodicPair};
 use sdop::world::{Body, BodyId, World, WorldSnapshot};
 use sdop::{Groups, Motion};
 
@@ -194,15 +194,15 @@ impl JudgedWorld for World {
     }
 }
 
-impl<W: ImageWorld + Clone> JudgedWorld for Periodic<W>
+impl<V: ImageSource> JudgedWorld for Periodic<V>
 where
-    W::Body: Properties,
+    V::Given: Properties,
 {
-    forwarded!(W::Body);
+    forwarded!(V::Given);
 
     type Saved = Self;
 
-    fn change(&mut self, id: BodyId, _: W::Body, to: W::Body) -> Result<(), HistoryError> {
+    fn change(&mut self, id: BodyId, _: V::Given, to: V::Given) -> Result<(), HistoryError> {
         Ok(self.set(id, to)?)
     }
 
@@ -220,7 +220,7 @@ where
         Some([events.begun(), events.persisting(), events.ended()].map(of))
     }
 
-    fn all(&self) -> Vec<(BodyId, W::Body)> {
+    fn all(&self) -> Vec<(BodyId, V::Given)> {
         self.ids().filter_map(|id| Some((id, self.body(id).ok()?))).collect()
     }
 

@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::ids::{BodyId, Ids, NEW_ROW, renumber_column};
+use super::live_pairs::LivePairs;
 use super::pair_log::PairLog;
 use super::reported_pairs::ReportedPairs;
+use super::{Groups, Members};
 use crate::bodies::ExcludedPairs;
 use crate::bodies::contract::{ContractError, check_number};
 
@@ -91,16 +93,37 @@ fn rows_of(slots: impl Iterator<Item = u32>, ids: &Ids) -> Option<Vec<usize>> {
 
 /// Excluded pairs of bodies, as a snapshot has them: sorted pairs of slots that have bodies, the
 /// lower first.
-pub(crate) fn restored_excluded(
-    pairs: &[[u32; 2]],
-    ids: &Ids,
-) -> Result<ExcludedPairs, SnapshotError> {
+fn restored_excluded(pairs: &[[u32; 2]], ids: &Ids) -> Result<ExcludedPairs, SnapshotError> {
     let are_sound = pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(|[a, b]| a < b);
     match rows_of(pairs.as_flattened().iter().copied(), ids) {
         Some(rows) if are_sound => {
             Ok(rows.chunks_exact(2).map(|pair| [pair[0] as u32, pair[1] as u32]).collect())
         }
         _ => damaged("excluded pairs that there can't be"),
+    }
+}
+
+impl Members {
+    /// The bodies of a snapshot, the plan of their rows (the number of the body in each, or
+    /// [`NEW_ROW`]), and the rows that have changed since the last cull, if that is known.
+    pub(crate) fn restored(
+        ids: &IdsSnapshot,
+        resting: &[u32],
+        groups: &[[u32; 2]],
+        pairs: &PairsSnapshot,
+        excluded: &[[u32; 2]],
+    ) -> Result<(Self, Vec<u32>, Option<Vec<u32>>), SnapshotError> {
+        let (ids, plan) = ids.restored()?;
+        let groups = groups.iter().map(|&[member, mask]| Groups { member, mask });
+        let groups = restored_column("groups", groups, &plan, Groups::ALL)?;
+        let (log, changed) = pairs.restored(&ids)?;
+        let resting = flag_column(resting, &ids, "at rest")?;
+        let excluded = restored_excluded(excluded, &ids)?;
+        let pairs = LivePairs::of(log);
+        let mut members =
+            Self { ids, resting, groups, excluded, pairs, replaced: true, ..Self::default() };
+        members.count_groups();
+        Ok((members, plan, changed))
     }
 }
 
@@ -229,7 +252,8 @@ pub(crate) struct PairsSnapshot {
 }
 
 impl PairsSnapshot {
-    pub fn of(log: &PairLog, changed: Option<&[u32]>, ids: &Ids) -> Self {
+    pub fn of(pairs: &LivePairs, changed: Option<&[u32]>, ids: &Ids) -> Self {
+        let log = pairs.to_log(ids);
         let pairs = log.last.pairs();
         let is_gone = |id: &BodyId| ids.slot(*id).is_err();
         let gone: BTreeSet<BodyId> = pairs.iter().flatten().filter(is_gone).collect();

@@ -1,18 +1,15 @@
 //! A look-up of whether a pair was reported, for engines that call back pair by pair.
 
-use super::{BodyId, World};
+use super::{BodyId, LivingSet, VolumeSource};
 
 /// The pairs of one cull, ordered by the slot of their first body.
 ///
 /// ```
-/// use sdop::world::PairLookup;
-/// # use sdop::{mesh, volume::{Shape, ShapeSpec}, world::{Body, World}};
-/// # let cow = mesh::read("data/meshes/spot.tri", &mesh::ReadOptions::default())?;
-/// # let shapes = vec![Shape::build(&cow, &ShapeSpec::default())?];
-/// # let mut world = World::new(shapes)?;
-/// let a = world.insert(Body::default())?;
-/// let b = world.insert(Body { translation: [0.5, 0.0, 0.0], ..Body::default() })?;
-/// let c = world.insert(Body { translation: [9.0, 0.0, 0.0], ..Body::default() })?;
+/// use sdop::living::PairLookup;
+/// # use sdop::{Aabb, BoxWorld};
+/// # let mut world = BoxWorld::new();
+/// # let at = |x: f32| Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
+/// let [a, b, c] = [world.insert(at(0.0))?, world.insert(at(0.5))?, world.insert(at(9.0))?];
 /// world.cull()?;
 /// let mut lookup = PairLookup::default();
 /// lookup.refill(&world);
@@ -30,7 +27,7 @@ pub struct PairLookup {
 
 impl PairLookup {
     /// Replaces its pairs by those of the world's last cull.
-    pub fn refill(&mut self, world: &World) {
+    pub fn refill<V: VolumeSource>(&mut self, world: &LivingSet<V>) {
         self.pairs.clear();
         self.pairs.extend(world.pairs());
         // About one range per body, whatever the slots.

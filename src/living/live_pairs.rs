@@ -10,10 +10,14 @@ use std::sync::Arc;
 
 use super::change_log::{ChangeLog, PairChange};
 use super::events::{CurrentPairs, Event, PairDifference};
+use super::movers::Movers;
 use super::pair_log::{PairLog, WorldPairs};
 use super::reported_pairs::ReportedPairs;
 use super::{BodyId, Events, Ids};
-use crate::pairs::{PairList, Partners};
+use crate::pairs::{Found, PairList, Partners};
+
+/// The number of bodies by which prefetching is ahead.
+const PREFETCH_DISTANCE: usize = 8;
 
 /// The pairs of the last cull, and their changes since events were last read.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +25,8 @@ pub(crate) struct LivePairs {
     /// While pairs are kept by body, only its memory is used.
     log: PairLog,
     live: Option<PairsByBody>,
+    /// The partners that a body has gained or lost.
+    differences: Vec<(u32, bool)>,
 }
 
 /// The pairs while they are kept by body.
@@ -39,7 +45,7 @@ impl LivePairs {
     /// The pairs of a log.
     #[cfg(feature = "serde")]
     pub fn of(log: PairLog) -> Self {
-        Self { log, live: None }
+        Self { log, ..Self::default() }
     }
 
     /// The pairs of the last cull.
@@ -74,22 +80,39 @@ impl LivePairs {
         }
     }
 
-    /// The slots of a slot's partners, sorted. Empty unless pairs are kept by body.
-    pub fn partners(&self, slot: u32) -> &[u32] {
-        let live = self.live.as_ref();
-        live.map_or(&[], |live| live.partners.of_number(slot))
-    }
-
-    /// Prefetches what [`Self::partners`] will read, of one slot soon and of another next.
-    #[inline(always)]
-    pub fn prefetch(&self, slots: [Option<&u32>; 2]) {
-        if let Some(live) = &self.live {
-            live.partners.prefetch(slots);
+    /// Gives bodies that have changed the partners that were found, and updates the lists of these.
+    pub fn apply(&mut self, found: &Found, movers: &Movers, ids: &Ids) {
+        self.keep_by_body(ids);
+        self.extend(ids);
+        let mut differences = std::mem::take(&mut self.differences);
+        for (number, (row, partners)) in found.iter().enumerate() {
+            let ahead = [2 * PREFETCH_DISTANCE, PREFETCH_DISTANCE]
+                .map(|steps| found.bodies.get(number + steps));
+            let Some(live) = &self.live else { break };
+            live.partners.prefetch(ahead);
+            compare(live.partners.of_number(row), partners, &mut differences);
+            if differences.is_empty() {
+                continue;
+            }
+            let Some(mut changes) = self.change(ids) else { break };
+            changes.replace(row, partners);
+            for &(other, has_begun) in &differences {
+                let finds_itself = movers.is_changed(other);
+                if !finds_itself {
+                    changes.set_partner(other, row, has_begun);
+                }
+                if !finds_itself || row < other {
+                    changes.note(row, other, has_begun);
+                }
+            }
+            changes.done();
         }
+        self.differences = differences;
+        self.compact();
     }
 
     /// Access for changing the pairs, if they are kept by body. Copies them if events share them.
-    pub fn change<'a>(&'a mut self, ids: &'a Ids) -> Option<PairChanges<'a>> {
+    fn change<'a>(&'a mut self, ids: &'a Ids) -> Option<PairChanges<'a>> {
         let live = self.live.as_mut()?;
         let partners = Arc::make_mut(&mut live.partners);
         partners.extend_to(ids.rows());
@@ -97,7 +120,7 @@ impl LivePairs {
     }
 
     /// Makes room for all slots.
-    pub fn extend(&mut self, ids: &Ids) {
+    fn extend(&mut self, ids: &Ids) {
         if let Some(live) = &mut self.live
             && !live.partners.has_room_for(ids.rows())
         {
@@ -106,7 +129,7 @@ impl LivePairs {
     }
 
     /// Frees the room that former pairs have left in lists, if it is much.
-    pub fn compact(&mut self) {
+    fn compact(&mut self) {
         if let Some(live) = &mut self.live
             && live.partners.is_sparse()
         {
@@ -204,7 +227,7 @@ impl PairsByBody {
 }
 
 /// Changes pairs. A change is made in the lists of both bodies, and logged once.
-pub(crate) struct PairChanges<'a> {
+struct PairChanges<'a> {
     partners: &'a mut Partners,
     log: Option<&'a mut ChangeLog>,
     ids: &'a Ids,
@@ -237,6 +260,22 @@ impl PairChanges<'_> {
     pub fn done(self) {
         if let Some(log) = self.log {
             log.cancel_some();
+        }
+    }
+}
+
+/// Lists the differences of two sorted lists: (n, false) if only `before` has n, (n, true) if only
+/// `now` has it.
+fn compare(before: &[u32], now: &[u32], differences: &mut Vec<(u32, bool)>) {
+    differences.clear();
+    if before == now {
+        return;
+    }
+    let (mut before, mut now) = (before.iter().peekable(), now.iter().peekable());
+    while let Some(&&next) = [before.peek(), now.peek()].into_iter().flatten().min() {
+        let [had, has] = [before.next_if_eq(&&next), now.next_if_eq(&&next)];
+        if had.is_some() != has.is_some() {
+            differences.push((next, has.is_some()));
         }
     }
 }

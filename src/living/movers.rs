@@ -7,10 +7,11 @@
 //! bodies finds the new partners. They are compared with the former ones, and the lists of the
 //! partners concerned are changed as well.
 
-use super::{Ids, LivePairs};
+use super::Ids;
 use crate::bodies::PairRules;
 use crate::broad_phase::{BoxIndex, IndexedBox, Search};
 use crate::counters::RestCounters;
+use crate::pairs::Found;
 
 /// Changed bodies are searched one by one if they are at most one in this number of bodies.
 /// Otherwise finding all pairs anew is faster.
@@ -57,11 +58,8 @@ pub(crate) struct Movers {
     last_pause: u32,
     /// The changed bodies.
     boxes: Vec<IndexedBox>,
-    /// Partners of all changed bodies in one list, and the end of each body's part.
-    found: Vec<u32>,
-    ends: Vec<usize>,
-    /// The partners that a body has gained or lost.
-    differences: Vec<(u32, bool)>,
+    /// The last frame's, for its memory.
+    found: Found,
     search: Search,
 }
 
@@ -79,9 +77,7 @@ impl Default for Movers {
             pause: 0,
             last_pause: 0,
             boxes: Vec::new(),
-            found: Vec::new(),
-            ends: Vec::new(),
-            differences: Vec::new(),
+            found: Found::default(),
             search: Search::default(),
         }
     }
@@ -157,8 +153,14 @@ impl Movers {
         }
     }
 
-    /// Notes that a cull has kept all pairs, because no body has changed.
-    pub fn none_changed(&mut self) {
+    /// Whether no body has changed since the last cull.
+    pub fn none_changed(&self) -> bool {
+        self.changed.is_empty()
+    }
+
+    /// Notes that a cull has kept the pairs of all bodies that haven't changed.
+    pub fn end(&mut self) {
+        self.changed.clear();
         self.number_next(1);
     }
 
@@ -182,7 +184,6 @@ impl Movers {
     }
 
     /// Whether no body has changed since a cull whose pairs are known.
-    #[cfg(feature = "shapes")]
     pub fn has_present_pairs(&self) -> bool {
         !self.are_many && self.changed.is_empty()
     }
@@ -198,22 +199,31 @@ impl Movers {
         }
     }
 
-    /// The slots of the bodies that have changed.
+    /// The rows of the bodies that have changed.
     pub fn changed(&self) -> &[u32] {
         &self.changed
     }
 
-    /// Moves removed bodies to the end of the changed ones, and returns the number of the others.
-    #[cfg(feature = "shapes")]
-    pub fn put_gone_last(&mut self, ids: &Ids) -> usize {
-        let mut present = 0;
-        for at in 0..self.changed.len() {
-            if ids.present()[self.changed[at] as usize] {
-                self.changed.swap(present, at);
-                present += 1;
+    /// Whether the body in a row has changed.
+    #[inline]
+    pub fn is_changed(&self, row: u32) -> bool {
+        self.changed_before.get(row as usize) == Some(&self.cull)
+    }
+
+    /// The bodies that have changed, to be searched for: those that are gone come last.
+    pub fn take_changed(&mut self, ids: &Ids) -> Found {
+        let mut found = std::mem::take(&mut self.found);
+        found.partners.clear();
+        found.ends.clear();
+        found.bodies.clone_from(&self.changed);
+        found.present = 0;
+        for at in 0..found.bodies.len() {
+            if ids.present()[found.bodies[at] as usize] {
+                found.bodies.swap(found.present, at);
+                found.present += 1;
             }
         }
-        present
+        found
     }
 
     /// Whether an index of all bodies must be made before [`Self::find`].
@@ -228,35 +238,31 @@ impl Movers {
         self.index = Some(index);
     }
 
-    /// Moves changed bodies in the index, and lists the bodies whose boxes meet each one's:
-    /// `box_of` is called for each of [`Self::changed`], groups have one entry per slot. Returns
-    /// the work that it took, in boxes and cells read; `None` if that is too much, or if there are
-    /// more than `most` pairs.
-    pub fn find(
-        &mut self,
-        box_of: impl FnMut(u32) -> IndexedBox,
-        rules: PairRules<'_>,
-        most: usize,
-    ) -> Option<usize> {
+    /// Lists the boxes of the changed bodies, for [`Self::find`].
+    pub fn list(&mut self, boxes: impl Iterator<Item = IndexedBox>) {
+        self.boxes.clear();
+        self.boxes.extend(boxes);
+    }
+
+    /// Moves changed bodies in the index, and lists the bodies whose boxes meet each one's. Groups
+    /// have one entry per row. Returns the work that it took, in boxes and cells read; `None` if
+    /// that is too much, or if there are more than `most` pairs.
+    pub fn find(&mut self, found: &mut Found, rules: PairRules<'_>, most: usize) -> Option<usize> {
         let (mut work, most_work) = (0, WORK_PER_BODY * rules.groups.len());
         let mut index = self.index.take()?;
-        let boxes = &mut self.boxes;
-        boxes.clear();
-        boxes.extend(self.changed.iter().copied().map(box_of));
+        let boxes = &self.boxes;
         for (number, indexed) in boxes.iter().enumerate() {
             let ahead = [3, 2, 1].map(|steps| boxes.get(number + steps * PREFETCH_DISTANCE));
             index.prefetch(ahead);
             index.put(indexed);
         }
         index.compact();
-        self.found.clear();
-        self.ends.clear();
         for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
-            let (search, found, ends) = (&mut self.search, &mut self.found, &mut self.ends);
+            let Found { partners, ends, .. } = &mut *found;
             let left = most_work - work;
-            let read = index.find_partners(seekers, rules, search, found, ends, left);
+            let read = index.find_partners(seekers, rules, &mut self.search, partners, ends, left);
             // A pair of two changed bodies is found twice.
-            let Some(read) = read.filter(|_| found.len() / 2 <= most) else {
+            let Some(read) = read.filter(|_| partners.len() / 2 <= most) else {
                 self.back_off();
                 return None;
             };
@@ -266,69 +272,10 @@ impl Movers {
         Some(work)
     }
 
-    /// The changed bodies, their partners in one list, and the end of each body's part.
-    pub fn found(&mut self) -> (&[u32], &mut Vec<u32>, &mut [usize]) {
-        (&self.changed, &mut self.found, &mut self.ends)
-    }
-
-    /// To be called after some partners were removed: the bodies from number `count` on are gone,
-    /// and have none.
-    #[cfg(feature = "shapes")]
-    pub fn end_gone(&mut self, count: usize) {
-        self.ends[count..].fill(self.found.len());
-    }
-
-    /// Gives the changed bodies the partners that were found, and updates the lists of these. Then
-    /// `log` has the present pairs.
-    pub fn change_pairs(&mut self, log: &mut LivePairs, ids: &Ids) {
-        log.keep_by_body(ids);
-        log.extend(ids);
-        let mut start = 0;
-        for (number, (&slot, &end)) in self.changed.iter().zip(&self.ends).enumerate() {
-            let ahead = [2 * PREFETCH_DISTANCE, PREFETCH_DISTANCE]
-                .map(|steps| self.changed.get(number + steps));
-            log.prefetch(ahead);
-            let found = &self.found[std::mem::replace(&mut start, end)..end];
-            let differences = &mut self.differences;
-            compare(log.partners(slot), found, differences);
-            if differences.is_empty() {
-                continue;
-            }
-            let Some(mut changes) = log.change(ids) else {
-                return;
-            };
-            changes.replace(slot, found);
-            for &(other, has_begun) in &*differences {
-                // A changed partner finds this body itself.
-                let finds_itself = self.changed_before.get(other as usize) == Some(&self.cull);
-                if !finds_itself {
-                    changes.set_partner(other, slot, has_begun);
-                }
-                if !finds_itself || slot < other {
-                    changes.note(slot, other, has_begun);
-                }
-            }
-            changes.done();
-        }
-        log.compact();
-        self.changed.clear();
-        self.number_next(1);
+    /// Ends a cull in which these bodies were searched for.
+    pub fn reuse(&mut self, found: Found) {
+        self.found = found;
+        self.end();
         self.served = self.served.saturating_add(1);
-    }
-}
-
-/// Lists the differences of two sorted lists: (n, false) if only `before` has n, (n, true) if only
-/// `now` has it.
-fn compare(before: &[u32], now: &[u32], differences: &mut Vec<(u32, bool)>) {
-    differences.clear();
-    if before == now {
-        return;
-    }
-    let (mut before, mut now) = (before.iter().peekable(), now.iter().peekable());
-    while let Some(&&next) = [before.peek(), now.peek()].into_iter().flatten().min() {
-        let [had, has] = [before.next_if_eq(&&next), now.next_if_eq(&&next)];
-        if had.is_some() != has.is_some() {
-            differences.push((next, has.is_some()));
-        }
     }
 }
