@@ -2,12 +2,14 @@
 
 mod found;
 mod in_step;
+mod merge;
 mod partners;
 mod runs;
 mod sort;
 
 pub(crate) use found::Found;
 pub(crate) use in_step::out_of_step;
+pub(crate) use merge::{Merge, Merged};
 pub(crate) use partners::{PartnerPairs, Partners};
 pub(crate) use runs::{ROOM, Run, Runs};
 pub(crate) use sort::{PairSorter, key, pair_of};

@@ -1,9 +1,7 @@
 //! A log of the pairs that began or ended since events were last read.
 
-use std::sync::Arc;
-
-use super::reported_pairs::ReportedPairs;
-use super::{BodyId, Event, Events};
+use super::BodyId;
+use super::events::Changes;
 
 /// The least number of changes for which a log is searched for those that cancel each other.
 const LEAST_SEARCHED_CHANGES: usize = 1024;
@@ -24,16 +22,12 @@ pub(super) struct ChangeLog {
 }
 
 impl ChangeLog {
-    /// The changes from some pairs to others.
-    pub fn between(before: Arc<ReportedPairs>, now: Arc<ReportedPairs>) -> Self {
-        let change = |pair, has_begun| Some(PairChange { pair, has_begun });
-        let events = Events::between(before, now);
-        let changes = events.iter().filter_map(|event| match event {
-            Event::Begun(pair) => change(pair, true),
-            Event::Persisting(_) => None,
-            Event::Ended(pair) => change(pair, false),
-        });
-        Self { changes: changes.collect(), lasting: 0 }
+    /// A log of these changes.
+    pub fn of(Changes { begun, ended }: Changes) -> Self {
+        let change = |pairs: Vec<_>, has_begun| {
+            pairs.into_iter().map(move |pair| PairChange { pair, has_begun })
+        };
+        Self { changes: change(begun, true).chain(change(ended, false)).collect(), lasting: 0 }
     }
 
     pub fn push(&mut self, change: PairChange) {
@@ -63,15 +57,15 @@ impl ChangeLog {
         self.changes = kept;
     }
 
-    /// Pairs that have begun, and those that have ended, each sorted.
-    pub fn net(mut self) -> [Vec<[BodyId; 2]>; 2] {
+    /// What has changed in the end.
+    pub fn net(mut self) -> Changes {
         self.cancel();
         let of = |has_begun: bool| {
             let changes = self.changes.iter();
             let changes = changes.filter(move |change| change.has_begun == has_begun);
             changes.map(|change| change.pair).collect()
         };
-        [of(true), of(false)]
+        Changes { begun: of(true), ended: of(false) }
     }
 
     /// Bytes of memory.

@@ -9,12 +9,12 @@
 use std::sync::Arc;
 
 use super::change_log::{ChangeLog, PairChange};
-use super::events::{CurrentPairs, Event, PairDifference};
+use super::events::{Changes, CurrentPairs, Event};
 use super::movers::Movers;
 use super::pair_log::{PairLog, WorldPairs};
 use super::reported_pairs::ReportedPairs;
 use super::{BodyId, Events, Ids};
-use crate::pairs::{Found, PairList, Partners};
+use crate::pairs::{Found, Merge, Merged, PairList, Partners};
 
 /// The number of bodies by which prefetching is ahead.
 const PREFETCH_DISTANCE: usize = 8;
@@ -74,7 +74,7 @@ impl LivePairs {
         if self.live.is_none() {
             let log = std::mem::take(&mut self.log);
             let changes = (!log.watched.is_empty())
-                .then(|| ChangeLog::between(log.watched, log.last.clone()));
+                .then(|| ChangeLog::of(Changes::between(&log.watched, &log.last)));
             let partners = Partners::of(log.last.slots(), ids.rows());
             self.live = Some(PairsByBody { partners: Arc::new(partners), table: None, changes });
         }
@@ -146,8 +146,8 @@ impl LivePairs {
         match live.changes.replace(ChangeLog::default()) {
             Some(changes) => live.events(changes.net(), ids),
             None => {
-                let change = PairDifference::default(); // all have begun
-                Events { change, ..live.events(Default::default(), ids) }
+                let begun = live.pairs(ids).iter().collect();
+                live.events(Changes { begun, ended: Vec::new() }, ids)
             }
         }
     }
@@ -206,11 +206,11 @@ impl PairsByBody {
         WorldPairs::of_partners(&self.partners, self.table(ids))
     }
 
-    /// The events of the pairs that have begun and ended.
-    fn events(&self, [begun, ended]: [Vec<[BodyId; 2]>; 2], ids: &Ids) -> Events {
+    /// The events of these changes.
+    fn events(&self, changes: Changes, ids: &Ids) -> Events {
         let slots = self.partners.clone();
         let now = CurrentPairs::Partners { slots, ids: self.table(ids).clone() };
-        Events { now, change: PairDifference::Listed { begun, ended } }
+        Events { now, changes }
     }
 
     /// The pairs of the last call of `events`.
@@ -268,15 +268,13 @@ impl PairChanges<'_> {
 /// `now` has it.
 fn compare(before: &[u32], now: &[u32], differences: &mut Vec<(u32, bool)>) {
     differences.clear();
-    if before == now {
-        return;
-    }
-    let (mut before, mut now) = (before.iter().peekable(), now.iter().peekable());
-    while let Some(&&next) = [before.peek(), now.peek()].into_iter().flatten().min() {
-        let [had, has] = [before.next_if_eq(&&next), now.next_if_eq(&&next)];
-        if had.is_some() != has.is_some() {
-            differences.push((next, has.is_some()));
-        }
+    if before != now {
+        let merged = Merge::new(before, now, Ord::cmp);
+        differences.extend(merged.filter_map(|merged| match merged {
+            Merged::First(&gone) => Some((gone, false)),
+            Merged::Second(&come) => Some((come, true)),
+            Merged::Both(..) => None,
+        }));
     }
 }
 

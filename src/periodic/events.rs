@@ -1,6 +1,7 @@
 //! Events of a periodic world: what has begun and ended since they were last read.
 
 use super::PeriodicPair;
+use crate::pairs::{Merge, Merged};
 
 /// The pairs that have begun, persist or have ended between two culls of a periodic world, each
 /// kind sorted by slots. It doesn't borrow the world.
@@ -18,17 +19,14 @@ impl PeriodicEvents {
     /// The events between two culls, from their sorted pairs.
     pub(super) fn between(before: &[PeriodicPair], now: &[PeriodicPair]) -> Self {
         let mut events = Self::default();
-        let mut before = before.iter().peekable();
-        for &pair in now {
-            while let Some(&gone) = before.next_if(|old| old.bodies < pair.bodies) {
-                events.ended.push(gone);
-            }
-            match before.next_if(|old| old.bodies == pair.bodies) {
-                Some(_) => events.persisting.push(pair),
-                None => events.begun.push(pair),
+        let order = |old: &&PeriodicPair, new: &&PeriodicPair| old.bodies.cmp(&new.bodies);
+        for merged in Merge::new(before, now, order) {
+            match merged {
+                Merged::First(&gone) => events.ended.push(gone),
+                Merged::Second(&come) => events.begun.push(come),
+                Merged::Both(_, &pair) => events.persisting.push(pair),
             }
         }
-        events.ended.extend(before);
         events
     }
 
