@@ -5,7 +5,6 @@
 
 use std::ops::AddAssign;
 
-#[cfg(feature = "shapes")]
 use crate::settings::TestedVolume;
 
 /// Updates and tests of one volume, summed over frames.
@@ -114,7 +113,6 @@ impl Counters {
     }
 }
 
-#[cfg(feature = "shapes")]
 impl Counters {
     /// The counters of one volume.
     #[must_use]

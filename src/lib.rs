@@ -117,7 +117,8 @@
 
 #![cfg_attr(
     not(feature = "shapes"),
-    allow(rustdoc::broken_intra_doc_links, reason = "this page names what boxes alone lack")
+    allow(rustdoc::broken_intra_doc_links, reason = "pages name what boxes alone lack"),
+    allow(dead_code, unused_imports, reason = "rooms below have what only shapes use")
 )]
 
 pub mod bodies;
@@ -127,6 +128,7 @@ pub mod c;
 #[cfg(feature = "shapes")]
 pub mod compound;
 pub mod counters;
+#[cfg(feature = "shapes")]
 pub mod culler;
 pub mod living;
 #[cfg(feature = "shapes")]
@@ -140,7 +142,12 @@ pub mod volume;
 #[cfg(feature = "shapes")]
 pub mod world;
 
+mod cull_error;
+mod listing;
+#[cfg_attr(not(feature = "shapes"), path = "posed/none.rs")]
+mod posed;
 mod problem;
+#[cfg(feature = "shapes")]
 mod strategy;
 
 // Inner rooms, which the judge, tests and benches enter from outside: no promise is made about
@@ -152,6 +159,7 @@ pub mod choice;
 #[cfg(feature = "readers")]
 #[doc(hidden)]
 pub mod files;
+#[cfg(feature = "shapes")]
 #[doc(hidden)]
 pub mod overlap;
 #[doc(hidden)]
@@ -166,43 +174,29 @@ pub mod update;
 
 // Shown on the front page with their descriptions.
 #[doc(inline)]
-pub use bodies::contract::ContractError;
-#[doc(inline)]
-pub use bodies::{Aabb, Bodies, Groups, Motion};
-#[doc(inline)]
-pub use boxes::{BoxCuller, BoxWorld};
-#[doc(inline)]
-pub use culler::CullError;
-#[cfg(feature = "shapes")]
-#[doc(inline)]
-pub use culler::{Culler, CullerBuilder};
-#[doc(inline)]
-pub use living::{BodyId, Event, Events, LivingSet, WorldError};
-#[cfg(feature = "shapes")]
-#[doc(inline)]
-pub use mesh::{MeshError, ProceduralShape, TriangleMesh};
-#[doc(inline)]
-pub use pairs::PairList;
-#[doc(inline)]
-pub use query::{Line, QueryIndex, QueryVolume};
-#[doc(inline)]
-pub use settings::Finder;
-#[cfg(feature = "shapes")]
-#[doc(inline)]
-pub use settings::{
-    Axes, Budget, CullSettings, DirectionSet, Interest, Order, Overlap, SettingsError, Strategy,
-    Updates, ViewCone,
+pub use crate::{
+    bodies::contract::ContractError,
+    bodies::{Aabb, Bodies, Body, Groups, Motion},
+    boxes::{BoxCuller, BoxWorld},
+    cull_error::CullError,
+    living::{BodyId, Event, Events, LivingSet, WorldError},
+    pairs::PairList,
+    query::{Line, QueryIndex, QueryVolume},
+    settings::{
+        Axes, Budget, CullSettings, DirectionSet, Finder, Interest, Order, Overlap, SettingsError,
+        Strategy, Updates, ViewCone,
+    },
+    simd::{Tier, TierError},
+    threads::ThreadsError,
 };
-#[doc(inline)]
-pub use simd::{Tier, TierError};
-#[doc(inline)]
-pub use threads::ThreadsError;
 #[cfg(feature = "shapes")]
 #[doc(inline)]
-pub use volume::{Origin, Shape, ShapeSpec, VolumeError};
-#[cfg(feature = "shapes")]
-#[doc(inline)]
-pub use world::{Body, World};
+pub use crate::{
+    culler::{Culler, CullerBuilder},
+    mesh::{MeshError, ProceduralShape, TriangleMesh},
+    volume::{Origin, Shape, ShapeSpec, VolumeError},
+    world::World,
+};
 
 /// The README's example compiles; `.ci/run` runs it in a project of its own.
 #[cfg(all(doctest, feature = "readers"))]

@@ -159,7 +159,6 @@ impl PairList {
     }
 
     /// Replaces every index from pair `start` on by its entry in `names`.
-    #[cfg(feature = "shapes")]
     pub(crate) fn rename(&mut self, start: usize, names: &[u32]) {
         for column in [&mut self.first, &mut self.second] {
             for index in &mut column[start.min(self.len)..self.len] {

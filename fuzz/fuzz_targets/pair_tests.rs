@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use libfuzzer_sys::fuzz_target;
 use sdop::Tier;
 use sdop::bodies::Bodies;
-use sdop::bodies::contract::check_bodies;
+use sdop::volume::check_bodies;
 use sdop::mesh::ProceduralShape;
 use sdop::volume::{Axes, DirectionSet, Origin, Shape, ShapeSpec};
 use sdop_judge::configuration::Rotation;

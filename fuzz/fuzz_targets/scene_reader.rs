@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use sdop::bodies::contract::check_bodies;
+use sdop::volume::check_bodies;
 use sdop_bench::scene::SceneFile;
 
 fuzz_target!(|text: &str| {

@@ -262,7 +262,7 @@ periodic_class! {
     ///     The algorithm that finds candidates.
     /// threads : int
     ///     Number of threads.
-    PeriodicWorld, sdop::periodic::PeriodicWorld, {
+    PeriodicWorld, sdop::world::PeriodicWorld, {
         #[new]
         #[pyo3(signature = (shapes, periods, *, strategy="s-dop-sequential", finder="auto", threads=1))]
         fn new(
@@ -274,7 +274,7 @@ periodic_class! {
         ) -> PyResult<Self> {
             let builder = builder(strategy, finder, threads)?;
             let periods = self::periods(periods)?;
-            let world = sdop::periodic::PeriodicWorld::with(built(&shapes), &builder, periods);
+            let world = sdop::world::PeriodicWorld::with(built(&shapes), &builder, periods);
             Ok(Self(Mutex::new(world.map_err(refused)?)))
         }
 

@@ -4,20 +4,16 @@
 //! reported with its body's number in the step that produced it, and not as a wrong pair list
 //! frames later.
 
-#[cfg(feature = "shapes")]
 mod poses;
 
 use thiserror::Error;
 
 use crate::simd::{MAX_WIDTH, MOST_QUADS};
 
-#[cfg(feature = "shapes")]
 pub(crate) use poses::{
-    balls_are_within_limit, check_columns, check_numbers, check_shape, has_sound_size,
-    is_within_limit,
+    balls_are_within_limit, check_columns, check_numbers, is_within_limit, refuse_number,
 };
-#[cfg(feature = "shapes")]
-pub use poses::{check_bodies, check_pose, check_poses, check_vectors};
+pub use poses::{check_pose, check_poses, check_vectors};
 
 /// The error for a body that breaks the contract.
 #[derive(Clone, PartialEq, Error)]

@@ -1,6 +1,7 @@
 //! The state of all rigid bodies, one column per quantity. Index i is body i in every column.
 
 mod aabb;
+mod body;
 pub mod contract;
 mod excluded;
 mod groups;
@@ -9,6 +10,8 @@ mod places;
 mod read_ahead;
 
 pub use aabb::Aabb;
+pub use body::Body;
+pub(crate) use body::UNTURNED;
 pub(crate) use excluded::{ExcludedPairs, NumberHasher, PairFilter, PairRules};
 pub use groups::Groups;
 pub use motion::Motion;
@@ -56,6 +59,14 @@ impl Bodies {
     pub fn is_empty(&self) -> bool {
         self.shape.is_empty()
     }
+}
+
+/// A line as the tests need it: the points from + s·speed for s from 0 to `limit`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LineTrack {
+    pub from: [f64; 3],
+    pub speed: [f64; 3],
+    pub limit: f64,
 }
 
 #[cfg(test)]

@@ -84,7 +84,6 @@ impl Places {
     }
 
     /// Copies each body's shape from the user's columns.
-    #[cfg(feature = "shapes")]
     pub(crate) fn reread_shapes(&mut self, bodies: &Bodies) {
         self.shape.resize(self.body.len(), 0);
         for (shape, &body) in self.shape.iter_mut().zip(&self.body) {
@@ -94,7 +93,6 @@ impl Places {
 
     /// Puts the bodies in another order. `order` names the body that takes each place, by its
     /// present place or by its number, and holds the former order afterwards.
-    #[cfg(feature = "shapes")]
     pub(crate) fn reorder(&mut self, bodies: &Bodies, order: &mut Vec<u32>, by_place: bool) {
         if by_place {
             for place in order.iter_mut() {

@@ -4,7 +4,7 @@ use super::frame::BoxFrames;
 use crate::bodies::contract::{check_column, check_number};
 use crate::bodies::{Aabb, Groups, PairFilter};
 use crate::counters::VolumeCounters;
-use crate::culler::CullError;
+use crate::cull_error::CullError;
 use crate::pairs::PairList;
 use crate::settings::Finder;
 use crate::simd::Tier;

@@ -3,18 +3,19 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
+use super::cube_test::CubeTest;
 use super::cubes::{MakeCubes, PREFETCH_DISTANCE};
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, PairFilter, Places, read_ahead};
 use crate::broad_phase::{Balls, EndSlots, GivenBoxes, PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
-use crate::culler::CullError;
-use crate::overlap::boxes::CubeTest;
+use crate::cull_error::CullError;
+use crate::listing::{self, FirstVolume, HitNames, ListParts, Listing, Output, Tasks};
 use crate::pairs::PairList;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
-use crate::simd::{Tier, dispatch, in_default_mode};
-use crate::strategy::{BoxInputs, BoxTest, Output, Tasks, list_boxes};
+use crate::simd::{Lanes, Tier, dispatch, in_default_mode};
+
 use crate::threads::{FrameThreads, FrameWork};
 
 /// Boxes whose cubes one thread computes at a time.
@@ -49,11 +50,30 @@ pub(super) struct BoxFrames {
     fixed_gap: f32,
     news: SetChange,
     ends: EndSlots,
-    tasks: Tasks,
+    tasks: Tasks<()>,
     /// Candidates of the frame before.
     candidates: u64,
     /// Summed over all frames.
     pub counters: VolumeCounters,
+}
+
+/// How given boxes are tested.
+#[derive(Clone, Copy)]
+enum BoxTest<'a> {
+    /// By the cubes around and inside them.
+    Cubes(CubeTest<'a>),
+    /// By their ends.
+    Ends(&'a EndSlots),
+}
+
+impl FirstVolume for BoxTest<'_> {
+    #[inline(always)]
+    fn list<L: Lanes>(self, l: L, parts: ListParts<'_, Self>) -> VolumeCounters {
+        match self {
+            Self::Cubes(cubes) => parts.with(l, &cubes),
+            Self::Ends(ends) => parts.with(l, ends),
+        }
+    }
 }
 
 /// The change of the set since the frame before.
@@ -200,8 +220,14 @@ impl BoxFrames {
             let less = less_than_sure(gap);
             BoxTest::Cubes(CubeTest { slots, boxes, less })
         };
-        let inputs = BoxInputs { executor, finder: &self.finder, test, filter };
-        let mut counted = list_boxes(inputs, &mut self.tasks, output);
+        let listing = Listing {
+            tier: self.tier,
+            finder: &self.finder,
+            first: test,
+            names: HitNames::bodies(&self.finder),
+            filter,
+        };
+        let mut counted = listing::list(listing, pool, &mut self.tasks, output).first;
         counted.updates = self.places.moving as u64;
         self.candidates = counted.tests;
         self.finder.observe(counted.tests);

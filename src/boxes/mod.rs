@@ -10,6 +10,7 @@
 //! CPU or on threads.
 
 mod columns;
+mod cube_test;
 mod cubes;
 mod culler;
 mod frame;
@@ -18,6 +19,8 @@ mod snapshot;
 mod world;
 
 pub use crate::bodies::{Aabb, Motion};
+#[doc(hidden)]
+pub use cube_test::CubeTest;
 pub use culler::{BoxCuller, BoxCullerBuilder};
 #[cfg(feature = "serde")]
 pub use snapshot::BoxWorldSnapshot;

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::BoxWorld;
 use crate::bodies::Aabb;
 use crate::living::{
-    IdsSnapshot, Members, PairsSnapshot, SnapshotError, Version, excluded_slots, flagged_slots,
-    restored_column,
+    IdsSnapshot, Members, PairsSnapshot, RestoredMembers, SnapshotError, Version, excluded_slots,
+    flagged_slots, restored_column,
 };
 
 /// A [`BoxWorld`] at one moment, to be stored or sent in any format of serde.
@@ -59,7 +59,8 @@ impl BoxWorld {
     /// The snapshot is inconsistent. The world stays unchanged.
     pub fn restore(&mut self, snapshot: &BoxWorldSnapshot) -> Result<(), SnapshotError> {
         let BoxWorldSnapshot { ids, resting, groups, pairs, excluded, .. } = snapshot;
-        let (members, plan, changed) = Members::restored(ids, resting, groups, pairs, excluded)?;
+        let restored = RestoredMembers::of(ids, resting, groups, pairs, excluded)?;
+        let RestoredMembers { members, plan, changed } = restored;
         let corners = |corners: &[[u32; 3]; 2]| corners.map(|corner| corner.map(f32::from_bits));
         let bounds = snapshot.bounds.iter().map(corners).map(|[min, max]| Aabb { min, max });
         let bounds = restored_column("bounds", bounds, &plan, Aabb::default())?;

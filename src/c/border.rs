@@ -9,7 +9,7 @@ use std::slice;
 use crate::bodies::contract::ContractError;
 use crate::choice::UnknownChoice;
 use crate::compound::CompoundError;
-use crate::culler::CullError;
+use crate::cull_error::CullError;
 use crate::living::{BodyId, Event, Events, SnapshotError, WorldError};
 use crate::mesh::MeshError;
 use crate::pairs::PairList;

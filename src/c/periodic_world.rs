@@ -11,7 +11,7 @@ use super::periodic_boxes::{
     SdopPeriodicPair, SdopTakePeriodicEvent, pass_periodic_events, periods,
 };
 use super::world::SdopBody;
-use crate::periodic::PeriodicWorld;
+use crate::world::PeriodicWorld;
 use crate::world::{Body, BodyId};
 
 /// A long-lived set of bodies in space that repeats along some axes. Along a periodic axis, the

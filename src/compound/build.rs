@@ -7,8 +7,9 @@ use crate::mesh::TriangleMesh;
 use crate::rounding::narrow::{narrow, turn_error};
 use crate::rounding::up;
 use crate::simd::in_default_mode;
+use crate::update::offset::{compose, reach_about_pose};
 use crate::volume::{Shape, ShapeSpec};
-use crate::world::{compose, digest_of, reach_about_pose};
+use crate::world::digest_of;
 
 /// A shape in the frame of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]

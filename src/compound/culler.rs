@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use super::part_set::{PartSet, PosedParts};
 use super::{Compound, CompoundError};
-use crate::query::{QueryShape, renew};
+use crate::posed::QueryShape;
 use crate::simd::in_default_mode;
+use crate::world::renew;
 use crate::world::{Body, BodyId, World};
 
 /// Two parts of two bodies.

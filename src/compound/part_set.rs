@@ -1,13 +1,14 @@
 //! The parts of a shape number, and the parts of a body at its pose.
 
 use super::Part;
-use crate::query::{PosedShape, QueryShape};
+use crate::bodies::{Body, UNTURNED};
+use crate::posed::{PosedShape, QueryShape};
 use crate::rounding::compose::{TURN_ERROR, product};
 use crate::rounding::narrow::turn_error;
 use crate::rounding::pose::{rotate_of, rotation};
 use crate::rounding::query::{is_beyond, largest, slack};
+use crate::update::offset::{compose, reach_about_pose};
 use crate::volume::Shape;
-use crate::world::{Body, UNTURNED, compose, reach_about_pose};
 
 /// The parts of a shape number: those of a compound, or a shape alone.
 #[derive(Clone, Debug)]

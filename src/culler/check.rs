@@ -9,10 +9,10 @@ use std::ops::Range;
 
 use super::{BodySet, CullError, Culler};
 use crate::bodies::Bodies;
-use crate::bodies::contract::{check_columns, check_numbers, check_poses, has_sound_size};
+use crate::bodies::contract::{check_columns, check_numbers, check_poses};
 use crate::settings::{CullSettings, DirectionSet};
 use crate::simd::in_default_mode;
-use crate::volume::Shape;
+use crate::volume::{Shape, has_sound_size};
 
 /// The copy of the bodies that a culler keeps: their shapes, which of them may move, and all poses
 /// if some may not.

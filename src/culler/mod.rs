@@ -5,63 +5,46 @@
 //! A [`Culler`] is built once for a set of bodies (the paper's Co) and then culls frame after
 //! frame. Buffers are kept, so in steady state nothing is allocated.
 
-#[cfg(feature = "shapes")]
 mod builder;
-#[cfg(feature = "shapes")]
 mod check;
-mod error;
-#[cfg(feature = "shapes")]
 pub(crate) mod models;
-#[cfg(feature = "shapes")]
 mod needs;
-#[cfg(feature = "shapes")]
 mod portions;
-#[cfg(feature = "shapes")]
 mod replace;
-#[cfg(feature = "shapes")]
 mod sample;
-#[cfg(feature = "shapes")]
 mod shapes;
-#[cfg(feature = "shapes")]
 mod stages;
 
-#[cfg(feature = "shapes")]
+pub use crate::cull_error::CullError;
 #[doc(hidden)]
 pub use crate::strategy::PlacedCone;
-#[cfg(feature = "shapes")]
 pub use builder::CullerBuilder;
-#[cfg(feature = "shapes")]
 pub(crate) use check::FAR_SHAPE_HELP;
-pub use error::CullError;
 
-#[cfg(feature = "shapes")]
 use std::{ops::Range, time::Instant};
 
-#[cfg(feature = "shapes")]
 use self::{models::Models, needs::VolumeNeeds, sample::Sample};
-#[cfg(feature = "shapes")]
 use crate::strategy::RefinementRanks;
-#[cfg(feature = "shapes")]
 use crate::{
-    bodies::contract::{check_bodies, check_column},
+    bodies::contract::check_column,
     bodies::{Bodies, Groups, PairFilter, Places},
     broad_phase::{Balls, PairFinder},
     counters::{Counters, Seconds},
+    listing::{Output, Totals},
     overlap::intervals::IntervalSlots,
     pairs::PairList,
     settings::{CullSettings, Finder, Interest},
     simd::{Tier, in_default_mode},
-    strategy::{Output, RowTiming, Scratch, Setup, Totals},
+    strategy::{RowTiming, Scratch, Setup},
     threads::FrameThreads,
     update::{Intervals, OrDopRows},
-    volume::Shape,
+    volume::{Shape, check_bodies},
 };
 
 /// Finds the pairs of bodies that might touch, frame after frame: for a fixed set of bodies whose
 /// poses change.
 ///
 /// A clone continues as the original would, on its own threads.
-#[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 pub struct Culler {
     setup: Setup,
@@ -80,7 +63,6 @@ pub struct Culler {
 
 /// What changes with the bodies and their places only: at [`Culler::refresh`], and when places are
 /// sorted anew.
-#[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 struct BodySet {
     places: Places,
@@ -98,7 +80,6 @@ struct BodySet {
 }
 
 /// The volumes that each frame updates, by place.
-#[cfg(feature = "shapes")]
 #[derive(Clone, Debug)]
 struct Volumes {
     /// The balls that the finder bins: the bounding spheres, or balls around the volumes of a
@@ -113,7 +94,6 @@ struct Volumes {
     stamp: u32,
 }
 
-#[cfg(feature = "shapes")]
 impl Culler {
     /// Builds a culler with the defaults: sequential S-DOP with the two-sided test, the finder that
     /// `auto` picks, the fastest tier of this CPU and the caller's thread.

@@ -3,8 +3,8 @@
 use super::models::Models;
 use crate::bodies::Places;
 use crate::broad_phase::{Population, Volume};
+use crate::listing::Totals;
 use crate::settings::{Finder, Scheme, TestedVolume};
-use crate::strategy::Totals;
 use crate::threads::FrameWork;
 use crate::volume::DirectionSet;
 

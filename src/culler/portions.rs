@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use super::{CullError, Culler};
 use crate::bodies::{Bodies, PairFilter};
+use crate::listing::Output;
 use crate::pairs::PairList;
-use crate::strategy::Output;
 
 impl Culler {
     /// Culls one frame as [`Self::cull`] does, but passes its pairs to `take`, about 65,000 at a

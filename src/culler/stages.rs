@@ -6,10 +6,9 @@ use std::ops::Range;
 use super::Culler;
 use crate::bodies::contract::check_poses;
 use crate::bodies::{Bodies, PairFilter};
+use crate::listing::{Output, SlotNames, Totals};
 use crate::settings::{Flow, Updates};
-use crate::strategy::{
-    self, Arrangement, FrameVolumes, Inputs, Output, RowTiming, SlotNames, Totals,
-};
+use crate::strategy::{self, Arrangement, FrameVolumes, Inputs, RowTiming};
 use crate::update::{UpdateInputs, update_spheres};
 
 impl Culler {

@@ -104,7 +104,7 @@ impl<V: VolumeSource> LivingSet<V> {
                 return false;
             };
             counted = members.movers.counters(&members.ids);
-            members.pairs.apply(&found, &mut members.movers, &members.ids);
+            members.pairs.apply(&found, &members.movers, &members.ids);
             members.movers.reuse(found);
             volumes.end_changed(members);
         }

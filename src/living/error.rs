@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::BodyId;
 use crate::bodies::contract::ContractError;
-use crate::culler::CullError;
+use crate::cull_error::CullError;
 
 /// The error of a request that a world can't carry out. The world stays unchanged.
 #[derive(Clone, PartialEq, Error)]

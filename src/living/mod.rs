@@ -33,8 +33,8 @@ pub use source::{TakePortion, VolumeSource};
 pub(crate) use self::ids::{Ids, renumber_column, renumbered_pairs};
 #[cfg(feature = "serde")]
 pub(crate) use self::snapshot::{
-    IdsSnapshot, PairsSnapshot, Version, damaged, excluded_slots, flag_column, flagged_slots,
-    restored_column,
+    IdsSnapshot, PairsSnapshot, RestoredMembers, Version, damaged, excluded_slots, flag_column,
+    flagged_slots, restored_column,
 };
 use crate::bodies::contract::{ContractError, check_number};
 

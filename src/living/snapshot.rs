@@ -103,16 +103,24 @@ fn restored_excluded(pairs: &[[u32; 2]], ids: &Ids) -> Result<ExcludedPairs, Sna
     }
 }
 
-impl Members {
-    /// The bodies of a snapshot, the plan of their rows (the number of the body in each, or
-    /// [`NEW_ROW`]), and the rows that have changed since the last cull, if that is known.
-    pub(crate) fn restored(
+/// What the snapshots of both worlds have of their bodies, restored.
+pub(crate) struct RestoredMembers {
+    pub members: Members,
+    /// The number of the body in each row, or [`NEW_ROW`].
+    pub plan: Vec<u32>,
+    /// The rows that have changed since the last cull, if that is known.
+    pub changed: Option<Vec<u32>>,
+}
+
+impl RestoredMembers {
+    /// The bodies of a snapshot.
+    pub fn of(
         ids: &IdsSnapshot,
         resting: &[u32],
         groups: &[[u32; 2]],
         pairs: &PairsSnapshot,
         excluded: &[[u32; 2]],
-    ) -> Result<(Self, Vec<u32>, Option<Vec<u32>>), SnapshotError> {
+    ) -> Result<Self, SnapshotError> {
         let (ids, plan) = ids.restored()?;
         let groups = groups.iter().map(|&[member, mask]| Groups { member, mask });
         let groups = restored_column("groups", groups, &plan, Groups::ALL)?;
@@ -120,10 +128,10 @@ impl Members {
         let resting = flag_column(resting, &ids, "at rest")?;
         let excluded = restored_excluded(excluded, &ids)?;
         let pairs = LivePairs::of(log);
-        let mut members =
-            Self { ids, resting, groups, excluded, pairs, replaced: true, ..Self::default() };
+        let rest = Members { replaced: true, ..Members::default() };
+        let mut members = Members { ids, resting, groups, excluded, pairs, ..rest };
         members.count_groups();
-        Ok((members, plan, changed))
+        Ok(Self { members, plan, changed })
     }
 }
 

@@ -7,10 +7,6 @@
 //! test of the ends of long boxes is in `broad_phase`, because lists of neighbours use it too. A
 //! test counts when a candidate pair is passed to it; padding lanes never count.
 
-pub mod boxes;
-#[cfg(feature = "shapes")]
 pub mod intervals;
-#[cfg(feature = "shapes")]
 pub mod ordop;
-#[cfg(feature = "shapes")]
 pub mod sphere;

@@ -1,7 +1,7 @@
 //! Worlds in which space repeats along some axes: molecular dynamics, grains in a periodic cell,
 //! tilings.
 //!
-//! [`PeriodicWorld`] has posed meshes, [`PeriodicBoxes`] boxes with ends in f64. Each of the axes
+//! `PeriodicWorld` has posed meshes, [`PeriodicBoxes`] boxes with ends in f64. Each of the axes
 //! x, y and z may have a period. A body may be anywhere, also many periods away, and has images
 //! everywhere: copies moved by whole periods. A pair is reported if an image of one body may touch
 //! the other body. It is reported once, with the number of periods by which the second body has to
@@ -13,7 +13,7 @@
 //! with a cutoff radius this is the minimum image convention: the cutoff is less than half of the
 //! period.
 //!
-//! The promise is that of [`World`] and [`BoxWorld`], for the exact periods. If two meshes, each
+//! The promise is that of `World` and [`BoxWorld`], for the exact periods. If two meshes, each
 //! grown by its margin, meet in exact arithmetic when one of them is moved by whole periods, the
 //! pair is reported. Boxes are reported exactly if they meet. Wrapping a position does not round
 //! it. If f64 rounds an image's translation, the image is grown by a bound of the error.
@@ -41,9 +41,7 @@ mod boxes;
 mod error;
 mod events;
 mod images;
-#[cfg(feature = "shapes")]
-mod meshes;
-mod periods;
+pub(crate) mod periods;
 mod query;
 mod world;
 
@@ -51,23 +49,14 @@ pub use boxes::PeriodicBox;
 pub use error::PeriodicError;
 pub use events::PeriodicEvents;
 pub use images::ImageSource;
+pub(crate) use images::{PlacedBody, Placement};
 pub use query::{PeriodicHit, PeriodicIndex};
 pub use world::{Periodic, PeriodicPair};
 
 use crate::boxes::{BoxCullerBuilder, BoxWorld, Boxes};
-#[cfg(feature = "shapes")]
-use crate::{
-    culler::CullerBuilder,
-    volume::Shape,
-    world::{Meshes, World},
-};
 
 /// A long-lived set of boxes in space that repeats along some axes.
 pub type PeriodicBoxes = Periodic<Boxes>;
-
-/// A long-lived set of posed meshes in space that repeats along some axes.
-#[cfg(feature = "shapes")]
-pub type PeriodicWorld = Periodic<Meshes>;
 
 impl PeriodicBoxes {
     /// No boxes yet, culled with all defaults. `None` is an axis without a period.
@@ -87,28 +76,5 @@ impl PeriodicBoxes {
         periods: [Option<f64>; 3],
     ) -> Result<Self, PeriodicError> {
         Self::of(BoxWorld::with(culler)?, periods)
-    }
-}
-
-#[cfg(feature = "shapes")]
-impl PeriodicWorld {
-    /// No bodies yet, culled with all defaults. `None` is an axis without a period.
-    ///
-    /// # Errors
-    /// A period is not a length between 2⁻⁵⁶ and 2⁵⁶, or a shape is outside of the contract.
-    pub fn new(shapes: Vec<Shape>, periods: [Option<f64>; 3]) -> Result<Self, PeriodicError> {
-        Self::of(World::new(shapes)?, periods)
-    }
-
-    /// No bodies yet, culled with the choices of a builder.
-    ///
-    /// # Errors
-    /// As [`Self::new`], or as [`World::with`].
-    pub fn with(
-        shapes: Vec<Shape>,
-        culler: &CullerBuilder,
-        periods: [Option<f64>; 3],
-    ) -> Result<Self, PeriodicError> {
-        Self::of(World::with(shapes, culler)?, periods)
     }
 }

@@ -4,7 +4,7 @@ use super::borders::Borders;
 use super::images::{Image, ImageSource, PlacedBody, Placement};
 use super::periods::Periods;
 use super::{PeriodicError, PeriodicEvents};
-use crate::culler::CullError;
+use crate::cull_error::CullError;
 use crate::living::{BodyId, LivingSet, WorldError};
 use crate::simd::in_default_mode;
 
@@ -52,7 +52,7 @@ pub struct Periodic<V: ImageSource> {
 }
 
 impl<V: ImageSource> Periodic<V> {
-    pub(super) fn of(
+    pub(crate) fn of(
         world: LivingSet<V>,
         periods: [Option<f64>; 3],
     ) -> Result<Self, PeriodicError> {

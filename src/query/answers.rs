@@ -3,11 +3,11 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::index::{QueryIndex, SolidBody, TREES};
-use super::shape::PosedShape;
 use super::tree::Tree;
 use super::volume::{QueryError, QueryVolume};
 use crate::bodies::Aabb;
 use crate::living::BodyId;
+use crate::posed::PosedShape;
 use crate::rounding::query::is_beyond;
 use crate::rounding::{down, up};
 use crate::simd::{Kernel, Lanes, Tier, dispatch, in_default_mode};

@@ -1,17 +1,17 @@
 //! The bodies of a world by location, changed body by body.
 
-use super::shape::{PosedBodies, PosedShape};
 use super::source::QuerySource;
 use super::tree::Tree;
 use super::volume::QueryError;
 use crate::bodies::Aabb;
 use crate::living::BodyId;
+use crate::posed::{PosedBodies, PosedShape};
 use crate::rounding::{down, up};
 use crate::simd::{Tier, in_default_mode};
 use crate::threads::{Threads, ThreadsError};
 
 /// One tree for fixed bodies and one for the others.
-pub(super) const TREES: usize = 2;
+pub(crate) const TREES: usize = 2;
 
 /// No place in any tree.
 const NOWHERE: u32 = u32::MAX;
@@ -19,18 +19,18 @@ const NOWHERE: u32 = u32::MAX;
 /// The bodies of a world, prepared for queries. See the [module](super).
 #[derive(Clone, Debug)]
 pub struct QueryIndex {
-    pub(super) threads: Threads,
-    pub(super) tier: Tier,
+    pub(crate) threads: Threads,
+    pub(crate) tier: Tier,
     pub(super) trees: [Tree; TREES],
     /// The origin of the boxes in the trees: 0 if bodies are boxes.
-    pub(super) origin: [f64; 3],
+    pub(crate) origin: [f64; 3],
     /// The place in the trees of the body in each row of the world. After the world has changed its
     /// rows, all bodies that have another row count as changed.
     homes: Vec<TreePlace>,
-    pub(super) ids: Vec<BodyId>,
-    pub(super) posed: Option<PosedBodies>,
+    pub(crate) ids: Vec<BodyId>,
+    pub(crate) posed: Option<PosedBodies>,
     is_updated: bool,
-    pub(super) most_answers: usize,
+    pub(crate) most_answers: usize,
 }
 
 /// The place of a row's box.
@@ -42,7 +42,7 @@ struct TreePlace {
 
 /// A body in the form that is tested after the trees.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum SolidBody<'a> {
+pub(crate) enum SolidBody<'a> {
     /// An exact box.
     Box(Aabb),
     /// A posed shape.
@@ -138,7 +138,7 @@ impl QueryIndex {
     }
 
     /// Removes all bodies, and sets the origin of the boxes.
-    pub(super) fn begin(&mut self, origin: [f64; 3], posed: Option<PosedBodies>) {
+    pub(crate) fn begin(&mut self, origin: [f64; 3], posed: Option<PosedBodies>) {
         self.trees = Default::default();
         self.homes.clear();
         self.ids.clear();
@@ -146,7 +146,7 @@ impl QueryIndex {
     }
 
     /// The box in the trees of the body in a row, if it is this one, and its tree.
-    pub(super) fn bounds_of(&self, row: usize, id: BodyId) -> Option<(usize, Aabb)> {
+    pub(crate) fn bounds_of(&self, row: usize, id: BodyId) -> Option<(usize, Aabb)> {
         let home = self.homes.get(row).copied()?;
         let is_there = home.place != NOWHERE && self.ids[row] == id;
         is_there.then(|| {
@@ -156,7 +156,7 @@ impl QueryIndex {
     }
 
     /// Puts the body in a row into a tree, with its present box.
-    pub(super) fn put(&mut self, row: usize, id: BodyId, tree: usize, bounds: &Aabb) {
+    pub(crate) fn put(&mut self, row: usize, id: BodyId, tree: usize, bounds: &Aabb) {
         if self.homes.len() <= row {
             let nowhere = TreePlace { tree: 0, place: NOWHERE };
             self.homes.resize(row + 1, nowhere);
@@ -173,14 +173,14 @@ impl QueryIndex {
     }
 
     /// Removes the bodies of these rows.
-    pub(super) fn take_out_all(&mut self, rows: std::ops::Range<usize>) {
+    pub(crate) fn take_out_all(&mut self, rows: std::ops::Range<usize>) {
         for row in rows.start..rows.end.min(self.homes.len()) {
             self.take_out(row);
         }
     }
 
     /// Removes the bodies of all rows from number `rows` on, and their memory if it is much.
-    pub(super) fn end(&mut self, rows: usize) {
+    pub(crate) fn end(&mut self, rows: usize) {
         self.take_out_all(rows..self.homes.len());
         shorten(&mut self.homes, rows);
         shorten(&mut self.ids, rows);
@@ -209,7 +209,7 @@ impl QueryIndex {
 
     /// The body in a place, for the tests.
     #[inline(always)]
-    pub(super) fn solid(&self, tree: usize, place: usize) -> SolidBody<'_> {
+    pub(crate) fn solid(&self, tree: usize, place: usize) -> SolidBody<'_> {
         let tree = &self.trees[tree];
         let posed = self.posed.as_ref();
         match posed.and_then(|posed| posed.at(tree.numbers()[place] as usize)) {
@@ -220,7 +220,7 @@ impl QueryIndex {
 
     /// The id of the body in a place.
     #[inline(always)]
-    pub(super) fn id_at(&self, tree: usize, place: usize) -> BodyId {
+    pub(crate) fn id_at(&self, tree: usize, place: usize) -> BodyId {
         self.ids[self.trees[tree].numbers()[place] as usize]
     }
 }
@@ -234,7 +234,7 @@ fn shorten<T>(column: &mut Vec<T>, len: usize) {
 }
 
 /// A box moved by `by` and rounded outward. If `by` is 0, the box stays the same to the bit.
-pub(super) fn moved(aabb: &Aabb, by: [f64; 3]) -> Aabb {
+pub(crate) fn moved(aabb: &Aabb, by: [f64; 3]) -> Aabb {
     if by == [0.0; 3] {
         return *aabb;
     }

@@ -1,10 +1,10 @@
 //! Segments and rays against an index: all bodies along them, and the first.
 
-use super::LineTrack;
 use super::answers::Answers;
 use super::index::{QueryIndex, SolidBody, TREES};
 use super::tree::{BOXES_PER_GROUP, BoxGroup, LaneContent, MOST_WAITING, Node, lanes_of};
 use super::volume::{Line, QueryError};
+use crate::bodies::LineTrack;
 use crate::living::BodyId;
 use crate::rounding::query::{ALL, Course, earlier, later};
 use crate::simd::{Kernel, Lanes, dispatch, in_default_mode};

@@ -37,28 +37,14 @@ mod answers;
 mod index;
 mod lines;
 mod sets;
-#[cfg_attr(not(feature = "shapes"), path = "no_shape.rs")]
-mod shape;
 mod source;
 mod tree;
 mod volume;
 
+pub use crate::posed::QueryShape;
 pub use answers::Answers;
 pub use index::QueryIndex;
 pub use lines::LineHit;
-pub use shape::QueryShape;
 pub use source::QuerySource;
+pub(crate) use source::{FIXED_TREE, MOVING_TREE, sealed::Sealed};
 pub use volume::{Line, QueryError, QueryVolume};
-
-#[cfg(feature = "shapes")]
-pub(crate) use shape::PosedShape;
-#[cfg(feature = "shapes")]
-pub(crate) use source::renew;
-
-/// A line as the tests need it: the points from + s·speed for s from 0 to `limit`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LineTrack {
-    from: [f64; 3],
-    speed: [f64; 3],
-    limit: f64,
-}

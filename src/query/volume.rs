@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
-use super::LineTrack;
-use super::shape::QueryShape;
 use crate::bodies::Aabb;
+use crate::bodies::LineTrack;
+use crate::posed::QueryShape;
 use crate::rounding::narrow::{narrow, turn_error};
 use crate::rounding::{LIMIT, exp2, query::largest, up};
 use crate::simd::in_default_mode;

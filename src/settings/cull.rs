@@ -3,9 +3,8 @@
 
 use thiserror::Error;
 
-use super::{Finder, Flow};
+use super::{Axes, DirectionSet, Finder, Flow};
 use crate::choice::choices;
-use crate::volume::{Axes, DirectionSet};
 
 choices! {
     /// Which volumes are tested, and in which order.

@@ -1,21 +1,17 @@
 //! Choices by name: pair finders, strategies and the other settings of a culler.
 
-#[cfg(feature = "shapes")]
 mod cull;
-#[cfg(feature = "shapes")]
+mod directions;
 mod scheme;
-#[cfg(all(feature = "shapes", feature = "serde"))]
+#[cfg(feature = "serde")]
 mod text;
 
 pub use crate::choice::UnknownChoice;
 use crate::choice::choices;
-#[cfg(feature = "shapes")]
-pub use crate::volume::{Axes, DirectionSet};
-#[cfg(feature = "shapes")]
 pub use cull::{
     Budget, CullSettings, Interest, Order, Overlap, SettingsError, Strategy, Updates, ViewCone,
 };
-#[cfg(feature = "shapes")]
+pub use directions::DirectionSet;
 pub use scheme::{Flow, Scheme, TestedVolume};
 
 choices! {
@@ -32,5 +28,15 @@ choices! {
         Neighbours = "neighbours",
         /// Picked from the number and sizes of the bodies.
         Auto = "auto",
+    }
+}
+
+choices! {
+    /// How an or-DOP's axes are chosen.
+    Axes, "axes", {
+        /// Principal axes of the convex hull's surface.
+        Principal = "principal",
+        /// The mesh's own x, y, z.
+        Model = "model",
     }
 }

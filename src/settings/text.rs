@@ -3,8 +3,7 @@
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serializer};
 
-use super::{Interest, ViewCone};
-use crate::volume::DirectionSet;
+use super::{DirectionSet, Interest, ViewCone};
 
 impl<'de> Deserialize<'de> for Interest {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {

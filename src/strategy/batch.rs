@@ -4,13 +4,11 @@
 //! Lazy updates need the pairs before rows are computed, so with lazy updates every refining
 //! strategy uses this flow. If the output is in portions, so is the list.
 
-use super::hit_names::PairNames;
+use super::first_test::list;
 use super::interest::InterestFilter;
-use super::listing::list;
-use super::output::Output;
 use super::refine::Refiner;
-use super::tasks::Tasks;
-use super::{Inputs, Scratch, Totals};
+use super::{Inputs, Scratch, Tasks};
+use crate::listing::{Output, PairNames, Totals};
 use crate::pairs::PairList;
 use crate::update::OrDopRows;
 

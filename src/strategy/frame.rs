@@ -1,10 +1,10 @@
 //! Culling one frame by a strategy: its inputs, its buffers, and the flow of pairs.
 
-use super::tasks::Tasks;
 use super::time_critical::RefinementRanks;
-use super::{SlotNames, Totals, batch, listing, output::Output, sequential, time_critical};
+use super::{Tasks, batch, first_test, sequential, time_critical};
 use crate::bodies::{PairFilter, Places};
 use crate::broad_phase::{PairFinder, SlotBodies};
+use crate::listing::{Output, SlotNames, Totals};
 use crate::overlap::intervals::IntervalSlots;
 use crate::overlap::ordop::SlabTables;
 use crate::pairs::PairList;
@@ -159,7 +159,7 @@ pub(crate) fn cull(
     let lazy = inputs.volumes.row_timing == RowTiming::OnDemand;
     match inputs.setup.scheme.flow {
         Flow::Nothing => Totals::default(),
-        Flow::FirstTest => listing::flow(inputs, scratch, output),
+        Flow::FirstTest => first_test::flow(inputs, scratch, output),
         // Lazy rows need the whole set before its first test.
         Flow::Sequential if lazy => batch::flow(inputs, rows, scratch, None, output),
         Flow::OfInterest if lazy => batch::flow(inputs, rows, scratch, interest, output),
@@ -177,7 +177,7 @@ pub(crate) fn cull(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strategy::tasks::Task;
+    use crate::strategy::Task;
 
     /// A list without room to spare.
     fn list(pairs: u32) -> PairList {
@@ -197,7 +197,7 @@ mod tests {
             ..Task::default()
         };
         let mut scratch = Scratch {
-            tasks: Tasks(vec![task(1), task(2)]),
+            tasks: crate::listing::Tasks(vec![task(1), task(2)]),
             candidates: list(50_000),
             selected: list(600_000),
             survivors: list(7),

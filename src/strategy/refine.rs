@@ -3,10 +3,9 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use super::output::{Output, TaskOutput};
-use super::tasks::{Task, Tasks, split_work};
-use super::{FrameVolumes, Inputs, RowTiming, Setup, Totals};
+use super::{FrameVolumes, Inputs, RowTiming, Setup, Task, Tasks};
 use crate::counters::VolumeCounters;
+use crate::listing::{Output, TaskOutput, Totals, split_work};
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
 use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch};
@@ -210,11 +209,12 @@ mod tests {
     use super::*;
     use crate::bodies::{Bodies, Places};
     use crate::broad_phase::{AllPairs, PairFinder, Slots};
+    use crate::listing::SlotNames;
     use crate::mesh::ProceduralShape;
     use crate::overlap::intervals::IntervalSlots;
     use crate::overlap::ordop::SlabTables;
     use crate::settings::{CullSettings, DirectionSet, Updates};
-    use crate::strategy::{Arrangement, SlotNames};
+    use crate::strategy::Arrangement;
     use crate::threads::Threads;
     use crate::update::{ShapeFrame, UpdateInputs};
     use crate::volume::{Shape, ShapeSpec};

@@ -8,13 +8,11 @@
 
 use std::ops::Range;
 
-use super::hit_names::PairNames;
+use super::first_test::{self, TestedFirst};
 use super::interest::InterestFilter;
-use super::listing::Listing;
-use super::output::{Output, TaskOutput};
 use super::refine::Refine;
-use super::tasks::{Task, split_work};
-use super::{Inputs, Scratch, Totals};
+use super::{Inputs, Scratch, Task};
+use crate::listing::{Listing, Output, PairNames, TaskOutput, Totals, split_work};
 use crate::pairs::PairList;
 use crate::update::OrDopRows;
 
@@ -31,7 +29,7 @@ pub(super) fn flow(
     interest: Option<&[bool]>,
     output: Output<'_>,
 ) -> Totals {
-    let listing = Listing::new(inputs, PairNames::Places);
+    let listing = first_test::listing(inputs, PairNames::Places);
     let refine = Refine::new(inputs, rows);
     let work = |parts: Range<usize>, task: &mut Task, outlet: &TaskOutput<'_, '_>| {
         refine_blocks(&listing, parts, &refine, interest, task, outlet);
@@ -42,7 +40,7 @@ pub(super) fn flow(
 
 /// Runs one task: candidates are refined whenever they fill a block.
 fn refine_blocks(
-    listing: &Listing<'_>,
+    listing: &Listing<'_, TestedFirst<'_>>,
     parts: Range<usize>,
     refine: &Refine<'_>,
     interest: Option<&[bool]>,

@@ -9,11 +9,10 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use super::hit_names::PairNames;
-use super::listing::list;
-use super::output::{Output, PAIRS_PER_PORTION};
+use super::first_test::list;
 use super::refine::Refiner;
-use super::{Inputs, Scratch, Totals};
+use super::{Inputs, Scratch};
+use crate::listing::{Output, PAIRS_PER_PORTION, PairNames, Totals};
 use crate::pairs::PairList;
 use crate::settings::{Budget, Order};
 use crate::update::OrDopRows;

@@ -9,6 +9,7 @@ mod f64_lanes;
 mod f64x8;
 mod frame;
 mod intervals;
+pub(crate) mod offset;
 pub mod row;
 mod rows;
 mod rows_by_number;

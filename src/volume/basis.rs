@@ -8,21 +8,10 @@
 
 use glam::DQuat;
 
-use crate::choice::choices;
 use crate::mesh::in_f64;
 
 /// The largest |q|² of an integer quaternion.
 const MAX_NORM: i64 = 1 << 22;
-
-choices! {
-    /// How an or-DOP's axes are chosen.
-    Axes, "axes", {
-        /// Principal axes of the convex hull's surface.
-        Principal = "principal",
-        /// The mesh's own x, y, z.
-        Model = "model",
-    }
-}
 
 /// An orthogonal basis whose three columns have one common norm and f32-exact entries: an integer
 /// quaternion's rotation matrix times |q|² ≤ 2²², scaled by a power of two so that the norm is in

@@ -5,7 +5,7 @@
 
 mod ball;
 mod basis;
-mod directions;
+mod contract;
 mod flat_hull;
 mod hull;
 mod jacobi;
@@ -14,9 +14,11 @@ mod principal;
 mod shape;
 mod swept;
 
+pub use crate::settings::{Axes, DirectionSet};
 pub use ball::Ball;
-pub use basis::{Axes, Basis};
-pub use directions::DirectionSet;
+pub use basis::Basis;
+pub use contract::check_bodies;
+pub(crate) use contract::{check_shape, has_sound_size};
 pub use hull::Hull;
 pub use ordop::OrDop;
 pub use shape::{Origin, Shape, ShapeSpec, VolumeError};

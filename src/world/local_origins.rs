@@ -10,11 +10,12 @@ use super::bounds::{BodyBounds, is_placed};
 use super::bounds_tree::BoundsTree;
 use super::region::{PlacedBody, Region};
 use super::regions::{Regions, regions};
-use super::{Meshes, WorldError, offset};
+use super::{Meshes, WorldError};
 use crate::bodies::contract::is_within_limit;
 use crate::living::Members;
 use crate::rounding::narrow::turn_error;
 use crate::simd::{CACHE_LINE, prefetch};
+use crate::update::offset::{compose, reach_about_pose};
 
 /// The number of changed bodies by which prefetching is ahead.
 const PREFETCH_DISTANCE: usize = 3;
@@ -229,8 +230,8 @@ impl Meshes {
     fn composed(&self, slot: usize) -> ([f64; 3], f64) {
         let shape = &self.shapes[self.shape[slot] as usize];
         let (rotation, offset) = (self.bodies.rotation[slot], shape.pose_offset);
-        let (place, error) = offset::compose(rotation, self.translation[slot], offset);
-        let reach = offset::reach_about_pose(shape.reach.into(), offset);
+        let (place, error) = compose(rotation, self.translation[slot], offset);
+        let reach = reach_about_pose(shape.reach.into(), offset);
         (place, error + turn_error(self.rounded[slot], reach))
     }
 }

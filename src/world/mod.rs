@@ -26,39 +26,38 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod body;
 mod bounds;
 mod bounds_tree;
 mod digest;
 mod local_origins;
 mod margins;
 mod meshes;
-mod offset;
 mod pair_test;
+mod periodic;
+mod query;
 mod region;
 mod regions;
-mod shape_volumes;
 mod shapes;
 #[cfg(feature = "serde")]
 mod snapshot;
 
-pub(crate) use self::body::UNTURNED;
+pub use crate::bodies::Body;
 #[cfg(feature = "serde")]
 pub use crate::living::SnapshotError;
 pub use crate::living::{
     BodyId, Event, Events, Groups, Motion, PairIds, PairLookup, WorldError, WorldPairs,
 };
-pub use body::Body;
 pub use meshes::Meshes;
 pub use pair_test::PairTest;
+pub use periodic::PeriodicWorld;
 #[cfg(feature = "serde")]
 pub use snapshot::WorldSnapshot;
 
 pub(crate) use self::digest::of as digest_of;
 use self::margins::check_margin;
-pub(crate) use self::shape_volumes::{ShapeVolumes, compose, reach_about_pose};
-use crate::bodies::Bodies;
+pub(crate) use self::query::renew;
 use crate::bodies::contract::check_pose;
+use crate::bodies::{Bodies, UNTURNED};
 use crate::counters::{Counters, Seconds};
 use crate::culler::{CullError, Culler, CullerBuilder};
 use crate::living::LivingSet;

@@ -7,12 +7,13 @@
 //! narrow-phase check.
 
 use super::margins::check_margin;
-use crate::bodies::contract::{ContractError, check_pose, check_shape};
+use crate::bodies::contract::{ContractError, check_pose};
 use crate::culler::FAR_SHAPE_HELP;
 use crate::overlap::ordop::{OrDopColumns, SlabTables};
 use crate::settings::Overlap;
 use crate::simd::{ROW, in_default_mode};
 use crate::update::{RowsByNumber, ShapeFrame};
+use crate::volume::check_shape;
 use crate::volume::{DirectionSet, OrDop, Shape};
 
 /// The or-DOPs of shapes, with and without margins.

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use super::{Meshes, World, WorldError};
 use crate::bodies::contract::{ContractError, refuse};
 use crate::living::Members;
+use crate::posed::ShapeVolumes;
 use crate::volume::Shape;
 
 /// The next [`ShapeSlot::stamp`].
@@ -178,5 +179,28 @@ impl Meshes {
         }
         let culler = &mut self.culler;
         self.margins.sweep(&used, |grown| culler.remove_grown(grown));
+    }
+
+    /// The ball about a present shape: its centre relative to the point that poses place, and its
+    /// radius.
+    pub(crate) fn ball(&self, shape: u32) -> ([f64; 3], f64) {
+        self.shapes[shape as usize].ball
+    }
+
+    /// The volumes of each shape number, or `None` if it is free.
+    pub(crate) fn shape_volumes(&self) -> impl Iterator<Item = Option<ShapeVolumes<'_>>> {
+        let slots = self.shapes.iter().zip(&self.models);
+        slots.map(|(slot, &model)| {
+            slot.is_present.then(|| {
+                let (ordop, frame) = self.culler.volumes(model);
+                ShapeVolumes {
+                    ordop,
+                    frame,
+                    radius: slot.ball.1,
+                    pose_offset: slot.pose_offset,
+                    stamp: slot.stamp,
+                }
+            })
+        })
     }
 }

@@ -14,8 +14,8 @@ use super::shapes::{ShapeSlot, check_shape};
 use super::{BodyId, SnapshotError, UNTURNED, World, check_margin, check_pose};
 use crate::bodies::Bodies;
 use crate::living::{
-    Ids, IdsSnapshot, Members, PairsSnapshot, Version, damaged, excluded_slots, flag_column,
-    flagged_slots, restored_column,
+    Ids, IdsSnapshot, Members, PairsSnapshot, RestoredMembers, Version, damaged, excluded_slots,
+    flag_column, flagged_slots, restored_column,
 };
 use crate::simd::in_default_mode;
 use crate::strategy::RefinementRanks;
@@ -124,8 +124,8 @@ impl World {
         let present = &self.volumes.shapes;
         check_shapes(&snapshot.shapes, present)?;
         let WorldSnapshot { ids, resting, groups, pairs, excluded, .. } = snapshot;
-        let (mut members, plan, changed) =
-            Members::restored(ids, resting, groups, pairs, excluded)?;
+        let restored = RestoredMembers::of(ids, resting, groups, pairs, excluded)?;
+        let RestoredMembers { mut members, plan, changed } = restored;
         let ids = &members.ids;
         let shape = restored_column("shape", snapshot.shape.iter().copied(), &plan, 0)?;
         let dynamic = restored_column("dynamic", snapshot.dynamic.iter().copied(), &plan, true)?;

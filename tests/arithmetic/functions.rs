@@ -1,8 +1,8 @@
 //! The code's functions, each on inputs that are drawn for it.
 
 use sdop::Aabb;
+use sdop::boxes::CubeTest;
 use sdop::broad_phase::{BallBounds, BallTest, Cells, SlotBodies, SlotTest, TableLayout};
-use sdop::overlap::boxes::CubeTest;
 use sdop::overlap::ordop::slabs::LaneSlabs;
 use sdop::overlap::ordop::support::support;
 use sdop::overlap::ordop::table::members_of;

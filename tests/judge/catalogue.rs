@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use sdop::bodies::contract::check_bodies;
+use sdop::volume::check_bodies;
 use sdop_judge::catalogue::groups;
 use sdop_judge::wire::{Wire, ndjson};
 use sdop_judge::{Claim, case::matches};

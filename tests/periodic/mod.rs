@@ -6,7 +6,8 @@ mod boxes;
 mod misuse;
 mod queries;
 
-use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicPair, PeriodicWorld};
+use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicPair};
+use sdop::world::PeriodicWorld;
 use sdop::{Body, BodyId, Groups, Motion};
 
 use sdop_judge::draw::random::Random;

@@ -1,7 +1,7 @@
 //! Bodies of a caller that are outside of the contract.
 
 use sdop::bodies::Bodies;
-use sdop::bodies::contract::check_bodies;
+use sdop::volume::check_bodies;
 use sdop_bench::effects::Velocities;
 
 use super::{SOUND, build};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use proptest::prelude::*;
-use sdop::bodies::contract::check_bodies;
+use sdop::volume::check_bodies;
 use sdop_bench::scene::SceneFile;
 
 use super::SOUND;

@@ -2,8 +2,8 @@
 
 use sdop::compound::{Compound, Part, PartCuller};
 use sdop::mesh::TriangleMesh;
-use sdop::periodic::PeriodicWorld;
 use sdop::query::QueryShape;
+use sdop::world::PeriodicWorld;
 use sdop::{QueryIndex, QueryVolume};
 use sdop_judge::truth::reference_shapes::Shapes;
 use sdop_reference::{WidePose, wide};

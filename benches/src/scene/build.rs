@@ -16,7 +16,8 @@ use super::{Scene, Share};
 use crate::effects::{Velocities, world_centre};
 use crate::number::{Interval, Positive};
 use sdop::bodies::Bodies;
-use sdop::bodies::contract::{ContractError, check_bodies};
+use sdop::bodies::contract::ContractError;
+use sdop::volume::check_bodies;
 
 impl SceneFile {
     /// Builds the scene to be studied in f32: as [`Self::build_exact`], with translations rounded

@@ -125,7 +125,7 @@ Definition narrowest (b : box) : R :=
 Definition half_side (b : box) : R := add gradual (mul gradual (widest b) wider) cube_floor.
 Definition gap_of (b : box) : R := sub gradual (half_side b) (narrowest b).
 
-(* src/rounding/cube.rs: apart, less_than_sure, sure; src/overlap/boxes.rs: CubeTest::apart,
+(* src/rounding/cube.rs: apart, less_than_sure, sure; src/boxes/cube_test.rs: CubeTest::apart,
    CubeTest::touching *)
 Definition way (a b : box) : point :=
   let f x y := sub gradual x y in

@@ -13,13 +13,13 @@ Local Notation g := gradual64.
 Definition query_error : R := 256 * v.
 Definition slack_of (size : R) : R := add64 g (mul64 g size query_error) query_floor.
 
-(* src/query/shape.rs: QueryShape::of, PosedShape::slabs. A slab has its direction, its length and its
+(* src/posed/mod.rs: QueryShape::of, PosedShape::slabs. A slab has its direction, its length and its
    ends. *)
 Record slab := { normal : point; length : R; low : R; high : R }.
 Record solid := { slabs : list slab; middle : point; ball_radius : R; reach : R; turn : quaternion;
                   place : point; margin : R }.
 
-(* src/query/shape.rs: PosedShape::size *)
+(* src/posed/mod.rs: PosedShape::size *)
 Definition size_of (b : solid) : R := add64 g (reach b) (margin b).
 Definition between_ends (s : slab) (out at_ : R) : bool :=
   let p := mul64 g (length s) out in
@@ -245,7 +245,7 @@ Proof.
   intros ->. apply Rle_trans with (1 := triangle _ _). pose proof (triangle y z). lra.
 Qed.
 
-(* src/query/shape.rs: PosedShape::may_touch_ball *)
+(* src/posed/mod.rs: PosedShape::may_touch_ball *)
 Definition may_touch_ball (b : solid) (p : point) (radius : R) : bool :=
   let r := rotation_of g (turn b) in
   let w := seen_from p (place b) in
@@ -320,7 +320,7 @@ Proof.
       assert (0 <= norm (normal s) * (v * S)) by (apply Rmult_le_pos; lra). lra.
 Qed.
 
-(* src/query/shape.rs: PosedShape::may_touch_box *)
+(* src/posed/mod.rs: PosedShape::may_touch_box *)
 Definition lowest (e from to : point) : R :=
   let least a b c := Rmin (mul64 g a b) (mul64 g a c) in
   add64 g (add64 g (least (px e) (px from) (px to)) (least (py e) (py from) (py to)))

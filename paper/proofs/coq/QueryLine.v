@@ -9,7 +9,7 @@ Open Scope R_scope.
 
 Local Notation g := gradual64.
 
-(* src/query/shape.rs: PosedShape::crossed_by, without the ball *)
+(* src/posed/mod.rs: PosedShape::crossed_by, without the ball *)
 Definition line_out (b : solid) (far : R) : R :=
   add64 g (margin b) (slack_of (add64 g far (size_of b))).
 Definition slab_crossing (b : solid) (from speed : point) (out : R) (s : slab) : crossed :=

@@ -18,7 +18,7 @@ Definition signed_unit (i : nat) (x : R) : point :=
 Definition orders : list (nat * nat * nat) :=
   [(0, 1, 2); (0, 2, 1); (1, 0, 2); (1, 2, 0); (2, 0, 1); (2, 1, 0)]%nat.
 
-(* src/query/shape.rs: QueryShape::of. What a support needs: the basis and the end that faces each sum
+(* src/posed/mod.rs: QueryShape::of. What a support needs: the basis and the end that faces each sum
    of signed basis vectors. *)
 Record facets := { set_of : kind; basis : matrix; basis_length : R; over_square : R;
                    ends : point -> R }.
@@ -32,7 +32,7 @@ Definition along_basis (h : facets) (e : point) : point :=
   let along b := mul64 g (rotate_row g e b) (over_square h) in
   pt (along (row0 (basis h))) (along (row1 (basis h))) (along (row2 (basis h))).
 
-(* src/query/shape.rs: QueryShape::support. Of equal sizes either may come first. *)
+(* src/posed/mod.rs: QueryShape::support. Of equal sizes either may come first. *)
 Definition is_support (h : facets) (e : point) (s : R) : Prop :=
   let a := along_basis h e in
   let size n := Rabs (coordinate n a) in
@@ -275,7 +275,7 @@ Proof.
 Qed.
 End Support.
 
-(* src/query/shape.rs: PosedShape::separates. `down` and `up` are the supports of the other body. The
+(* src/posed/mod.rs: PosedShape::separates. `down` and `up` are the supports of the other body. The
    code compares only the end that is nearer to the other's centre, so it separates less often. *)
 Definition seen_normal (a b : solid) (s : slab) : point :=
   turned_back (rotation_of g (turn b)) (turned (rotation_of g (turn a)) (normal s)).
@@ -286,7 +286,7 @@ Definition separates (a b : solid) (hb : facets) (apart : point) (out : R) : Pro
     let p := mul64 g (length s) out in
     add64 g (high s) p < sub64 g at_ down \/ add64 g at_ up < sub64 g (low s) p.
 
-(* src/query/shape.rs: PosedShape::may_touch *)
+(* src/posed/mod.rs: PosedShape::may_touch *)
 Definition way_out (a b : solid) (apart : point) : R :=
   add64 g (add64 g (margin a) (margin b))
     (slack_of (add64 g (add64 g (largest apart) (size_of a)) (size_of b))).

@@ -8,7 +8,7 @@ Open Scope R_scope.
 
 Local Notation g := gradual64.
 
-(* src/query/shape.rs: QueryShape::support. The sizes along the basis are sorted; `own` are the ends
+(* src/posed/mod.rs: QueryShape::support. The sizes along the basis are sorted; `own` are the ends
    that single axes face, `pair` and `all` those of sums, and `bent` has the last axis reversed. *)
 Record facing := { own_a : R; own_b : R; own_c : R; pair_ab : R; pair_ac : R; pair_bc : R;
                    all_abc : R; bent_abc : R }.

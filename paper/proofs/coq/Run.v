@@ -196,13 +196,13 @@ Definition farthest32 (d : three f32) : f32 :=
   greater_of (greater_of (Babs (first d)) (Babs (second d))) (Babs (third d)).
 Definition way32 (a b : ball32) : three f32 :=
   Three (minus32 (x32 b) (x32 a)) (minus32 (y32 b) (y32 a)) (minus32 (z32 b) (z32 a)).
-(* src/overlap/boxes.rs: CubeTest::apart *)
+(* src/boxes/cube_test.rs: CubeTest::apart *)
 Definition cubes_apart (a b : ball32) : bool :=
   greater32 (farthest32 (way32 a b)) (plus32 (r32 a) (r32 b)).
 Definition less_than_sure (gap : f32) : f32 :=
   plus32 (mult32 (mult32 (number 2 0) gap) wider32) (mult32 (number 2 0) cube_floor32).
 Definition sure (reach less : f32) : f32 := minus32 (mult32 reach narrower32) less.
-(* src/overlap/boxes.rs: CubeTest::touching, of a pair that cubes_apart has not parted *)
+(* src/boxes/cube_test.rs: CubeTest::touching, of a pair that cubes_apart has not parted *)
 Definition surely_meet (a b : ball32) (less : f32) : bool :=
   negb (greater32 (farthest32 (way32 a b)) (sure (plus32 (r32 a) (r32 b)) less)).
 

@@ -1,36 +1,17 @@
-//! The contract's checks of shapes and poses.
+//! The contract's checks of poses.
 
 use std::ops::Range;
-
-use glam::Vec3;
 
 use super::{ContractError, check_column, check_number, refuse};
 use crate::bodies::Bodies;
 use crate::rounding::LIMIT;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
-use crate::volume::Shape;
 
 /// How to mend a rotation.
 const ROTATION_HELP: &str = "a quaternion (x, y, z, w) has a finite norm above zero";
 
 /// How to mend a vector.
 const VECTOR_HELP: &str = "coordinates are finite and at most 2^60 in size";
-
-/// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, and a shape that exists and is
-/// at most 2⁶⁰ in size; and that there are at most [`MOST_BODIES`](super::MOST_BODIES).
-///
-/// # Errors
-/// The first body that breaks it, in the first invalid column; columns of unequal length.
-pub fn check_bodies(bodies: &Bodies, shapes: &[Shape]) -> Result<(), ContractError> {
-    check_columns(bodies)?;
-    let sound: Vec<bool> = shapes.iter().map(has_sound_size).collect();
-    for (body, &number) in bodies.shape.iter().enumerate() {
-        if sound.get(number as usize) != Some(&true) {
-            return check_shape(body, number, shapes);
-        }
-    }
-    check_poses(bodies, 0..bodies.len())
-}
 
 /// Checks that every body's shape number is below `shapes`.
 pub(crate) fn check_numbers(numbers: &[u32], shapes: usize) -> Result<(), ContractError> {
@@ -40,22 +21,9 @@ pub(crate) fn check_numbers(numbers: &[u32], shapes: usize) -> Result<(), Contra
     }
 }
 
-fn refuse_number(body: usize, number: u32, shapes: usize) -> Result<(), ContractError> {
+pub(crate) fn refuse_number(body: usize, number: u32, shapes: usize) -> Result<(), ContractError> {
     let value = format!("{number} of {shapes}");
     refuse(body, "shape", value, "shapes are counted from 0")
-}
-
-/// Checks that a body's shape exists and is at most 2⁶⁰ in size.
-pub(crate) fn check_shape(body: usize, number: u32, shapes: &[Shape]) -> Result<(), ContractError> {
-    let Some(shape) = shapes.get(number as usize) else {
-        return refuse_number(body, number, shapes.len());
-    };
-    if !has_sound_size(shape) {
-        let Shape { name, reach, ball, .. } = shape;
-        let value = format!("{name} with reach {reach} and {ball:?}");
-        return refuse(body, "shape", value, "sizes are finite and at most 2^60");
-    }
-    Ok(())
 }
 
 /// Checks one pose with a translation in f64.
@@ -128,13 +96,6 @@ pub fn check_vectors(
 #[inline(always)]
 fn size(number: f32) -> u32 {
     number.to_bits() & !(1 << 31)
-}
-
-pub(crate) fn has_sound_size(shape: &Shape) -> bool {
-    // The reach bounds the ball's centre and radius, but does not exclude a NaN in them.
-    [shape.reach, shape.ball.radius, Vec3::from_array(shape.ball.centre).length()]
-        .iter()
-        .all(|size| (0.0..=LIMIT).contains(size))
 }
 
 #[inline]

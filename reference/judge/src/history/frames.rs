@@ -12,9 +12,10 @@ use sdop::bodies::Aabb;
 use sdop::boxes::{BoxBody, BoxWorld};
 use sdop::compound::{Compound, Part, PartCuller};
 use sdop::culler::CullerBuilder;
-use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicWorld};
+use sdop::periodic::{PeriodicBox, PeriodicBoxes};
 use sdop::rounding::{down, up};
 use sdop::volume::Shape;
+use sdop::world::PeriodicWorld;
 use sdop::world::{Body, World};
 
 /// A world that can have the bodies of a frame.

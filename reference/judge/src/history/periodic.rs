@@ -21,11 +21,12 @@ use crate::configuration::cullers::{box_culler, culler, finder};
 use crate::configuration::world_kind::PERIODIC;
 use crate::truth::reference_shapes::{InvalidInput, Shapes};
 use sdop::boxes::BoxBody;
-use sdop::periodic::{PeriodicBox, PeriodicBoxes, PeriodicWorld};
+use sdop::periodic::{PeriodicBox, PeriodicBoxes};
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::{Axes, DirectionSet};
 use sdop::world::Body;
+use sdop::world::PeriodicWorld;
 
 /// The least period that is drawn: more than twice the widest box, or ball with its margin.
 const LEAST_OF_BOXES: f64 = 17.0;

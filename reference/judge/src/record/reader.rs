@@ -8,9 +8,10 @@ use serde::Deserialize;
 
 use super::{BodyLine, FORMAT, FrameLine, Header, OrDopLine, RecordError, ShapeLine, VERSION};
 use sdop::bodies::Bodies;
-use sdop::bodies::contract::{ContractError, check_bodies, check_pose, check_poses};
+use sdop::bodies::contract::{ContractError, check_pose, check_poses};
 use sdop::files::{MAX_BYTES, read_line};
 use sdop::mesh::TriangleMesh;
+use sdop::volume::check_bodies;
 use sdop::volume::{Ball, Basis, DirectionSet, OrDop, Origin, Shape, ShapeSpec};
 
 /// A record being read.

@@ -14,9 +14,10 @@ use crate::subject::{ContestantFactory, Scene, Subject};
 use sdop::bodies::Aabb;
 use sdop::boxes::{BoxCullerBuilder, BoxWorld};
 use sdop::culler::{CullError, Culler};
-use sdop::periodic::{PeriodicBoxes, PeriodicWorld};
+use sdop::periodic::PeriodicBoxes;
 use sdop::settings::{CullSettings, Finder, Strategy};
 use sdop::volume::{Axes, DirectionSet};
+use sdop::world::PeriodicWorld;
 use sdop::world::World;
 
 /// Whether a strategy makes a claim: it reports every pair of which the claim holds.

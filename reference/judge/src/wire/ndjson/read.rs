@@ -10,10 +10,11 @@ use crate::claim::Claim;
 use crate::contestant::{Filter, WorldBox};
 use crate::record::{FORMAT, Header, ShapeLine, VERSION};
 use sdop::bodies::Bodies;
-use sdop::bodies::contract::{check_bodies, check_pose};
+use sdop::bodies::contract::check_pose;
 use sdop::files::read_line;
 use sdop::periodic::PeriodicError;
 use sdop::volume::Shape;
+use sdop::volume::check_bodies;
 
 /// A case as read from a file, with the pairs that its frames have.
 pub struct StoredCase {

@@ -1,24 +1,23 @@
-//! Replaces [`shape`](super::shape) without the feature `shapes`: all bodies are boxes, and these
+//! Replaces `posed` without the feature `shapes`: all bodies are boxes, and these
 //! types have no values.
 
-use super::LineTrack;
-use crate::bodies::Aabb;
 use crate::bodies::contract::ContractError;
+use crate::bodies::{Aabb, LineTrack};
 
 /// A shape, of which there are none without the feature `shapes`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QueryShape {}
 
 impl QueryShape {
-    pub(super) fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         match *self {}
     }
 
-    pub(super) fn radius_about_pose(&self) -> f64 {
+    pub(crate) fn radius_about_pose(&self) -> f64 {
         match *self {}
     }
 
-    pub(super) fn check_pose(
+    pub(crate) fn check_pose(
         &self,
         _: usize,
         _: [f32; 4],
@@ -27,13 +26,13 @@ impl QueryShape {
         match *self {}
     }
 
-    pub(super) fn at(&self, _: [f32; 4], _: [f64; 3], _: f32) -> PosedShape<'_> {
+    pub(crate) fn at(&self, _: [f32; 4], _: [f64; 3], _: f32) -> PosedShape<'_> {
         match *self {}
     }
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum PosedBodies {}
+pub(crate) enum PosedBodies {}
 
 impl PosedBodies {
     pub fn shorten(&mut self, _: usize) {
@@ -46,7 +45,7 @@ impl PosedBodies {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PosedShape<'a>(&'a QueryShape);
+pub(crate) struct PosedShape<'a>(&'a QueryShape);
 
 impl PosedShape<'_> {
     pub fn bounds(&self, _: [f64; 3]) -> Aabb {

@@ -7,15 +7,13 @@ use super::output::{Output, OutputTurns, TaskOutput};
 use crate::counters::VolumeCounters;
 use crate::pairs::PairList;
 use crate::threads::Threads;
-#[cfg(feature = "shapes")]
-use crate::update::RowWindow;
 
 /// Tasks per thread. A thread that finishes early takes another one.
 const TASKS_PER_THREAD: usize = 4;
 
 /// One contiguous range of the work, with buffers that stay from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Task {
+pub(crate) struct Task<W> {
     /// Reported pairs, or candidates.
     pub out: PairList,
     /// Candidates for the refining test.
@@ -25,8 +23,7 @@ pub(super) struct Task {
     /// The selected candidates that survived.
     pub survivors: PairList,
     /// Rows that are computed where they are tested.
-    #[cfg(feature = "shapes")]
-    pub window: RowWindow,
+    pub window: W,
     pub first: VolumeCounters,
     pub refining: VolumeCounters,
     /// Seconds in the refining test.
@@ -37,9 +34,9 @@ pub(super) struct Task {
 
 /// The tasks of a frame, whose buffers stay for the next.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Tasks(pub(super) Vec<Task>);
+pub(crate) struct Tasks<W>(pub Vec<Task<W>>);
 
-impl Tasks {
+impl<W: Default> Tasks<W> {
     /// Frees the memory of all lists of pairs.
     pub fn shrink_to_fit(&mut self) {
         *self = Self::default();
@@ -47,7 +44,7 @@ impl Tasks {
 
     /// Bytes that lists of pairs hold.
     pub fn pair_bytes(&self) -> usize {
-        let lists = |task: &Task| {
+        let lists = |task: &Task<W>| {
             let lists = [&task.out, &task.block, &task.selected, &task.survivors];
             lists.map(PairList::bytes).iter().sum::<usize>()
         };
@@ -57,12 +54,12 @@ impl Tasks {
 
 /// Splits `units` of work into tasks. The pairs that they list go to `output` in the order of the
 /// work.
-pub(super) fn split_work(
+pub(crate) fn split_work<W: Clone + Default + Send>(
     pool: &Threads,
-    Tasks(tasks): &mut Tasks,
+    Tasks(tasks): &mut Tasks<W>,
     units: usize,
     output: Output<'_>,
-    work: impl Fn(Range<usize>, &mut Task, &TaskOutput<'_, '_>) + Sync,
+    work: impl Fn(Range<usize>, &mut Task<W>, &TaskOutput<'_, '_>) + Sync,
 ) -> Totals {
     let threads = pool.threads();
     let count = match threads {
@@ -118,7 +115,7 @@ mod tests {
     fn shares(threads: usize, units: usize) -> (Vec<[u32; 2]>, Totals) {
         let pool = Threads::new(threads).expect("a few threads");
         let mut out = PairList::default();
-        let work = |share: Range<usize>, task: &mut Task, _: &TaskOutput<'_, '_>| {
+        let work = |share: Range<usize>, task: &mut Task<()>, _: &TaskOutput<'_, '_>| {
             task.out.push(share.start as u32, share.end as u32);
             (task.first.tests, task.refining.hits) = (share.len() as u64, 1);
             task.seconds = 6.0;

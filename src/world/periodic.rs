@@ -1,14 +1,16 @@
 //! Periodic meshes. An image has the pose of its body with another translation. If f64 rounds that
 //! translation, the image is grown by a bound of the error.
 
-use super::PeriodicError;
-use super::images::{ImageSource, PlacedBody, Placement};
-use super::periods::{Periods, margin_about};
+use super::{Body, Meshes, World};
+use crate::culler::CullerBuilder;
+use crate::periodic::periods::{Periods, margin_about};
+use crate::periodic::{ImageSource, Periodic, PeriodicError, PlacedBody, Placement};
 use crate::rounding::exp2;
 use crate::rounding::narrow::turn_error;
 use crate::rounding::period::wrap;
 use crate::rounding::query::largest;
-use crate::world::{Body, Meshes, World, compose, reach_about_pose};
+use crate::update::offset::{compose, reach_about_pose};
+use crate::volume::Shape;
 
 /// 2⁻⁴⁸, as a multiple of the period: more than rounding takes from the ends of a placed body, and
 /// from differences of ends.
@@ -26,6 +28,31 @@ const SMALL_SHARE: f64 = 0.2;
 /// 2⁻⁹: the share of a shape's reach by which its size is taken for larger in that comparison: more
 /// than a margin's class adds for rounding.
 const REACH_SHARE: f64 = exp2(-9);
+
+/// A long-lived set of posed meshes in space that repeats along some axes.
+pub type PeriodicWorld = Periodic<Meshes>;
+
+impl PeriodicWorld {
+    /// No bodies yet, culled with all defaults. `None` is an axis without a period.
+    ///
+    /// # Errors
+    /// A period is not a length between 2⁻⁵⁶ and 2⁵⁶, or a shape is outside of the contract.
+    pub fn new(shapes: Vec<Shape>, periods: [Option<f64>; 3]) -> Result<Self, PeriodicError> {
+        Self::of(World::new(shapes)?, periods)
+    }
+
+    /// No bodies yet, culled with the choices of a builder.
+    ///
+    /// # Errors
+    /// As [`Self::new`], or as [`World::with`].
+    pub fn with(
+        shapes: Vec<Shape>,
+        culler: &CullerBuilder,
+        periods: [Option<f64>; 3],
+    ) -> Result<Self, PeriodicError> {
+        Self::of(World::with(shapes, culler)?, periods)
+    }
+}
 
 impl ImageSource for Meshes {
     type Given = Body;

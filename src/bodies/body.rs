@@ -1,13 +1,13 @@
-//! The bodies of a world.
+//! A body of a world.
 
-use crate::bodies::{Groups, Motion};
+use super::{Groups, Motion};
 use crate::rounding::narrow::narrow;
 use crate::simd::in_default_mode;
 
 /// The rotation that turns nothing, a quaternion (x, y, z, w).
 pub(crate) const UNTURNED: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
-/// A body of a [`World`](crate::World): its shape, pose, motion, groups and contact margin.
+/// A body of a `World`: its shape, pose, motion, groups and contact margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Index into the world's shapes.

@@ -1,26 +1,21 @@
-//! The first volume test: candidates in, a list of pairs out.
+//! The first volume test on all threads: candidates in, a list of pairs out, at once or in portions.
+
+mod hit_names;
+mod output;
+mod tasks;
 
 use std::ops::Range;
 
-use super::Totals;
-#[cfg(feature = "shapes")]
-use super::hit_names::PairNames;
-use super::hit_names::{HitNames, HitSlots};
-use super::output::{Output, TaskOutput};
-use super::tasks::{Task, Tasks, split_work};
-#[cfg(feature = "shapes")]
-use super::{Inputs, Scratch};
+use self::hit_names::HitSlots;
+pub(crate) use self::hit_names::{HitNames, PairNames, SlotNames};
+pub(crate) use self::output::{Output, PAIRS_PER_PORTION, TaskOutput};
+pub(crate) use self::tasks::{Task, Tasks, split_work};
 use crate::bodies::PairFilter;
-use crate::broad_phase::{Block, EndSlots, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest};
+use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest};
 use crate::counters::VolumeCounters;
-use crate::overlap::boxes::CubeTest;
-#[cfg(feature = "shapes")]
-use crate::overlap::{intervals::IntervalSlots, sphere::Spheres};
 use crate::pairs::PairList;
-#[cfg(feature = "shapes")]
-use crate::settings::TestedVolume;
 use crate::simd::{CACHE_LINE, Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
-use crate::threads::{Executor, Threads};
+use crate::threads::Threads;
 
 /// Slots of a run that are tested at once, before their hits are listed.
 const SLOTS_PER_TEST: usize = MOST_CANDIDATES;
@@ -35,63 +30,42 @@ const NAMES_IN_CACHE: usize = 1 << 16;
 /// Names in a cache line.
 const NAMES_PER_LINE: usize = CACHE_LINE / size_of::<u32>();
 
-/// The first volume test of a strategy.
-#[derive(Clone, Copy)]
-enum FirstVolume<'a> {
-    /// Spheres in slot order.
-    #[cfg(feature = "shapes")]
-    Spheres(crate::broad_phase::SlotBodies<'a>),
-    /// World-aligned slabs.
-    #[cfg(feature = "shapes")]
-    Intervals(&'a IntervalSlots),
-    /// No test: every candidate passes.
-    #[cfg(feature = "shapes")]
-    PassAll,
-    /// Boxes that were given by the caller.
-    Boxes(BoxTest<'a>),
+/// The counts and times of culling a frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Totals {
+    /// The counters of the first test.
+    pub first: VolumeCounters,
+    /// The counters of the refining test, with lazily computed rows as updates.
+    pub refining: VolumeCounters,
+    /// Pairs reported untested because the budget had ended.
+    pub untested: u64,
+    /// Wall time of the refining test: its seconds divided by the number of threads.
+    pub refining_seconds: f64,
+    /// Wall time of computing rows lazily.
+    pub update_seconds: f64,
 }
 
-/// How given boxes are tested.
-#[derive(Clone, Copy)]
-pub(crate) enum BoxTest<'a> {
-    /// Given boxes, tested by the cubes around and inside them.
-    Cubes(CubeTest<'a>),
-    /// Given boxes, tested by their ends.
-    Ends(&'a EndSlots),
+/// The volumes that candidates are tested by.
+pub(crate) trait FirstVolume: Copy + Sync {
+    /// Lists the pairs that pass this test, by [`ListParts::with`].
+    fn list<L: Lanes>(self, l: L, parts: ListParts<'_, Self>) -> VolumeCounters;
 }
 
 /// The candidates of a frame, the test that they must pass, and what is listed for those that pass.
 #[derive(Clone, Copy)]
-pub(super) struct Listing<'a> {
-    tier: Tier,
-    finder: &'a PairFinder,
-    first: FirstVolume<'a>,
-    names: HitNames<'a>,
+pub(crate) struct Listing<'a, V> {
+    pub tier: Tier,
+    pub finder: &'a PairFinder,
+    pub first: V,
+    pub names: HitNames<'a>,
     /// Which pairs pass after the first test, where not all do.
-    filter: Option<PairFilter<'a>>,
+    pub filter: Option<PairFilter<'a>>,
 }
 
-impl<'a> Listing<'a> {
-    #[cfg(feature = "shapes")]
-    pub(super) fn new(inputs: Inputs<'a>, listed: PairNames) -> Self {
-        let arranged = inputs.arranged;
-        let first = match inputs.setup.scheme.first {
-            None => FirstVolume::PassAll,
-            Some(TestedVolume::Sphere) => FirstVolume::Spheres(arranged.slots),
-            Some(_) => FirstVolume::Intervals(inputs.volumes.intervals),
-        };
-        Self {
-            tier: inputs.executor.tier,
-            finder: arranged.finder,
-            first,
-            names: HitNames::new(arranged.finder, listed, arranged.names),
-            filter: arranged.filter,
-        }
-    }
-
+impl<'a, V: FirstVolume> Listing<'a, V> {
     /// Lists the pairs that pass the first test, for some parts of the finder's work, and counts
     /// tests and hits. `flush` gets the list whenever it has at least `enough` pairs.
-    pub(super) fn run(
+    pub fn run(
         &self,
         parts: Range<usize>,
         out: &mut PairList,
@@ -103,56 +77,14 @@ impl<'a> Listing<'a> {
     }
 }
 
-/// Reports the pairs that pass the first test.
-#[cfg(feature = "shapes")]
-pub(super) fn flow(inputs: Inputs<'_>, scratch: &mut Scratch, output: Output<'_>) -> Totals {
-    list(inputs, PairNames::Bodies, &mut scratch.tasks, output)
-}
-
 /// Lists the pairs that pass the first test, on all threads.
-#[cfg(feature = "shapes")]
-pub(super) fn list(
-    inputs: Inputs<'_>,
-    listed: PairNames,
-    tasks: &mut Tasks,
-    output: Output<'_>,
-) -> Totals {
-    list_parts(Listing::new(inputs, listed), inputs.executor.pool, tasks, output)
-}
-
-/// Boxes that are arranged in slots, and how they are tested.
-#[derive(Clone, Copy)]
-pub(crate) struct BoxInputs<'a> {
-    pub executor: Executor<'a>,
-    pub finder: &'a PairFinder,
-    pub test: BoxTest<'a>,
-    /// Which pairs pass if their boxes meet, where not all do.
-    pub filter: Option<PairFilter<'a>>,
-}
-
-/// Lists the pairs of boxes that meet, by their names, on all threads.
-pub(crate) fn list_boxes(
-    inputs: BoxInputs<'_>,
-    tasks: &mut Tasks,
-    output: Output<'_>,
-) -> VolumeCounters {
-    let listing = Listing {
-        tier: inputs.executor.tier,
-        finder: inputs.finder,
-        first: FirstVolume::Boxes(inputs.test),
-        names: HitNames::bodies(inputs.finder),
-        filter: inputs.filter,
-    };
-    list_parts(listing, inputs.executor.pool, tasks, output).first
-}
-
-fn list_parts(
-    listing: Listing<'_>,
+pub(crate) fn list<V: FirstVolume, W: Clone + Default + Send>(
+    listing: Listing<'_, V>,
     pool: &Threads,
-    tasks: &mut Tasks,
+    tasks: &mut Tasks<W>,
     output: Output<'_>,
 ) -> Totals {
-    let work = |parts: Range<usize>, task: &mut Task, outlet: &TaskOutput<'_, '_>| {
+    let work = |parts: Range<usize>, task: &mut Task<W>, outlet: &TaskOutput<'_, '_>| {
         let flush = &mut |out: &mut PairList| outlet.offer(out);
         task.first = listing.run(parts, &mut task.out, outlet.worth(), flush);
     };
@@ -165,33 +97,26 @@ struct FlushRule<'a> {
     call: &'a mut dyn FnMut(&mut PairList),
 }
 
-struct ListParts<'a> {
-    listing: Listing<'a>,
+/// Some parts of a frame's candidates, and the list of those that pass.
+pub(crate) struct ListParts<'a, V> {
+    listing: Listing<'a, V>,
     parts: Range<usize>,
     out: &'a mut PairList,
     flush: FlushRule<'a>,
 }
 
-impl Kernel for ListParts<'_> {
+impl<V: FirstVolume> Kernel for ListParts<'_, V> {
     type Output = VolumeCounters;
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> VolumeCounters {
-        match self.listing.first {
-            #[cfg(feature = "shapes")]
-            FirstVolume::Spheres(slots) => self.with(l, &Spheres(slots)),
-            #[cfg(feature = "shapes")]
-            FirstVolume::Intervals(intervals) => self.with(l, intervals),
-            #[cfg(feature = "shapes")]
-            FirstVolume::PassAll => self.with(l, &PassAll),
-            FirstVolume::Boxes(BoxTest::Cubes(cubes)) => self.with(l, &cubes),
-            FirstVolume::Boxes(BoxTest::Ends(ends)) => self.with(l, ends),
-        }
+        self.listing.first.list(l, self)
     }
 }
 
-impl ListParts<'_> {
+impl<V> ListParts<'_, V> {
+    /// Lists the pairs that pass this test.
     #[inline(always)]
-    fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> VolumeCounters {
+    pub fn with<L: Lanes>(self, l: L, test: &impl SlotTest) -> VolumeCounters {
         let finder = self.listing.finder;
         let mut lister = Lister {
             test,
@@ -205,27 +130,6 @@ impl ListParts<'_> {
         };
         finder.find(l, self.parts, &mut lister);
         lister.counters
-    }
-}
-
-/// A test that every candidate passes.
-#[cfg(feature = "shapes")]
-struct PassAll;
-
-#[cfg(feature = "shapes")]
-impl SlotTest for PassAll {
-    #[inline(always)]
-    fn run<L: Lanes>(&self, _: L, _: usize, run: Range<usize>, hits: &mut [u32]) -> usize {
-        for (hit, slot) in hits.iter_mut().zip(run.clone()) {
-            *hit = slot as u32;
-        }
-        run.len()
-    }
-    #[inline(always)]
-    fn block<L: Lanes>(&self, _: L, block: &Block<'_>, hits: &mut [u32]) -> usize {
-        let codes = block.codes();
-        hits[..codes.len()].copy_from_slice(codes);
-        codes.len()
     }
 }
 

@@ -24,15 +24,14 @@ pub(crate) enum Output<'a> {
 /// A function that takes a portion.
 pub(crate) type PortionSink<'a> = dyn FnMut(&mut PairList) + Send + 'a;
 
-#[cfg(feature = "shapes")]
 impl Output<'_> {
-    pub(super) fn is_in_portions(&self) -> bool {
+    pub fn is_in_portions(&self) -> bool {
         matches!(self, Self::Portions(_))
     }
 }
 
 /// The destination of a task's list while it is being written.
-pub(super) enum TaskOutput<'t, 's> {
+pub(crate) enum TaskOutput<'t, 's> {
     /// It is kept until all tasks are done.
     Kept,
     /// It is passed on whenever it is a portion.
@@ -80,7 +79,7 @@ struct TurnState<'s> {
 }
 
 /// One task's turn.
-pub(super) struct TaskTurn<'t, 's> {
+pub(crate) struct TaskTurn<'t, 's> {
     turns: &'t OutputTurns<'s>,
     task: usize,
 }

@@ -3,9 +3,8 @@
 //! Supports are bounded from the slabs alone, by the multipliers of `overlap/ordop/support.rs`
 //! (lemma L7), here for one direction at a time and about the body's origin.
 
-use super::LineTrack;
-use crate::bodies::Aabb;
 use crate::bodies::contract::{ContractError, check_pose};
+use crate::bodies::{Aabb, Body, LineTrack};
 use crate::rounding::narrow::turn_error;
 use crate::rounding::pose::{self, Rotation, rotate_of};
 use crate::rounding::query::{
@@ -13,8 +12,22 @@ use crate::rounding::query::{
 };
 use crate::rounding::{down, up};
 use crate::update::ShapeFrame;
+use crate::update::offset::{compose, reach_about_pose};
 use crate::volume::{DirectionSet, OrDop, Shape};
-use crate::world::{Body, ShapeVolumes, compose, reach_about_pose};
+
+/// The volumes of a shape.
+#[derive(Clone, Copy)]
+pub(crate) struct ShapeVolumes<'a> {
+    pub ordop: &'a OrDop,
+    /// Where or-DOPs are tested alone, its radius is that by which a finder bins them.
+    pub frame: &'a ShapeFrame,
+    /// The radius of the ball about the shape.
+    pub radius: f64,
+    /// The position of the vertices' origin relative to the point that poses place.
+    pub pose_offset: [f64; 3],
+    /// No other shape of any world has it, except in a world's clones.
+    pub stamp: u64,
+}
 
 /// A shape prepared for queries: its ball and its or-DOP, computed once.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +63,7 @@ impl QueryShape {
         })
     }
 
-    pub(super) fn of(volumes: ShapeVolumes<'_>) -> Self {
+    pub(crate) fn of(volumes: ShapeVolumes<'_>) -> Self {
         let ShapeVolumes { ordop, frame, .. } = volumes;
         let norm = ordop.basis.norm();
         let direction = |&coefficients: &[i8; 3]| {
@@ -78,16 +91,16 @@ impl QueryShape {
     }
 
     /// Whether it was made from these volumes.
-    pub(super) fn is_of(&self, volumes: ShapeVolumes<'_>) -> bool {
+    pub(crate) fn is_of(&self, volumes: ShapeVolumes<'_>) -> bool {
         self.stamp == volumes.stamp
     }
 
     /// No point is farther from the origin of the vertices.
-    pub(super) fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
 
-    pub(super) fn check_pose(
+    pub(crate) fn check_pose(
         &self,
         query: usize,
         rotation: [f32; 4],
@@ -97,7 +110,7 @@ impl QueryShape {
     }
 
     /// This shape at a pose, grown by a margin.
-    pub(super) fn at(
+    pub(crate) fn at(
         &self,
         rotation: [f32; 4],
         translation: [f64; 3],
@@ -132,7 +145,7 @@ impl QueryShape {
 
     /// This shape as that of a body, grown by its margin and by what the rounding of its rotation
     /// moves.
-    pub(super) fn of_body(&self, body: &Body) -> PosedShape<'_> {
+    pub(crate) fn of_body(&self, body: &Body) -> PosedShape<'_> {
         let error = turn_error(body.rounded, self.radius_about_pose());
         self.as_part((body.rotation, body.translation), body.margin, error)
     }
@@ -201,7 +214,7 @@ fn index_of(facing: [i8; 3]) -> usize {
 
 /// Shapes and poses of bodies that are not boxes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct PosedBodies {
+pub(crate) struct PosedBodies {
     /// The shapes by the numbers that bodies use.
     pub shapes: Vec<Option<QueryShape>>,
     /// The bodies by slot.

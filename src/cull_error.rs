@@ -4,7 +4,6 @@ use thiserror::Error;
 
 use crate::bodies::contract::ContractError;
 use crate::pairs::PairList;
-#[cfg(feature = "shapes")]
 use crate::settings::SettingsError;
 use crate::threads::ThreadsError;
 
@@ -25,7 +24,6 @@ pub enum CullError {
         hint: &'static str,
     },
     /// Invalid settings.
-    #[cfg(feature = "shapes")]
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// Threads that the system refuses to start.
@@ -90,7 +88,6 @@ impl CullError {
         match self {
             Self::Contract(error) => error.help(),
             Self::Shape { hint, .. } => hint,
-            #[cfg(feature = "shapes")]
             Self::Settings(error) => error.help(),
             Self::Threads(error) => error.help(),
             Self::OutOfMemory => {
