@@ -33,7 +33,7 @@ Hypothesis exclusions_noted : forall i j,
 Variable found : nat -> nat -> bool.
 Hypothesis found_all : forall i j, changed i = true -> found i j = met after is_excluded i j.
 
-(* src/living/movers.rs: Movers::change_pairs. A noted slot gets the list that was found; where that
+(* src/living/live_pairs.rs: LivePairs::apply. A noted slot gets the list that was found; where that
    differs from its former one, lists of slots that aren't noted are changed as well. *)
 Definition change (lists : nat -> nat -> bool) (i : nat) : nat -> nat -> bool :=
   fun a b =>
