@@ -174,7 +174,7 @@ pub mod update;
 
 // Shown on the front page with their descriptions.
 #[doc(inline)]
-pub use crate::{
+pub use {
     bodies::contract::ContractError,
     bodies::{Aabb, Bodies, Body, Groups, Motion},
     boxes::{BoxCuller, BoxWorld},
@@ -191,7 +191,7 @@ pub use crate::{
 };
 #[cfg(feature = "shapes")]
 #[doc(inline)]
-pub use crate::{
+pub use {
     culler::{Culler, CullerBuilder},
     mesh::{MeshError, ProceduralShape, TriangleMesh},
     volume::{Origin, Shape, ShapeSpec, VolumeError},

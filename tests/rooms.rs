@@ -323,7 +323,7 @@ fn upward_imports_are_found() {
     assert!(wrong(BENCH, "commands", "use crate::{number, scene};").is_empty());
     assert!(!wrong(JUDGE, "truth", "use crate::draw::Contact;").is_empty());
     assert!(wrong(JUDGE, "score", "use crate::{truth::Shapes, claim::Claim};").is_empty());
-    let below = "// see crate::world\nuse crate::volume::Shape;";
+    let below = "// see crate::world\nuse crate::threads::Threads;";
     assert!(wrong(LIBRARY, "bodies", below).is_empty());
     assert_eq!(wrong(LIBRARY, "update", "use crate::tools::trick;").len(), 1);
     assert_eq!(wrong(LIBRARY, "update", "use crate::Culler;").len(), 1, "the face is above all");
