@@ -60,6 +60,12 @@ impl CurrentPairs {
 }
 
 impl Events {
+    /// The events between two culls.
+    pub(super) fn between(before: &ReportedPairs, now: Arc<ReportedPairs>) -> Self {
+        let changes = Changes::between(before, &now);
+        Self { now: CurrentPairs::List(now), changes }
+    }
+
     /// All events, sorted by the slots of their pairs.
     pub fn iter(&self) -> impl Iterator<Item = Event> + '_ {
         let Self { now, changes } = self;

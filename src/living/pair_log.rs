@@ -4,7 +4,6 @@ use std::iter::Zip;
 use std::slice::Iter;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::events::{Changes, CurrentPairs};
 use super::reported_pairs::ReportedPairs;
 use super::{BodyId, Events, Ids};
 use crate::pairs::{PairList, PairSorter, PartnerPairs, Partners};
@@ -168,8 +167,7 @@ impl PairLog {
         let now = self.last.clone();
         let before = std::mem::replace(&mut self.watched, now.clone());
         self.spare = Some(before.clone());
-        let changes = Changes::between(&before, &now);
-        Events { now: CurrentPairs::List(now), changes }
+        Events::between(&before, now)
     }
 
     /// Bytes of the lists of pairs.
