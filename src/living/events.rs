@@ -7,6 +7,10 @@ use super::pair_log::WorldPairs;
 use super::reported_pairs::{ReportedPairs, SortedKeys};
 use crate::pairs::{Merge, Merged, Partners, pair_of};
 
+/// Changes are listed if they are at most about one in this number of pairs of both culls.
+const LISTED_SHARE: usize = 2;
+const ALWAYS_LISTED: usize = 64;
+
 /// The event of one pair, the lower slot first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
@@ -21,13 +25,14 @@ pub enum Event {
 /// The pairs that have begun, persist or have ended between two culls, each kind sorted by slots.
 ///
 /// It doesn't borrow the world: bodies may be removed while events are read. The cost of
-/// [`Self::begun`] and [`Self::ended`] is proportional to the changes; [`Self::persisting`] and
-/// [`Self::iter`] take one pass over the pairs. Drop the events before the next cull, which
-/// otherwise copies the pairs that they share with the world.
+/// [`Self::begun`] and [`Self::ended`] is proportional to the changes, or one pass over both lists
+/// of pairs if there are many; [`Self::persisting`] and [`Self::iter`] take one pass over the
+/// pairs. Drop the events before the next cull, which otherwise copies the pairs that they share
+/// with the world.
 #[derive(Clone, Debug, Default)]
 pub struct Events {
     pub(super) now: CurrentPairs,
-    pub(super) changes: Changes,
+    pub(super) change: PairDifference,
 }
 
 /// The pairs of the later cull.
@@ -35,6 +40,20 @@ pub struct Events {
 pub(super) enum CurrentPairs {
     List(Arc<ReportedPairs>),
     Partners { slots: Arc<Partners>, ids: Arc<Vec<BodyId>> },
+}
+
+/// What tells the former cull's pairs from the later one's.
+#[derive(Clone, Debug)]
+pub(super) enum PairDifference {
+    /// The former pairs, if most have changed: no third list is made of a crowd's pairs.
+    Since(Arc<ReportedPairs>),
+    Listed(Changes),
+}
+
+impl Default for PairDifference {
+    fn default() -> Self {
+        Self::Since(Arc::default())
+    }
 }
 
 /// The pairs that have begun and ended between two culls, each kind sorted.
@@ -61,29 +80,60 @@ impl CurrentPairs {
 
 impl Events {
     /// The events between two culls.
-    pub(super) fn between(before: &ReportedPairs, now: Arc<ReportedPairs>) -> Self {
-        let changes = Changes::between(before, &now);
-        Self { now: CurrentPairs::List(now), changes }
+    pub(super) fn between(before: Arc<ReportedPairs>, now: Arc<ReportedPairs>) -> Self {
+        let most = (before.len() + now.len()) / LISTED_SHARE + ALWAYS_LISTED;
+        let change = match Changes::between(&before, &now, most) {
+            Some(changes) => PairDifference::Listed(changes),
+            None => PairDifference::Since(before),
+        };
+        Self { now: CurrentPairs::List(now), change }
+    }
+
+    /// The former pairs, or the changes.
+    fn difference(&self) -> (Option<&ReportedPairs>, Option<&Changes>) {
+        match &self.change {
+            PairDifference::Since(before) => (Some(before), None),
+            PairDifference::Listed(changes) => (None, Some(changes)),
+        }
     }
 
     /// All events, sorted by the slots of their pairs.
     pub fn iter(&self) -> impl Iterator<Item = Event> + '_ {
-        let Self { now, changes } = self;
-        let now = Merge::new(&changes.begun, now.pairs(), |begun, pair| (*begun).cmp(pair));
-        let now = now.map(|merged| match merged {
-            Merged::First(&pair) | Merged::Both(_, pair) => (pair, Event::Begun(pair)),
-            Merged::Second(pair) => (pair, Event::Persisting(pair)),
+        let (before, changes) = self.difference();
+        let merged = before.map(|before| {
+            let both = Merge::new(before.pairs(), self.now.pairs(), Ord::cmp);
+            both.map(|merged| match merged {
+                Merged::First(pair) => Event::Ended(pair),
+                Merged::Second(pair) => Event::Begun(pair),
+                Merged::Both(_, pair) => Event::Persisting(pair),
+            })
         });
-        let all = Merge::new(&changes.ended, now, |ended, (pair, _)| (*ended).cmp(pair));
-        all.map(|merged| match merged {
-            Merged::First(&pair) => Event::Ended(pair),
-            Merged::Second((_, event)) | Merged::Both(_, (_, event)) => event,
-        })
+        let listed = changes.map(|Changes { begun, ended }| {
+            let now = Merge::new(begun, self.now.pairs(), |begun, pair| (*begun).cmp(pair));
+            let now = now.map(|merged| match merged {
+                Merged::First(&pair) | Merged::Both(_, pair) => (pair, Event::Begun(pair)),
+                Merged::Second(pair) => (pair, Event::Persisting(pair)),
+            });
+            let all = Merge::new(ended, now, |ended, (pair, _)| (*ended).cmp(pair));
+            all.map(|merged| match merged {
+                Merged::First(&pair) => Event::Ended(pair),
+                Merged::Second((_, event)) | Merged::Both(_, (_, event)) => event,
+            })
+        });
+        merged.into_iter().flatten().chain(listed.into_iter().flatten())
     }
 
     /// Pairs reported now and not before.
     pub fn begun(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
-        self.changes.begun.iter().copied()
+        let (before, changes) = self.difference();
+        let found = before.map(|_| {
+            self.iter().filter_map(|event| match event {
+                Event::Begun(pair) => Some(pair),
+                _ => None,
+            })
+        });
+        let listed = changes.map(|changes| changes.begun.iter().copied());
+        found.into_iter().flatten().chain(listed.into_iter().flatten())
     }
 
     /// Pairs reported now and before.
@@ -96,15 +146,26 @@ impl Events {
 
     /// Pairs reported before and not now; those of a body removed since then are among them.
     pub fn ended(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
-        self.changes.ended.iter().copied()
+        let (before, changes) = self.difference();
+        let found = before.map(|_| {
+            self.iter().filter_map(|event| match event {
+                Event::Ended(pair) => Some(pair),
+                _ => None,
+            })
+        });
+        let listed = changes.map(|changes| changes.ended.iter().copied());
+        found.into_iter().flatten().chain(listed.into_iter().flatten())
     }
 }
 
 impl Changes {
-    /// The changes from one cull to a later one.
-    pub fn between(before: &ReportedPairs, now: &ReportedPairs) -> Self {
+    /// The changes from one cull to a later one. `None` if there are more than `most`.
+    pub fn between(before: &ReportedPairs, now: &ReportedPairs, most: usize) -> Option<Self> {
         if std::ptr::eq(before, now) {
-            return Self::default();
+            return Some(Self::default());
+        }
+        if before.len().abs_diff(now.len()) > most {
+            return None;
         }
         let are_of_one_time = Arc::ptr_eq(&before.table, &now.table);
         let in_step = || before.out_of_step(now);
@@ -114,24 +175,27 @@ impl Changes {
         };
         let [old, new] = [&keys[0], &keys[1]].map(|keys| (0..keys.len()).map(|at| keys.at(at)));
         let (mut begun, mut ended) = (Vec::new(), Vec::new());
-        let mut note = |merged: Merged<u64, u64>| match merged {
-            Merged::First(key) => ended.push(key),
-            Merged::Second(key) => begun.push(key),
-            Merged::Both(..) => {}
+        let mut note = |merged: Merged<u64, u64>| {
+            match merged {
+                Merged::First(key) => ended.push(key),
+                Merged::Second(key) => begun.push(key),
+                Merged::Both(..) => return Some(()),
+            }
+            (begun.len() + ended.len() <= most).then_some(())
         };
         if are_of_one_time {
-            Merge::new(old, new, Ord::cmp).for_each(&mut note);
+            Merge::new(old, new, Ord::cmp).try_for_each(&mut note)?;
         } else {
             let ids =
                 |key, reported: &ReportedPairs| BodyId::pair_of(pair_of(key), &reported.table);
             let order = |&was: &u64, &is: &u64| ids(was, before).cmp(&ids(is, now));
-            Merge::new(old, new, order).for_each(&mut note);
+            Merge::new(old, new, order).try_for_each(&mut note)?;
         }
         // Bodies are looked up at the end, because that misses the caches.
         let named = |keys: Vec<u64>, reported: &ReportedPairs| {
             let pairs = keys.into_iter().map(pair_of);
             pairs.map(|pair| BodyId::pair_of(pair, &reported.table)).collect()
         };
-        Self { begun: named(begun, now), ended: named(ended, before) }
+        Some(Self { begun: named(begun, now), ended: named(ended, before) })
     }
 }

@@ -9,7 +9,7 @@
 use std::sync::Arc;
 
 use super::change_log::{ChangeLog, PairChange};
-use super::events::{Changes, CurrentPairs, Event};
+use super::events::{Changes, CurrentPairs, Event, PairDifference};
 use super::movers::Movers;
 use super::pair_log::{PairLog, WorldPairs};
 use super::reported_pairs::ReportedPairs;
@@ -73,67 +73,51 @@ impl LivePairs {
     pub fn keep_by_body(&mut self, ids: &Ids) {
         if self.live.is_none() {
             let log = std::mem::take(&mut self.log);
-            let changes = (!log.watched.is_empty())
-                .then(|| ChangeLog::of(Changes::between(&log.watched, &log.last)));
+            let changes = Some(&log.watched).filter(|watched| !watched.is_empty());
+            let changes = changes.and_then(|was| Changes::between(was, &log.last, usize::MAX));
+            let changes = changes.map(ChangeLog::of);
             let partners = Partners::of(log.last.slots(), ids.rows());
             self.live = Some(PairsByBody { partners: Arc::new(partners), table: None, changes });
         }
     }
 
-    /// Gives bodies that have changed the partners that were found, and updates the lists of these.
+    /// Gives bodies that have changed the partners that were found, updates the lists of these, and
+    /// logs each pair that has begun or ended once. Copies the lists if events share them.
     pub fn apply(&mut self, found: &Found, movers: &Movers, ids: &Ids) {
         self.keep_by_body(ids);
-        self.extend(ids);
-        let mut differences = std::mem::take(&mut self.differences);
+        let Self { live: Some(live), differences, .. } = self else { return };
+        let PairsByBody { partners: shared, changes, .. } = live;
+        if !shared.has_room_for(ids.rows()) {
+            Arc::make_mut(shared).extend_to(ids.rows());
+        }
         for (number, (row, partners)) in found.iter().enumerate() {
             let ahead = [2 * PREFETCH_DISTANCE, PREFETCH_DISTANCE]
                 .map(|steps| found.bodies.get(number + steps));
-            let Some(live) = &self.live else { break };
-            live.partners.prefetch(ahead);
-            compare(live.partners.of_number(row), partners, &mut differences);
+            shared.prefetch(ahead);
+            compare(shared.of_number(row), partners, differences);
             if differences.is_empty() {
                 continue;
             }
-            let Some(mut changes) = self.change(ids) else { break };
-            changes.replace(row, partners);
-            for &(other, has_begun) in &differences {
+            let lists = Arc::make_mut(shared);
+            lists.replace(row, partners);
+            for &(other, has_begun) in &*differences {
                 let finds_itself = movers.is_changed(other);
                 if !finds_itself {
-                    changes.set_partner(other, row, has_begun);
+                    lists.set_partner(other, row, has_begun);
                 }
-                if !finds_itself || row < other {
-                    changes.note(row, other, has_begun);
+                if (!finds_itself || row < other)
+                    && let Some(log) = changes
+                {
+                    let pair = [row.min(other), row.max(other)].map(|row| ids.id(row));
+                    log.push(PairChange { pair, has_begun });
                 }
             }
-            changes.done();
         }
-        self.differences = differences;
-        self.compact();
-    }
-
-    /// Access for changing the pairs, if they are kept by body. Copies them if events share them.
-    fn change<'a>(&'a mut self, ids: &'a Ids) -> Option<PairChanges<'a>> {
-        let live = self.live.as_mut()?;
-        let partners = Arc::make_mut(&mut live.partners);
-        partners.extend_to(ids.rows());
-        Some(PairChanges { partners, log: live.changes.as_mut(), ids })
-    }
-
-    /// Makes room for all slots.
-    fn extend(&mut self, ids: &Ids) {
-        if let Some(live) = &mut self.live
-            && !live.partners.has_room_for(ids.rows())
-        {
-            Arc::make_mut(&mut live.partners).extend_to(ids.rows());
+        if let Some(log) = changes {
+            log.cancel_some();
         }
-    }
-
-    /// Frees the room that former pairs have left in lists, if it is much.
-    fn compact(&mut self) {
-        if let Some(live) = &mut self.live
-            && live.partners.is_sparse()
-        {
-            Arc::make_mut(&mut live.partners).compact();
+        if shared.is_sparse() {
+            Arc::make_mut(shared).compact();
         }
     }
 
@@ -143,13 +127,11 @@ impl LivePairs {
         let Some(live) = &mut self.live else {
             return self.log.events();
         };
-        match live.changes.replace(ChangeLog::default()) {
-            Some(changes) => live.events(changes.net(), ids),
-            None => {
-                let begun = live.pairs(ids).iter().collect();
-                live.events(Changes { begun, ended: Vec::new() }, ids)
-            }
-        }
+        let change = match live.changes.replace(ChangeLog::default()) {
+            Some(changes) => PairDifference::Listed(changes.net()),
+            None => PairDifference::default(), // all have begun
+        };
+        live.events(change, ids)
     }
 
     /// Keeps the pairs of the last cull, and those of the last events, while the world changes its
@@ -207,10 +189,10 @@ impl PairsByBody {
     }
 
     /// The events of these changes.
-    fn events(&self, changes: Changes, ids: &Ids) -> Events {
+    fn events(&self, change: PairDifference, ids: &Ids) -> Events {
         let slots = self.partners.clone();
         let now = CurrentPairs::Partners { slots, ids: self.table(ids).clone() };
-        Events { now, changes }
+        Events { now, change }
     }
 
     /// The pairs of the last call of `events`.
@@ -218,49 +200,11 @@ impl PairsByBody {
         let Some(changes) = self.changes.clone() else {
             return ReportedPairs::default();
         };
-        let events = self.events(changes.net(), ids);
+        let events = self.events(PairDifference::Listed(changes.net()), ids);
         ReportedPairs::compact(events.iter().filter_map(|event| match event {
             Event::Begun(_) => None,
             Event::Persisting(pair) | Event::Ended(pair) => Some(pair),
         }))
-    }
-}
-
-/// Changes pairs. A change is made in the lists of both bodies, and logged once.
-struct PairChanges<'a> {
-    partners: &'a mut Partners,
-    log: Option<&'a mut ChangeLog>,
-    ids: &'a Ids,
-}
-
-impl PairChanges<'_> {
-    /// Replaces the partners of one slot.
-    pub fn replace(&mut self, slot: u32, partners: &[u32]) {
-        self.partners.replace(slot, partners);
-    }
-
-    /// Adds a partner to a slot, or removes it.
-    pub fn set_partner(&mut self, slot: u32, other: u32, has_begun: bool) {
-        if has_begun {
-            self.partners.insert(slot, other);
-        } else {
-            self.partners.remove(slot, other);
-        }
-    }
-
-    /// Logs for events that a pair has begun or ended.
-    pub fn note(&mut self, slot: u32, other: u32, has_begun: bool) {
-        if let Some(log) = &mut self.log {
-            let pair = [slot.min(other), slot.max(other)].map(|slot| self.ids.id(slot));
-            log.push(PairChange { pair, has_begun });
-        }
-    }
-
-    /// Removes log entries that cancel each other, if there are many.
-    pub fn done(self) {
-        if let Some(log) = self.log {
-            log.cancel_some();
-        }
     }
 }
 
@@ -297,17 +241,14 @@ mod tests {
 
     /// Changes the pairs to these.
     fn change(live: &mut LivePairs, ids: &Ids, wanted: &BTreeSet<[u32; 2]>) {
-        live.keep_by_body(ids);
-        let now: BTreeSet<[u32; 2]> =
-            live.pairs(ids).iter().map(|pair| pair.map(|id| id.slot)).collect();
-        let mut changes = live.change(ids).unwrap();
-        for &[i, j] in now.symmetric_difference(wanted) {
-            let has_begun = wanted.contains(&[i, j]);
-            changes.set_partner(i, j, has_begun);
-            changes.set_partner(j, i, has_begun);
-            changes.note(j, i, has_begun);
+        for body in 0..ids.rows() as u32 {
+            let of_body = wanted.iter().filter(|pair| pair.contains(&body));
+            let mut partners: Vec<u32> = of_body.map(|[i, j]| i + j - body).collect();
+            partners.sort_unstable();
+            let ends = vec![partners.len()];
+            let found = Found { bodies: vec![body], present: 1, partners, ends };
+            live.apply(&found, &Movers::default(), ids);
         }
-        changes.done();
     }
 
     #[test]

@@ -167,7 +167,7 @@ impl PairLog {
         let now = self.last.clone();
         let before = std::mem::replace(&mut self.watched, now.clone());
         self.spare = Some(before.clone());
-        Events::between(&before, now)
+        Events::between(before, now)
     }
 
     /// Bytes of the lists of pairs.

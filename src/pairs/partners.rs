@@ -79,21 +79,19 @@ impl Partners {
         self.lists.replace(run, partners);
     }
 
-    /// Adds a partner to a number's list unless it is in it already.
-    pub fn insert(&mut self, number: u32, partner: u32) {
+    /// Adds a partner to a number's list, or removes it, unless that is so already.
+    pub fn set_partner(&mut self, number: u32, partner: u32, is_in: bool) {
         let run = &mut self.by_number[number as usize];
-        if let Err(at) = self.lists.get(*run).binary_search(&partner) {
-            self.lists.insert(run, at, partner);
-            self.entries += 1;
-        }
-    }
-
-    /// Removes a partner from a number's list if it is in it.
-    pub fn remove(&mut self, number: u32, partner: u32) {
-        let run = &mut self.by_number[number as usize];
-        if let Ok(at) = self.lists.get(*run).binary_search(&partner) {
-            self.lists.remove(run, at);
-            self.entries -= 1;
+        match (self.lists.get(*run).binary_search(&partner), is_in) {
+            (Err(at), true) => {
+                self.lists.insert(run, at, partner);
+                self.entries += 1;
+            }
+            (Ok(at), false) => {
+                self.lists.remove(run, at);
+                self.entries -= 1;
+            }
+            _ => {}
         }
     }
 
@@ -183,14 +181,9 @@ mod tests {
                 continue;
             }
             // Both directions, in either order.
-            if wanted.insert([i, j]) {
-                partners.insert(j, i);
-                partners.insert(i, j);
-            } else {
-                wanted.remove(&[i, j]);
-                partners.remove(i, j);
-                partners.remove(j, i);
-            }
+            let has_begun = wanted.insert([i, j]) || !wanted.remove(&[i, j]);
+            partners.set_partner(j, i, has_begun);
+            partners.set_partner(i, j, has_begun);
         }
     }
 
@@ -201,9 +194,9 @@ mod tests {
         let mut partners = Partners::of(&list, 5);
         partners.extend_to(6);
         partners.replace(3, &[1, 5]);
-        partners.remove(0, 3);
-        partners.insert(5, 3);
-        partners.insert(5, 3);
+        partners.set_partner(0, 3, false);
+        partners.set_partner(5, 3, true);
+        partners.set_partner(5, 3, true);
         let pairs: Vec<_> = partners.iter().collect();
         assert_eq!(pairs, [[1, 3], [2, 4], [3, 5]]);
         assert_eq!((partners.len(), partners.of_number(3)), (3, &[1, 5][..]));
