@@ -1,4 +1,4 @@
-//! The first volume test on all threads: candidates in, a list of pairs out, at once or in portions.
+//! The first volume test on all threads: candidates in, a list of pairs out, or portions of it.
 
 mod hit_names;
 mod output;

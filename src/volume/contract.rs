@@ -8,7 +8,7 @@ use crate::bodies::contract::{ContractError, check_columns, check_poses, refuse,
 use crate::rounding::LIMIT;
 
 /// Checks every body against the contract: |t|∞ ≤ 2⁶⁰, 0 < |q|² < ∞, and a shape that exists and is
-/// at most 2⁶⁰ in size; and that there are at most [`MOST_BODIES`](crate::bodies::contract::MOST_BODIES).
+/// at most 2⁶⁰ in size; and that there are no more bodies than can be numbered.
 ///
 /// # Errors
 /// The first body that breaks it, in the first invalid column; columns of unequal length.

@@ -1,9 +1,9 @@
 //! The posed meshes of a world, and how their pairs are found.
 //!
-//! A pair's verdict is a function of its two bodies, each in a model and at a place, of their groups
-//! and motion, of whether one of them is of interest, and of whether the pair is excluded. A body
-//! counts as changed when any of these is set (for an excluded pair, one of its bodies), and when
-//! its local place or its model changes because an origin has moved.
+//! A pair's verdict is a function of its two bodies, each in a model and at a place, of their
+//! groups and motion, of whether one of them is of interest, and of whether the pair is excluded. A
+//! body counts as changed when any of these is set (for an excluded pair, one of its bodies), and
+//! when its local place or its model changes because an origin has moved.
 
 use super::local_origins::Origins;
 use super::margins::{Margins, check_margin};
