@@ -279,6 +279,7 @@ impl BoxIndex {
     /// are allowed by the rules: sorted, each once. The end of each box's part is appended to
     /// `ends`. Returns the number of boxes and cells read, or `None` before any box is read if
     /// there are more than `most`.
+    #[inline(never)]
     pub fn find_partners(
         &self,
         seekers: &[IndexedBox],
