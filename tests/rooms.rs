@@ -55,6 +55,7 @@ const BENCH: &[&str] = &[
     "number",
     "percentiles",
     "remedy",
+    "decimate",
     "random",
     "hash",
     "mpi",

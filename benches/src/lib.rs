@@ -9,6 +9,7 @@ pub mod board;
 #[doc(hidden)]
 pub mod commands;
 pub mod cost;
+pub mod decimate;
 pub mod domain;
 pub mod effects;
 pub mod hash;

@@ -7,7 +7,6 @@
 //! could intersect anything. Vertices that no triangle uses are kept; they only enlarge the
 //! volumes.
 
-pub mod decimate;
 mod error;
 mod far;
 #[cfg(feature = "readers")]

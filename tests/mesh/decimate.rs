@@ -1,9 +1,9 @@
 //! Decimation: the surface keeps its topology and its place, and the result is the same everywhere.
 
 use glam::Vec3;
-use sdop::mesh::decimate::decimate;
 use sdop::mesh::topology::Topology;
 use sdop::mesh::{MeshFormat, ProceduralShape, ReadOptions, TriangleMesh, read, write_bytes};
+use sdop_bench::decimate::decimate;
 
 use super::{sha256, signed_volume};
 

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use sdop::mesh::decimate::decimate;
 use sdop::mesh::topology::{Topology, without_area};
 use sdop::mesh::{ReadOptions, TriFormat, TriangleMesh, read, write};
 use sdop::volume::{Hull, Origin, Shape, ShapeSpec};
+use sdop_bench::decimate::decimate;
 use sdop_bench::remedy::OrReport as _;
 use sdop_bench::tightness::{Size, TURNS};
 use serde::Serialize;

@@ -1,7 +1,9 @@
 //! The meshes to draw: each shape in levels of detail, for bodies near and far.
 
-use sdop::mesh::{TriangleMesh, decimate::decimate};
+use sdop::mesh::TriangleMesh;
 use sdop::volume::{Hull, Shape};
+
+use crate::decimate::decimate;
 
 /// Triangles of the levels, at most. A software renderer draws about 60,000 triangles in the time
 /// of a frame.

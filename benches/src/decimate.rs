@@ -13,9 +13,8 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
 
-use glam::{DMat3, DVec3};
-
-use super::{TriangleMesh, in_f64};
+use glam::{DMat3, DVec3, Vec3};
+use sdop::mesh::TriangleMesh;
 
 /// Collapses edges until at most `target` triangles are left, or until every further collapse would
 /// change the surface's topology or turn a triangle over. Closed components stay closed. Unused
@@ -138,6 +137,7 @@ struct Surface {
 impl Surface {
     fn new(mesh: &TriangleMesh) -> Self {
         let count = mesh.vertices.len();
+        let in_f64 = |vertex: &[f32; 3]| Vec3::from(*vertex).as_dvec3();
         let origin = mesh.vertices.first().map_or(DVec3::ZERO, in_f64);
         let mut surface = Self {
             origin,
@@ -318,13 +318,6 @@ impl Surface {
             Some([a?, b?, c?])
         };
         let triangles = self.triangles.into_iter().flatten().filter_map(renumber).collect();
-        TriangleMesh {
-            name: mesh.name.clone(),
-            vertices,
-            triangles,
-            offset: mesh.offset,
-            rounding: mesh.rounding,
-            warnings: mesh.warnings.clone(),
-        }
+        TriangleMesh { vertices, triangles, ..mesh.clone() }
     }
 }
