@@ -64,28 +64,3 @@ impl BallTest for CubeTest<'_> {
         hits
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::broad_phase::Slots;
-    use crate::broad_phase::whole_vectors::{SLOTS_PER_CHECK, check};
-
-    /// Boxes that fill their vectors cost no vector more.
-    #[test]
-    fn full_vectors_cost_no_more() {
-        let mut slots = Slots {
-            balls: vec![[1.5, 1.5, 1.5, 0.5]; SLOTS_PER_CHECK],
-            names: (0..SLOTS_PER_CHECK as u32).collect(),
-            ..Slots::default()
-        };
-        let boxes = [Aabb::new([1.0; 3], [2.0; 3]); SLOTS_PER_CHECK];
-        let cubes = |slots: &Slots| {
-            check(&CubeTest { slots: slots.arranged(), boxes: &boxes, less: 0.0 });
-        };
-        cubes(&slots);
-        let [x, y, z, half] = [1.5, 1.5, 1.5, 0.5].map(|number| vec![number; SLOTS_PER_CHECK]);
-        slots.columns = [x, y, z, half];
-        cubes(&slots);
-    }
-}

@@ -26,8 +26,6 @@ mod neighbours;
 mod slot_test;
 mod slots;
 mod sweep;
-#[cfg(test)]
-pub mod whole_vectors;
 
 pub use all_pairs::AllPairs;
 pub use auto::Population;
@@ -326,14 +324,6 @@ mod tests {
                 );
                 assert_eq!(finder.names().len(), padded);
             }
-        }
-    }
-
-    /// A finder holds a ball and a name for each body.
-    #[test]
-    fn finder_bytes_cover_balls_and_names() {
-        for &finder in Finder::ALL {
-            assert!(arranged(finder, 1000).bytes() >= 20 * 1000, "{finder}");
         }
     }
 

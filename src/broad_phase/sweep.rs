@@ -225,50 +225,6 @@ mod tests {
         }
     }
 
-    /// Bytes are those of all columns used or not.
-    #[test]
-    fn bytes_count_all_columns() {
-        let mut sweep = Sweep::default();
-        assert_eq!(sweep.bytes(), 0);
-        sweep.slots.names = Vec::with_capacity(1);
-        sweep.lo = Vec::with_capacity(10);
-        sweep.hi = Vec::with_capacity(100);
-        assert_eq!(sweep.bytes(), 444);
-        sweep.sorter.pairs[0] = Vec::with_capacity(1_000);
-        sweep.sorter.pairs[1] = Vec::with_capacity(10_000);
-        assert_eq!(sweep.bytes(), 88_444);
-    }
-
-    /// Places follow the slots of moving bodies now and then.
-    #[test]
-    fn places_are_reordered_periodically() {
-        let mut sweep = Sweep::default();
-        let mut order = vec![9];
-        for age in 1..=3 * FRAMES_PER_REORDER {
-            // Without bodies at first.
-            (sweep.len, sweep.moving) = if age > FRAMES_PER_REORDER { (4, 2) } else { (0, 0) };
-            sweep.slots.names = vec![7, 6, 5, 4];
-            let names = [1, 2, 3, 4];
-            let reorder = sweep.reorder(sweep.moving, &names[..sweep.len], &mut order);
-            if age % FRAMES_PER_REORDER == 0 && age > FRAMES_PER_REORDER {
-                assert_eq!((reorder, &order), (Reorder::Moving, &vec![7, 6, 3, 4]));
-            } else {
-                assert_eq!(reorder, Reorder::None, "{age}");
-            }
-        }
-    }
-
-    /// Moving and static bodies have parts of their own.
-    #[test]
-    fn moving_and_static_have_parts() {
-        let parts = |moving, len| {
-            let sweep = Sweep { moving, len, ..Sweep::default() };
-            sweep.parts()
-        };
-        let found = [parts(0, 0), parts(64, 64), parts(65, 130), parts(0, 130)];
-        assert_eq!(found, [0, 1, 4, 3]);
-    }
-
     /// Spreads are 1.5 times as large at exactly √1.5 times the extent; the mean counts, and the
     /// place does not.
     #[test]
@@ -294,22 +250,5 @@ mod tests {
         assert_eq!(turned(2, [ten, four, four]), (0, false));
         assert_eq!(turned(1, [none, four, none]), (1, true));
         assert_eq!(turned(1, [none; 3]), (1, true));
-    }
-
-    /// Behind the ends is a vector of finite ones.
-    #[test]
-    fn ends_are_padded_with_finite_entries() {
-        let mut sweep = Sweep::default();
-        for bodies in [1, 3, 2] {
-            let places = Places {
-                body: (0..bodies as u32).collect(),
-                shape: vec![0; bodies],
-                moving: bodies,
-            };
-            sweep.arrange(&places, &vec![[1.0; 4]; bodies], &places.body);
-            let padded = bodies + MAX_WIDTH;
-            assert_eq!([sweep.lo.len(), sweep.hi.len()], [padded; 2]);
-            assert!(sweep.lo.iter().chain(&sweep.hi).all(|end| end.is_finite()));
-        }
     }
 }

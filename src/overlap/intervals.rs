@@ -93,36 +93,3 @@ impl SlotTest for IntervalSlots {
         found
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::broad_phase::whole_vectors::{SLOTS_PER_CHECK, check};
-
-    /// Slabs that fill their vectors cost no vector more.
-    #[test]
-    fn full_slab_vectors_cost_no_more() {
-        let [lo, hi] = [1.0, 2.0].map(|end| vec![vec![end; SLOTS_PER_CHECK]; 3]);
-        check(&IntervalSlots { lo, hi });
-    }
-
-    /// Columns have the order of slots, followed by a vector of finite ends.
-    #[test]
-    fn columns_follow_slot_order() {
-        let mut slots = IntervalSlots::default();
-        for bodies in [1, 3, 2] {
-            // Of each place and slab, ends that are like no others.
-            let ends: Vec<_> = (0..7 * bodies).map(|end| [end as f32, end as f32 + 0.5]).collect();
-            let order: Vec<u32> = (0..bodies as u32).rev().collect();
-            slots.fill(&Threads::default(), &order, &ends);
-            for (side, columns) in [&slots.lo, &slots.hi].into_iter().enumerate() {
-                assert_eq!(columns.len(), 7);
-                for (slab, column) in columns.iter().enumerate() {
-                    let own = order.iter().map(|&place| ends[place as usize * 7 + slab][side]);
-                    assert_eq!(column[..bodies], own.collect::<Vec<_>>());
-                    assert_eq!(column[bodies..], [0.0; MAX_WIDTH]);
-                }
-            }
-        }
-    }
-}

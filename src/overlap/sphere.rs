@@ -25,19 +25,3 @@ impl BallTest for Spheres<'_> {
         sphere::apart(l, between, mine + theirs)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::Spheres;
-    use crate::broad_phase::Slots;
-    use crate::broad_phase::whole_vectors::{SLOTS_PER_CHECK, check};
-
-    /// Balls that fill their vectors cost no vector more.
-    #[test]
-    fn full_ball_vectors_cost_no_more() {
-        let mut slots = Slots { balls: vec![[1.0; 4]; SLOTS_PER_CHECK], ..Slots::default() };
-        check(&Spheres(slots.arranged()));
-        slots.columns = [(); 4].map(|()| vec![1.0; SLOTS_PER_CHECK]);
-        check(&Spheres(slots.arranged()));
-    }
-}

@@ -1,16 +1,5 @@
-use super::super::whole_vectors::{SLOTS_PER_CHECK, check};
 use super::*;
 use crate::simd::Tier;
-
-/// Boxes that fill their vectors cost no vector more.
-#[test]
-fn full_vectors_cost_no_more() {
-    check(&EndSlots {
-        lower: vec![[1.0, 1.0, 1.0, 0.0]; SLOTS_PER_CHECK],
-        upper: vec![[2.0, 2.0, 2.0, 0.0]; SLOTS_PER_CHECK],
-        columns: [1.0, 1.0, 1.0, 2.0, 2.0, 2.0].map(|end| vec![end; SLOTS_PER_CHECK]),
-    });
-}
 
 /// Grown boxes hold their own and are no longer than they may be.
 #[test]
@@ -82,38 +71,4 @@ fn only_moving_boxes_grow() {
     }
     let lowest = slots(&ends).map(|[lower, _]| lower[0]);
     assert_eq!(ends.columns[0][..3], lowest);
-}
-
-/// Bytes are those of all columns used or not.
-#[test]
-fn bytes_count_all_columns() {
-    let mut ends = EndSlots::default();
-    assert_eq!(ends.bytes(), 0);
-    (ends.lower, ends.upper) = (Vec::with_capacity(1), Vec::with_capacity(10));
-    ends.columns[5] = Vec::with_capacity(100);
-    assert_eq!(ends.bytes(), 16 + 160 + 400);
-}
-
-/// Ends have the order of slots, followed by a vector of finite ones.
-#[test]
-fn ends_follow_slot_order() {
-    let mut slots = EndSlots::default();
-    for bodies in [1, 3, 2] {
-        let boxes: Vec<_> = (0..bodies as u8)
-            .map(|i| Aabb::new([f32::from(i); 3], [f32::from(i) + 9.0; 3]))
-            .collect();
-        let order: Vec<u32> = (0..bodies as u32).rev().collect();
-        slots.fill(Threads::default().executor(Tier::detect()), &order, &boxes, true);
-        let padded = bodies + MAX_WIDTH;
-        assert_eq!([slots.lower.len(), slots.upper.len()], [padded; 2]);
-        for (index, column) in slots.columns.iter().enumerate() {
-            let ends = order.iter().map(|&name| {
-                let Aabb { min, max } = boxes[name as usize];
-                [min, max][index / 3][index % 3]
-            });
-            assert_eq!(column[..bodies], ends.collect::<Vec<_>>());
-            assert_eq!(column.len(), padded);
-            assert!(column[bodies..].iter().all(|end| end.is_finite()));
-        }
-    }
 }

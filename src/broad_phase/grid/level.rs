@@ -333,28 +333,6 @@ mod tests {
         (slots, slot_cells)
     }
 
-    /// A box that breathes allocates nothing.
-    #[test]
-    fn growing_table_has_spare_room() {
-        let mut level = GridLevel::new(0..100, TableLayout::Box);
-        let names: Vec<u32> = (0..100).collect();
-        let sorted = |level: &mut GridLevel, step: f32| {
-            let ball = |&i: &u32| [step * i as f32, 0.0, 0.0, 1.0];
-            sort(level, 1, &names.iter().map(ball).collect::<Vec<_>>(), &names);
-            (level.cells.table_len() + 1, level.starts.capacity())
-        };
-        for step in [1.0, 2.0] {
-            let (entries, capacity) = sorted(&mut level, step);
-            assert_eq!(level.starts.len(), entries);
-            assert_eq!(capacity, entries + entries / 8);
-        }
-        let (fewer, kept) = sorted(&mut level, 1.9);
-        assert!(fewer < kept && kept == level.starts.capacity());
-        // Just as many as there is room for.
-        level.starts = Vec::with_capacity(fewer);
-        assert_eq!(sorted(&mut level, 1.9), (fewer, fewer));
-    }
-
     /// Bodies are shared by cells, and those of a cell stay in the order of places.
     #[test]
     fn threads_sort_many_bodies_alike() {

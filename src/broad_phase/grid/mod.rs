@@ -285,7 +285,6 @@ fn push_parts(parts: &mut Vec<GridPart>, whole: GridPart, size: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rounding::skin::Skin;
 
     impl Grid {
         /// Frames since the last plan, and candidates of the last frame.
@@ -323,72 +322,5 @@ mod tests {
         }
         grid.age = FRAMES_PER_PLAN_CHECK + 1;
         assert!(grid.needs_plan(10));
-    }
-
-    /// Places that follow the slots move static bodies only where they have another order.
-    #[test]
-    fn following_slots_keeps_sorted_statics() {
-        let mut grid = planned(2);
-        (grid.fixed_sorted, grid.slots.names) = (true, vec![1, 0, 3, 2, 0, 0]);
-        let mut order = vec![9];
-        let followed = grid.follow_slots(2, &[0, 1, 3, 2], &mut order);
-        assert_eq!((followed, &order), (Reorder::Moving, &vec![1, 0, 3, 2]));
-        assert_eq!((grid.age, grid.fixed_sorted), (FRAMES_PER_PLAN_CHECK + 1, true));
-        let followed = grid.follow_slots(2, &[0, 1, 2, 3], &mut order);
-        assert_eq!((followed, &order), (Reorder::All, &vec![1, 0, 3, 2]));
-        assert_eq!((grid.age, grid.fixed_sorted), (FRAMES_PER_PLAN_CHECK + 2, false));
-        grid.rest();
-        assert_eq!(grid.age, FRAMES_PER_PLAN_CHECK + 3);
-    }
-
-    /// Only moving levels grow, and parts know whether they move.
-    #[test]
-    fn only_moving_levels_grow() {
-        let mut grid = planned(3);
-        let half = Reach::with_skin(Skin::share(0.5));
-        grid.set_reach(half);
-        let reaches: Vec<_> = grid.levels.iter().map(|level| level.reach).collect();
-        assert_eq!(reaches, [half, Reach::NONE]);
-        grid.slot_cells.resize(6, 0);
-        assert_eq!(grid.bodies(), 6);
-        grid.parts = [(0, 0), (0, 1), (1, 0)]
-            .map(|(seeker, level)| GridPart { slots: 0..1, seeker, level, kind: PartKind::Near })
-            .to_vec();
-        let moves = [0, 1, 2].map(|part| grid.moves(part));
-        assert_eq!(moves, [[true, true], [true, false], [false, true]]);
-    }
-
-    /// A part is cut without gaps or overlap.
-    #[test]
-    fn parts_cover_without_overlap() {
-        let whole = GridPart {
-            slots: 3..40,
-            seeker: 1,
-            level: 2,
-            kind: PartKind::Across(LevelSearch::All),
-        };
-        let mut parts = Vec::new();
-        push_parts(&mut parts, whole, 16);
-        let slots: Vec<_> = parts.iter().map(|part| part.slots.clone()).collect();
-        assert_eq!(slots, [3..19, 19..35, 35..40]);
-        assert!(parts.iter().all(|part| part.seeker == 1 && part.level == 2));
-    }
-
-    /// Bytes are those of all columns used or not.
-    #[test]
-    fn bytes_count_all_columns() {
-        let mut grid = planned(2);
-        assert_eq!(grid.bytes(), 0);
-        grid.slots.balls = Vec::with_capacity(1);
-        grid.slots.names = Vec::with_capacity(10);
-        grid.slots.columns[2] = Vec::with_capacity(100);
-        assert_eq!((grid.slots.bytes(), grid.bytes()), (456, 456));
-        grid.slot_cells = Vec::with_capacity(1_000);
-        grid.place_cells = Vec::with_capacity(10_000);
-        grid.levels[0].starts = Vec::with_capacity(100_000);
-        grid.levels[1].starts = Vec::with_capacity(1_000_000);
-        assert_eq!(grid.bytes(), 4_444_456);
-        grid.parts = Vec::with_capacity(3);
-        assert_eq!(grid.bytes(), 4_444_456 + 3 * size_of::<GridPart>());
     }
 }

@@ -124,51 +124,6 @@ mod tests {
         assert_eq!(planned(&[]), []);
     }
 
-    /// A wide body is wider than half of the widest.
-    #[test]
-    fn wide_means_over_half_the_widest() {
-        let mut balls = giants(50, 1);
-        balls.extend([[5000.0, 0.0, 0.0, 50.0], [6000.0, 0.0, 0.0, 50.1]]);
-        let levels = planned(&balls);
-        assert_eq!(levels[0].0, [50, 52]);
-        assert_eq!(levels[1].0, [51]);
-        assert_eq!(levels[2].0, (0..50).collect::<Vec<_>>());
-    }
-
-    /// A table is wrapped where that halves the crowd.
-    #[test]
-    fn wrapping_halves_a_crowd() {
-        let diagonal = |n: usize, step: f32| {
-            let at = |i: usize| i as f32 * step;
-            let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
-            planned(&balls).into_iter().map(|level| level.1).collect::<Vec<_>>()
-        };
-        assert_eq!(diagonal(1000, 1.5), [TableLayout::Wrapped]);
-        assert_eq!(diagonal(8, 1.5), [TableLayout::Box]);
-    }
-
-    /// A crowd is the sum over bodies of those in their cells.
-    #[test]
-    fn crowd_sums_cell_occupancy() {
-        let at = |x: f32| [x, 0.0, 0.0, 0.5];
-        let balls = [0.0, 50.0, 0.1, 50.1, 50.2, 100.0].map(at);
-        let cells = Cells::fit(&BallBounds::of(simd::Tier::SCALAR, &balls), 6, TableLayout::Box);
-        assert_eq!(crowd(&cells, &balls), 4 + 9 + 1);
-        assert_eq!(fit(&balls).1, 14);
-    }
-
-    /// Four bodies in a cell stay together and five part.
-    #[test]
-    fn five_in_a_cell_split() {
-        for small in 1..8 {
-            // With the wide one, n in one cell: n² in the sum over them.
-            let mut balls = vec![[0.0, 0.0, 0.0, 0.01]; small];
-            balls.push([0.0, 0.0, 0.0, 1.0]);
-            let levels = planned(&balls).len();
-            assert_eq!(levels, if small < 4 { 1 } else { 2 }, "{small}");
-        }
-    }
-
     /// Bodies of all sizes have 24 levels and no more.
     #[test]
     fn levels_are_at_most_24() {

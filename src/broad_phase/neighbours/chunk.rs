@@ -94,38 +94,6 @@ fn leave_room<T>(column: &mut Vec<T>, spare: f64) {
 mod tests {
     use super::*;
 
-    /// Numbers with room for more of them.
-    fn hundred(room: usize) -> Vec<u32> {
-        let mut column = Vec::with_capacity(room);
-        column.extend([0; 100]);
-        column
-    }
-
-    /// A column that is full gets room of one and a half times what is needed.
-    #[test]
-    fn full_column_grows_by_half() {
-        for (spare, more, room) in [(1.0, 1, 151), (2.0, 1, 303), (1.0, 20, 180), (0.5, 1, 101)] {
-            let mut column = hundred(100);
-            reserve(&mut column, more, spare);
-            assert_eq!(column.capacity(), room, "{spare}, {more}");
-        }
-        let mut column = hundred(120);
-        reserve(&mut column, 20, 2.0);
-        assert_eq!(column.capacity(), 120, "what fits moves nothing");
-    }
-
-    /// A list leaves room for the next one where it has none to spare.
-    #[test]
-    fn full_list_leaves_room() {
-        for (capacity, spare, room) in
-            [(100, 1.0, 100), (199, 2.0, 300), (200, 2.0, 200), (300, 2.0, 300)]
-        {
-            let mut column = hundred(capacity);
-            leave_room(&mut column, spare);
-            assert_eq!(column.capacity(), room, "{capacity}, {spare}");
-        }
-    }
-
     #[test]
     fn entries_without_neighbours_are_overwritten() {
         let mut chunk = Chunk { spare: 1.0, ..Chunk::default() };

@@ -158,17 +158,4 @@ mod tests {
             Self { parts: 1, len: chunk.len(), tested: 0, chunks: vec![chunk] }
         }
     }
-
-    /// Bytes are those of all chunks used or not.
-    #[test]
-    fn bytes_count_all_chunks() {
-        let mut list = NeighbourList::default();
-        assert_eq!(list.bytes(), 0);
-        list.chunks = Vec::with_capacity(5);
-        list.chunks.resize(2, Chunk::default());
-        list.chunks[0].codes = Vec::with_capacity(10);
-        list.chunks[1].codes = Vec::with_capacity(100);
-        list.chunks[1].entries = Vec::with_capacity(1_000);
-        assert_eq!(list.bytes(), 5 * size_of::<Chunk>() + 8_440);
-    }
 }

@@ -253,22 +253,6 @@ fn list_length_has_a_limit() {
     }
 }
 
-/// Bytes are those of the grid and the list.
-#[test]
-fn bytes_count_grid_and_list() {
-    let mut bodies = scattered(false);
-    for _ in 0..2 {
-        bodies.step();
-    }
-    let finder = &mut bodies.finder;
-    let list = finder.list.bytes();
-    finder.grid = Grid::default();
-    assert!(list > 0 && finder.bytes() == list);
-    finder.list = NeighbourList::default();
-    finder.grid.slots_mut().names = Vec::with_capacity(1000);
-    assert_eq!(finder.bytes(), 4000);
-}
-
 /// Bodies that come end a list and where it served one frame the next ones are the grids.
 #[test]
 fn new_bodies_end_a_list() {

@@ -3,9 +3,9 @@
 
 use super::TrackedBodies;
 use crate::bodies::Aabb;
+use crate::broad_phase::GivenBoxes;
 use crate::broad_phase::ends::grown;
 use crate::broad_phase::neighbours::{ListState, Neighbours, Volume};
-use crate::broad_phase::{EndSlots, GivenBoxes};
 use crate::rounding::cube::{Cube, SCALE};
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
@@ -96,21 +96,6 @@ fn long_box_list_has_each_pair() {
     assert!(listed.values().all(|&times| times == 1));
     assert!(listed.into_keys().eq(wanted.iter().copied()));
     assert!(wanted.len() > 600, "{}", wanted.len());
-}
-
-/// Bytes are those of the grid the list and the grown boxes.
-#[test]
-fn bytes_count_grown_boxes_too() {
-    let mut needles = Needles::within(40.0);
-    for _ in 0..2 {
-        needles.step();
-    }
-    let finder = &mut needles.bodies.finder;
-    let grown = finder.grown.bytes();
-    assert!(grown >= 620 * 2 * (16 + 12), "{grown}");
-    let all = finder.bytes();
-    finder.grown = EndSlots::default();
-    assert_eq!(all, finder.bytes() + grown);
 }
 
 /// One of the ends of a box.
