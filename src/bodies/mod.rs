@@ -68,18 +68,3 @@ pub(crate) struct LineTrack {
     pub speed: [f64; 3],
     pub limit: f64,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bodies_are_counted() {
-        let mut bodies = Bodies::default();
-        assert!(bodies.is_empty());
-        for n in 1..4 {
-            bodies.push(0, true, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
-            assert!(bodies.len() == n && !bodies.is_empty());
-        }
-    }
-}

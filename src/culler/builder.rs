@@ -136,24 +136,3 @@ impl CullerBuilder {
         in_default_mode(|| Culler::build(shapes, bodies, &self.settings, tier, threads))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A builder keeps each choice and no other.
-    #[test]
-    fn builder_keeps_each_choice() {
-        let built =
-            Culler::builder().threads(3).worth_waking(7).tier(Tier::SCALAR).finder(Finder::Sweep);
-        let wanted = CullerBuilder {
-            settings: CullSettings { pairs: Finder::Sweep, ..CullSettings::default() },
-            threads: 3,
-            worth_waking: Some(7),
-            tier: Some(Tier::SCALAR),
-        };
-        assert_eq!(built, wanted);
-        let other = CullerBuilder { threads: 5, ..wanted };
-        assert_eq!(built.threads(5), other);
-    }
-}

@@ -74,28 +74,3 @@ pub(super) fn population(scheme: Scheme, models: &Models, places: &Places) -> Po
         },
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::counters::VolumeCounters;
-
-    /// Work is each volume of moving bodies and the tests of the frame before.
-    #[test]
-    fn work_adds_updates_and_tests() {
-        let counted = |tests| VolumeCounters { tests, ..VolumeCounters::default() };
-        let like = Totals { first: counted(1000), refining: counted(20), ..Totals::default() };
-        for (balls, rows, intervals, volumes) in [
-            (false, false, None, 0),
-            (true, false, None, 1),
-            (true, true, None, 2),
-            (false, false, Some(DirectionSet::K6), INTERVALS_COST),
-            (true, true, Some(DirectionSet::K18), INTERVALS_COST + 2),
-        ] {
-            let needs = VolumeNeeds { balls, rows, intervals, by_place: rows };
-            let work = needs.work(7, &like);
-            assert_eq!(work.updates, 7 * volumes, "{needs:?}");
-            assert_eq!((work.candidates, work.refined), (1000, 20));
-        }
-    }
-}

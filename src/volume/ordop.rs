@@ -130,15 +130,6 @@ mod tests {
         }
     }
 
-    /// An end at zero is no negative zero.
-    #[test]
-    fn zero_end_is_positive_zero() {
-        for x in [0.0, -0.0] {
-            let (lo, hi) = slab(DVec3::X, &[[x, x, x]]);
-            assert_eq!([lo, hi].map(f32::to_bits), [0, 0]);
-        }
-    }
-
     /// Their bits are hashed.
     #[test]
     fn no_end_is_minus_zero() {
