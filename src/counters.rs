@@ -5,7 +5,7 @@
 
 use std::ops::AddAssign;
 
-use crate::settings::TestedVolume;
+use crate::settings::{HAS_CLOCK, TestedVolume};
 
 /// Updates and tests of one volume, summed over frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -168,6 +168,29 @@ impl Seconds {
             ordop: self.ordop - before.ordop,
             total: self.total - before.total,
         }
+    }
+}
+
+/// Measures seconds, which are 0 on targets without a clock.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock(Option<std::time::Instant>);
+
+impl Clock {
+    /// Starts a clock.
+    pub fn start() -> Self {
+        Self(HAS_CLOCK.then(std::time::Instant::now))
+    }
+
+    /// Seconds since the start, or since the last lap.
+    pub fn seconds(mut self) -> f64 {
+        self.lap()
+    }
+
+    /// The same, and starts the next lap.
+    pub fn lap(&mut self) -> f64 {
+        let now = Self::start();
+        let times = now.0.zip(std::mem::replace(self, now).0);
+        times.map_or(0.0, |(now, start)| (now - start).as_secs_f64())
     }
 }
 

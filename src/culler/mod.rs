@@ -21,7 +21,7 @@ pub use crate::strategy::PlacedCone;
 pub use builder::CullerBuilder;
 pub(crate) use check::FAR_SHAPE_HELP;
 
-use std::{ops::Range, time::Instant};
+use std::ops::Range;
 
 use self::{models::Models, needs::VolumeNeeds, sample::Sample};
 use crate::strategy::RefinementRanks;
@@ -29,7 +29,7 @@ use crate::{
     bodies::contract::check_column,
     bodies::{Bodies, Groups, PairFilter, Places},
     broad_phase::{Balls, PairFinder},
-    counters::{Counters, Seconds},
+    counters::{Clock, Counters, Seconds},
     listing::{Output, Totals},
     overlap::intervals::IntervalSlots,
     pairs::PairList,
@@ -119,7 +119,7 @@ impl Culler {
         check::directions(shapes, settings)?;
         check_bodies(bodies, shapes)?;
         settings.check(bodies.len())?;
-        let start = Instant::now();
+        let start = Clock::start();
         let n = bodies.shape.len();
         let (models, places) = (Models::new(shapes, settings), Places::new(bodies));
         let setup = Setup::new(settings);
@@ -158,7 +158,7 @@ impl Culler {
             seconds: Seconds::default(),
         };
         culler.begin(bodies);
-        culler.seconds.construct = start.elapsed().as_secs_f64();
+        culler.seconds.construct = start.seconds();
         Ok(culler)
     }
 
@@ -272,7 +272,7 @@ impl Culler {
         if let Some(limit) = limit {
             return CullError::list_up_to(limit, pairs, |take| self.pass_on(bodies, filter, take));
         }
-        let start = Instant::now();
+        let start = Clock::start();
         self.check_set(bodies)?;
         self.follow_static(bodies)?;
         let outcome = self.cull_into(bodies, filter, Output::List(pairs), start);
@@ -286,7 +286,7 @@ impl Culler {
         bodies: &Bodies,
         filter: Option<PairFilter<'_>>,
         output: Output<'_>,
-        start: Instant,
+        start: Clock,
     ) -> Result<(), CullError> {
         in_default_mode(|| self.cull_frame(bodies, filter, output, start))
     }
@@ -296,11 +296,12 @@ impl Culler {
         bodies: &Bodies,
         filter: Option<PairFilter<'_>>,
         output: Output<'_>,
-        start: Instant,
+        start: Clock,
     ) -> Result<(), CullError> {
+        let mut clock = start;
         self.volumes.stamp += 1;
         self.reorder(bodies);
-        let reordered = Instant::now();
+        let reordering = clock.lap();
         let row_timing = RowTiming::of(&self.setup, &self.set.places, &output);
         let moving = 0..self.set.places.moving;
         if !self.update_first(bodies, moving.clone()) {
@@ -310,16 +311,16 @@ impl Culler {
             self.update_rows(bodies, moving);
         }
         self.count_updates();
-        let updated = Instant::now();
+        let updating = clock.lap();
         self.arrange();
         let totals = self.run(bodies, filter, output, row_timing);
 
-        let finding = (reordered - start) + updated.elapsed();
+        let finding = reordering + clock.seconds();
         let refining = totals.refining_seconds + totals.update_seconds;
-        self.seconds.update += (updated - reordered).as_secs_f64() + totals.update_seconds;
+        self.seconds.update += updating + totals.update_seconds;
         self.seconds.ordop += totals.refining_seconds;
-        self.seconds.pair_finding += finding.as_secs_f64() - refining;
-        self.seconds.total += start.elapsed().as_secs_f64();
+        self.seconds.pair_finding += finding - refining;
+        self.seconds.total += start.seconds();
         Ok(())
     }
 

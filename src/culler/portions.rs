@@ -3,10 +3,9 @@
 //! Fifty thousand bodies in one place have 1.25·10⁹ pairs, a list of ten gigabytes. In portions
 //! they need only the memory of a few portions per thread.
 
-use std::time::{Duration, Instant};
-
 use super::{CullError, Culler};
 use crate::bodies::{Bodies, PairFilter};
+use crate::counters::Clock;
 use crate::listing::Output;
 use crate::pairs::PairList;
 
@@ -38,23 +37,23 @@ impl Culler {
         filter: Option<PairFilter<'_>>,
         take: &mut (dyn FnMut(&PairList) + Send),
     ) -> Result<u64, CullError> {
-        let start = Instant::now();
+        let start = Clock::start();
         self.check_set(bodies)?;
         self.follow_static(bodies)?;
-        let (mut reported, mut taking, mut whole) = (0, Duration::ZERO, Ok(()));
+        let (mut reported, mut taking, mut whole) = (0, 0.0, Ok(()));
         let mut sink = |portion: &mut PairList| {
-            let start = Instant::now();
+            let start = Clock::start();
             if portion.is_lost() {
                 whole = Err(CullError::OutOfMemory);
             }
             reported += portion.len() as u64;
             take(portion);
-            taking += start.elapsed();
+            taking += start.seconds();
         };
         let outcome = self.cull_into(bodies, filter, Output::Portions(&mut sink), start);
         self.counters.reported += reported;
-        self.seconds.pair_finding -= taking.as_secs_f64();
-        self.seconds.total -= taking.as_secs_f64();
+        self.seconds.pair_finding -= taking;
+        self.seconds.total -= taking;
         outcome.and(whole)?;
         Ok(reported)
     }

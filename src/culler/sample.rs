@@ -4,12 +4,10 @@
 //! volumes are computed by the same kernels as a frame's, in separate places, and tested by the
 //! same comparisons, so a pair has the same verdict either way.
 
-use std::time::Instant;
-
 use super::Culler;
 use crate::bodies::{Aabb, Bodies, Places};
 use crate::broad_phase::Balls;
-use crate::counters::{RestCounters, VolumeCounters};
+use crate::counters::{Clock, RestCounters, VolumeCounters};
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::{Found, PairList};
 use crate::rounding::{down, sphere::apart, up, widen};
@@ -43,7 +41,7 @@ impl Culler {
 
     /// The box around each of these bodies. Two bodies whose boxes don't meet are never reported.
     pub(crate) fn boxes_of(&mut self, bodies: &Bodies, some: &[u32]) -> Vec<Aabb> {
-        let start = Instant::now();
+        let start = Clock::start();
         self.sample.places.body.clear();
         self.place_sample(bodies, some);
         let sample = &self.sample;
@@ -54,32 +52,30 @@ impl Culler {
         } else {
             sample.balls.iter().map(box_about).collect()
         };
-        self.seconds.update += start.elapsed().as_secs_f64();
+        self.seconds.update += start.seconds();
         boxes
     }
 
     /// Keeps the reported pairs among those whose boxes meet. The bodies are those of the last call
     /// of [`Self::boxes_of`]; `interest` has whether each is of interest.
     pub(crate) fn test_found(&mut self, bodies: &Bodies, found: &mut Found, interest: &[bool]) {
-        let start = Instant::now();
+        let mut clock = Clock::start();
         self.place_sample(bodies, &found.partners);
         let candidates = found.partners.len();
         self.count_sample_updates(candidates);
-        let updated = Instant::now();
+        self.seconds.update += clock.lap();
         if let Some(volume) = self.setup.scheme.first {
             let counted = self.keep_near(found);
             *self.counters.of_mut(volume) += counted;
         }
-        let tested = Instant::now();
+        self.seconds.pair_finding += clock.lap();
         let mut refined = 0;
         if let Some(volume) = self.setup.scheme.refining {
             let counted = self.refine_found(bodies, found, interest);
             refined = counted.tests;
             *self.counters.of_mut(volume) += counted;
         }
-        self.seconds.update += (updated - start).as_secs_f64();
-        self.seconds.pair_finding += (tested - updated).as_secs_f64();
-        self.seconds.ordop += tested.elapsed().as_secs_f64();
+        self.seconds.ordop += clock.seconds();
         self.threads.expect(FrameWork {
             updates: self.sample.places.len() as u64,
             candidates: found.partners.len() as u64,

@@ -1,8 +1,7 @@
 //! A cull of a set, its pairs and its events.
 
-use std::time::Instant;
-
 use super::{Events, LivingSet, VolumeSource, WorldError, WorldPairs};
+use crate::counters::Clock;
 use crate::pairs::PairList;
 use crate::simd::in_default_mode;
 
@@ -94,7 +93,7 @@ impl<V: VolumeSource> LivingSet<V> {
         if !members.movers.are_few() || !volumes.judges_pairs_alone() {
             return false;
         }
-        let start = Instant::now();
+        let start = Clock::start();
         let counted;
         if members.movers.none_changed() {
             counted = members.movers.counters(&members.ids);
@@ -110,7 +109,7 @@ impl<V: VolumeSource> LivingSet<V> {
         }
         members.ids.settle();
         let pairs = members.pairs.pairs(&members.ids).len();
-        volumes.count_changed(counted, pairs, start.elapsed().as_secs_f64());
+        volumes.count_changed(counted, pairs, start.seconds());
         true
     }
 

@@ -3,7 +3,7 @@
 
 use thiserror::Error;
 
-use super::{Axes, DirectionSet, Finder, Flow};
+use super::{Axes, DirectionSet, Finder, Flow, HAS_CLOCK};
 use crate::choice::choices;
 
 choices! {
@@ -116,7 +116,7 @@ pub struct ViewCone {
 pub enum Budget {
     /// A number of or-DOP tests. Results are reproducible.
     Tests(u64),
-    /// Wall time, in microseconds.
+    /// Wall time, in microseconds. An error on `wasm32-unknown-unknown`, which has no clock.
     Microseconds(u64),
 }
 
@@ -182,6 +182,9 @@ pub enum SettingsError {
         /// How to mend it.
         hint: &'static str,
     },
+    /// A budget of time on a target without a clock.
+    #[error("budget: this target has no clock; {help}", help = self.help())]
+    NoClock,
     /// An interest in a body that doesn't exist, or an invalid cone.
     #[error("interest: {problem}; {help}", help = self.help())]
     Interest {
@@ -200,6 +203,7 @@ impl SettingsError {
     pub fn help(&self) -> &str {
         match self {
             Self::Missing { hint, .. } | Self::Interest { hint, .. } => hint,
+            Self::NoClock => "give a number of tests, budget = { tests = 1000 }",
         }
     }
 }
@@ -214,7 +218,8 @@ impl CullSettings {
     /// Checks that the settings fit together and suit a scene of `bodies` bodies.
     ///
     /// # Errors
-    /// A strategy without its interest or budget; an interest in a body that doesn't exist.
+    /// A strategy without its interest or budget; a budget of time on a target without a clock; an
+    /// interest in a body that doesn't exist.
     pub fn check(&self, bodies: usize) -> Result<(), SettingsError> {
         let missing =
             |key, hint| SettingsError::Missing { strategy: self.strategy.name(), key, hint };
@@ -232,6 +237,9 @@ impl CullSettings {
                 "budget",
                 "give budget = { tests = 1000 } or budget = { microseconds = 500 }",
             ));
+        }
+        if matches!(self.budget, Some(Budget::Microseconds(_))) && !HAS_CLOCK {
+            return Err(SettingsError::NoClock);
         }
         self.interest.as_ref().map_or(Ok(()), |interest| interest.check(bodies))
     }

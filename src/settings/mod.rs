@@ -14,6 +14,9 @@ pub use cull::{
 pub use directions::DirectionSet;
 pub use scheme::{Flow, Scheme, TestedVolume};
 
+/// Whether the target has a clock. Without one seconds are 0, and a budget of time is an error.
+pub(crate) const HAS_CLOCK: bool = !cfg!(all(target_family = "wasm", target_os = "unknown"));
+
 choices! {
     /// Pair finders: how candidate pairs for the first volume test are found. All report the same
     /// pairs.

@@ -1,10 +1,9 @@
 //! The or-DOP test of listed pairs.
 
 use std::ops::Range;
-use std::time::Instant;
 
 use super::{FrameVolumes, Inputs, RowTiming, Setup, Task, Tasks};
-use crate::counters::VolumeCounters;
+use crate::counters::{Clock, VolumeCounters};
 use crate::listing::{Output, TaskOutput, Totals, split_work};
 use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::PairList;
@@ -48,13 +47,13 @@ impl<'a> Refine<'a> {
         seconds: &mut f64,
         out: &mut PairList,
     ) {
-        let start = Instant::now();
+        let start = Clock::start();
         let listed = out.len();
         let tested = self.columns.test_pairs(self.tier, first, second, out);
         out.rename(listed, self.body);
         counters.tests += tested.tests;
         counters.hits += tested.hits;
-        *seconds += start.elapsed().as_secs_f64();
+        *seconds += start.seconds();
     }
 
     /// Tests a task's pairs stretch by stretch, and computes the rows of each stretch shortly
@@ -70,10 +69,10 @@ impl<'a> Refine<'a> {
         window.clear();
         for (first, second) in first.chunks(PAIRS_PER_STRETCH).zip(second.chunks(PAIRS_PER_STRETCH))
         {
-            let start = Instant::now();
+            let start = Clock::start();
             let wanted = places_of(self.tier, moving, [first, second]);
             window.cover(self.tier, posed, &self.columns.rows, wanted);
-            task.update_seconds += start.elapsed().as_secs_f64();
+            task.update_seconds += start.seconds();
             let columns = OrDopColumns { rows: window.rows(moving), ..self.columns };
             let here = Refine { columns, ..*self };
             let pairs = [first, second];
@@ -182,7 +181,7 @@ impl<'a> Refiner<'a> {
     fn make_rows(&mut self, list: &PairList, range: Range<usize>) {
         let executor = self.inputs.executor;
         let FrameVolumes { posed, stamp, row_timing, .. } = self.inputs.volumes;
-        let start = Instant::now();
+        let start = Clock::start();
         match row_timing {
             RowTiming::BeforePairs => return,
             RowTiming::WhenListed => {
@@ -198,7 +197,7 @@ impl<'a> Refiner<'a> {
                 }
             }
         }
-        self.totals.update_seconds += start.elapsed().as_secs_f64();
+        self.totals.update_seconds += start.seconds();
     }
 }
 

@@ -7,11 +7,11 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::time::{Duration, Instant};
 
 use super::first_test::list;
 use super::refine::Refiner;
 use super::{Inputs, Scratch};
+use crate::counters::Clock;
 use crate::listing::{Output, PAIRS_PER_PORTION, PairNames, Totals};
 use crate::pairs::PairList;
 use crate::settings::{Budget, Order};
@@ -114,15 +114,16 @@ struct Spender<'a> {
     /// The body in each place.
     body: &'a [u32],
     tests_left: usize,
-    deadline: Option<Instant>,
+    /// A budget of time: when it began, and its seconds.
+    time: Option<(Clock, f64)>,
 }
 
 impl<'a> Spender<'a> {
     fn new(inputs: Inputs<'a>, rows: &'a mut OrDopRows) -> Self {
-        let (tests_left, deadline) = match inputs.setup.settings.budget {
+        let (tests_left, time) = match inputs.setup.settings.budget {
             Some(Budget::Tests(tests)) => (usize::try_from(tests).unwrap_or(usize::MAX), None),
             Some(Budget::Microseconds(us)) => {
-                (usize::MAX, Instant::now().checked_add(Duration::from_micros(us)))
+                (usize::MAX, Some((Clock::start(), us as f64 * 1e-6)))
             }
             None => (usize::MAX, None),
         };
@@ -130,7 +131,7 @@ impl<'a> Spender<'a> {
             refiner: Refiner::new(inputs, rows),
             body: &inputs.volumes.posed.places.body,
             tests_left,
-            deadline,
+            time,
         }
     }
 
@@ -138,9 +139,9 @@ impl<'a> Spender<'a> {
     /// test, and those that the budget leaves untested.
     fn report(&mut self, candidates: &PairList, range: Range<usize>, out: &mut PairList) {
         let limit = range.end.min(range.start.saturating_add(self.tests_left));
-        let slice = if self.deadline.is_some() { TESTS_PER_CLOCK_READING } else { limit.max(1) };
+        let slice = if self.time.is_some() { TESTS_PER_CLOCK_READING } else { limit.max(1) };
         let mut next = range.start;
-        while next < limit && self.deadline.is_none_or(|deadline| Instant::now() < deadline) {
+        while next < limit && self.time.is_none_or(|(clock, most)| clock.seconds() < most) {
             let end = limit.min(next + slice);
             self.refiner.refine_range(candidates, next..end, out);
             next = end;
