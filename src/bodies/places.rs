@@ -103,35 +103,3 @@ impl Places {
         self.reread_shapes(bodies);
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// An order names bodies or their places and shapes follow.
-    #[test]
-    fn reorder_takes_bodies_or_places() {
-        let mut bodies = Bodies::default();
-        for body in 0..4 {
-            bodies.push(10 + body, body != 1, [0.0, 0.0, 0.0, 1.0], [0.0; 3]);
-        }
-        let mut places = Places::new(&bodies);
-        assert_eq!(
-            (&places.body[..], &places.shape[..], places.moving),
-            (&[0, 2, 3, 1][..], &[10, 12, 13, 11][..], 3)
-        );
-        let mut order = vec![3, 0, 2, 1];
-        places.reorder(&bodies, &mut order, false);
-        assert_eq!(
-            (&places.body[..], &places.shape[..]),
-            (&[3, 0, 2, 1][..], &[13, 10, 12, 11][..])
-        );
-        assert_eq!(order, [0, 2, 3, 1]);
-        order = vec![2, 1, 0, 3];
-        places.reorder(&bodies, &mut order, true);
-        assert_eq!(
-            (&places.body[..], &places.shape[..]),
-            (&[2, 0, 3, 1][..], &[12, 10, 13, 11][..])
-        );
-    }
-}

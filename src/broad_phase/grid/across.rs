@@ -206,15 +206,6 @@ mod tests {
         }
     }
 
-    /// The fewer bodies seek among all and the second of as many.
-    #[test]
-    fn fewer_bodies_seek() {
-        let level = |bodies| level(bodies, 0.5, [1; 3], TableLayout::Box);
-        for (a, b) in [(2, 3), (3, 3), (3, 2)] {
-            assert_eq!(plan(&level(a), &level(b)), (a < b, LevelSearch::All));
-        }
-    }
-
     /// Only seekers of similar size search a wrapped table.
     #[test]
     fn wrapped_table_needs_similar_seekers() {
