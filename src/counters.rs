@@ -3,7 +3,7 @@
 //! A test counts when a candidate pair is passed to it, so counts are the same on every CPU, in
 //! every tier and on any number of threads.
 
-use std::ops::AddAssign;
+use std::ops::{AddAssign, Sub};
 
 use crate::settings::{HAS_CLOCK, TestedVolume};
 
@@ -19,14 +19,6 @@ pub struct VolumeCounters {
     pub hits: u64,
 }
 
-impl AddAssign for VolumeCounters {
-    fn add_assign(&mut self, more: Self) {
-        self.updates += more.updates;
-        self.tests += more.tests;
-        self.hits += more.hits;
-    }
-}
-
 /// Bodies in the frames of a world that searches only for the partners of bodies that have changed,
 /// and keeps the pairs of all others; summed over frames. All are 0 in frames that find all pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,26 +31,6 @@ pub struct RestCounters {
     pub thawed: u64,
     /// All other bodies: pairs of two of them were kept.
     pub kept: u64,
-}
-
-impl AddAssign for RestCounters {
-    fn add_assign(&mut self, more: Self) {
-        self.queried += more.queried;
-        self.thawed += more.thawed;
-        self.kept += more.kept;
-    }
-}
-
-impl RestCounters {
-    /// What was added since `before`.
-    #[must_use]
-    pub fn since(&self, before: &Self) -> Self {
-        Self {
-            queried: self.queried - before.queried,
-            thawed: self.thawed - before.thawed,
-            kept: self.kept - before.kept,
-        }
-    }
 }
 
 /// All counters of a run.
@@ -82,35 +54,6 @@ pub struct Counters {
     /// Bodies that were queried or kept, in a world.
     #[cfg_attr(feature = "serde", serde(default))]
     pub rest: RestCounters,
-}
-
-impl VolumeCounters {
-    /// What was added since `before`.
-    #[must_use]
-    pub fn since(&self, before: &Self) -> Self {
-        Self {
-            updates: self.updates - before.updates,
-            tests: self.tests - before.tests,
-            hits: self.hits - before.hits,
-        }
-    }
-}
-
-impl Counters {
-    /// What was added since `before`.
-    #[must_use]
-    pub fn since(&self, before: &Self) -> Self {
-        Self {
-            sphere: self.sphere.since(&before.sphere),
-            ordop: self.ordop.since(&before.ordop),
-            aabb: self.aabb.since(&before.aabb),
-            kdop: self.kdop.since(&before.kdop),
-            obb: self.obb.since(&before.obb),
-            untested: self.untested - before.untested,
-            reported: self.reported - before.reported,
-            rest: self.rest.since(&before.rest),
-        }
-    }
 }
 
 impl Counters {
@@ -156,19 +99,36 @@ pub struct Seconds {
     pub total: f64,
 }
 
-impl Seconds {
-    /// What was added since `before`.
-    #[must_use]
-    pub fn since(&self, before: &Self) -> Self {
-        Self {
-            construct: self.construct - before.construct,
-            effects: self.effects - before.effects,
-            update: self.update - before.update,
-            pair_finding: self.pair_finding - before.pair_finding,
-            ordop: self.ordop - before.ordop,
-            total: self.total - before.total,
+macro_rules! sums {
+    ($($sums:ident: $($sum:ident)+;)+) => {$(
+        impl AddAssign for $sums {
+            fn add_assign(&mut self, more: Self) {
+                $(self.$sum += more.$sum;)+
+            }
         }
-    }
+
+        impl Sub for $sums {
+            type Output = Self;
+            fn sub(self, before: Self) -> Self {
+                Self { $($sum: self.$sum - before.$sum),+ }
+            }
+        }
+
+        impl $sums {
+            /// What was added since `before`.
+            #[must_use]
+            pub fn since(&self, before: &Self) -> Self {
+                *self - *before
+            }
+        }
+    )+};
+}
+
+sums! {
+    VolumeCounters: updates tests hits;
+    RestCounters: queried thawed kept;
+    Counters: sphere ordop aabb kdop obb untested reported rest;
+    Seconds: construct effects update pair_finding ordop total;
 }
 
 /// Measures seconds, which are 0 on targets without a clock.
