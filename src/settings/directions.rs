@@ -6,30 +6,27 @@
 
 use crate::choice::choices;
 
-const AXES: [[i8; 3]; 3] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-#[rustfmt::skip]
-const FACE_DIAGONALS: [[i8; 3]; 6] = [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];
-const CUBE_DIAGONALS: [[i8; 3]; 4] = [[1, 1, 1], [-1, 1, 1], [1, -1, 1], [-1, -1, 1]];
-
-const K14: [[i8; 3]; 7] = concat(&[&AXES, &CUBE_DIAGONALS]);
-const K18: [[i8; 3]; 9] = concat(&[&AXES, &FACE_DIAGONALS]);
-const K26: [[i8; 3]; 13] = concat(&[&AXES, &FACE_DIAGONALS, &CUBE_DIAGONALS]);
-
-const fn concat<const N: usize>(groups: &[&[[i8; 3]]]) -> [[i8; 3]; N] {
-    let mut all = [[0; 3]; N];
-    let (mut next, mut group) = (0, 0);
-    while group < groups.len() {
-        let mut i = 0;
-        while i < groups[group].len() {
-            all[next] = groups[group][i];
-            next += 1;
-            i += 1;
-        }
-        group += 1;
-    }
-    assert!(next == N);
-    all
-}
+/// All directions.
+pub(crate) const K26: [[i8; 3]; 13] = [
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+    [1, 1, 0],
+    [1, -1, 0],
+    [1, 0, 1],
+    [1, 0, -1],
+    [0, 1, 1],
+    [0, 1, -1],
+    [1, 1, 1],
+    [-1, 1, 1],
+    [1, -1, 1],
+    [-1, -1, 1],
+];
+/// Axes and cube diagonals.
+const K14: [[i8; 3]; 7] = {
+    let [x, y, z, .., a, b, c, d] = K26;
+    [x, y, z, a, b, c, d]
+};
 
 choices! {
     /// The slab directions of a k-DOP, as integer combinations of its orthogonal basis.
@@ -51,9 +48,9 @@ impl DirectionSet {
     #[must_use]
     pub const fn coefficients(self) -> &'static [[i8; 3]] {
         match self {
-            Self::K6 => &AXES,
+            Self::K6 => K26.split_at(3).0,
             Self::K14 => &K14,
-            Self::K18 => &K18,
+            Self::K18 => K26.split_at(9).0,
             Self::K26 => &K26,
         }
     }

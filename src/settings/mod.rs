@@ -12,6 +12,7 @@ pub use cull::{
     Budget, CullSettings, Interest, Order, Overlap, SettingsError, Strategy, Updates, ViewCone,
 };
 pub use directions::DirectionSet;
+pub(crate) use directions::K26;
 pub use scheme::{Flow, Scheme, TestedVolume};
 
 /// Whether the target has a clock. Without one seconds are 0, and a budget of time is an error.

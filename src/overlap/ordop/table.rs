@@ -6,6 +6,7 @@
 
 use crate::rounding::pose::norm;
 use crate::rounding::slab::inflate_slab;
+use crate::settings::K26;
 use crate::simd::ROW;
 use crate::volume::{DirectionSet, OrDop, Shape};
 
@@ -13,21 +14,7 @@ use crate::volume::{DirectionSet, OrDop, Shape};
 pub const FLOATS_PER_TABLE: usize = 2 * ROW;
 
 /// All 13 directions in the order of K26, as integer coefficients over the basis.
-pub const COEFFICIENTS: [[i8; 3]; 13] = [
-    [1, 0, 0],
-    [0, 1, 0],
-    [0, 0, 1],
-    [1, 1, 0],
-    [1, -1, 0],
-    [1, 0, 1],
-    [1, 0, -1],
-    [0, 1, 1],
-    [0, 1, -1],
-    [1, 1, 1],
-    [-1, 1, 1],
-    [1, -1, 1],
-    [-1, -1, 1],
-];
+pub const COEFFICIENTS: [[i8; 3]; 13] = K26;
 
 /// The members of the set of k half-spaces among the 13 directions, in its order.
 #[must_use]
