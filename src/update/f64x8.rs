@@ -18,6 +18,17 @@ pub const LANES: usize = 8;
 #[repr(align(64))]
 pub struct F64x8(pub [f64; LANES]);
 
+/// A loop, because closures are compiled without the tier's features.
+macro_rules! each_lane {
+    ($lane:ident => $value:expr) => {{
+        let mut out = [0.0; LANES];
+        for $lane in 0..LANES {
+            out[$lane] = $value;
+        }
+        Self(out)
+    }};
+}
+
 impl F64x8 {
     /// `x` in every lane.
     #[inline(always)]
@@ -28,36 +39,23 @@ impl F64x8 {
     /// The smaller number in each lane.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
-        let mut out = [0.0; LANES];
-        for lane in 0..LANES {
-            out[lane] = self.0[lane].min(other.0[lane]);
-        }
-        Self(out)
+        each_lane!(lane => self.0[lane].min(other.0[lane]))
     }
 
     /// The larger number in each lane.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
-        let mut out = [0.0; LANES];
-        for lane in 0..LANES {
-            out[lane] = self.0[lane].max(other.0[lane]);
-        }
-        Self(out)
+        each_lane!(lane => self.0[lane].max(other.0[lane]))
     }
 }
 
-// Loops, because closures are compiled without the tier's features.
 macro_rules! lane_by_lane {
     ($($operator:ident, $name:ident, $sign:tt;)+) => {
         $(impl $operator for F64x8 {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                let mut out = [0.0; LANES];
-                for lane in 0..LANES {
-                    out[lane] = self.0[lane] $sign other.0[lane];
-                }
-                Self(out)
+                each_lane!(lane => self.0[lane] $sign other.0[lane])
             }
         })+
     };
@@ -68,11 +66,7 @@ impl Neg for F64x8 {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        let mut out = [0.0; LANES];
-        for lane in 0..LANES {
-            out[lane] = -self.0[lane];
-        }
-        Self(out)
+        each_lane!(lane => -self.0[lane])
     }
 }
 

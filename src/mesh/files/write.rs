@@ -68,25 +68,23 @@ fn obj_text(mesh: &TriangleMesh) -> String {
 /// The mesh as a text PLY file.
 fn ply_text(mesh: &TriangleMesh) -> String {
     let real = if mesh.is_far() { "double" } else { "float" };
-    let mut text = format!(
+    let header = format!(
         "ply\nformat ascii 1.0\nelement vertex {}\nproperty {real} x\nproperty {real} y\nproperty {real} z\n\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
         mesh.vertices.len(),
         mesh.triangles.len()
     );
-    for [x, y, z] in coordinates(mesh) {
-        put(&mut text, format_args!("{x} {y} {z}\n"));
-    }
-    for [a, b, c] in &mesh.triangles {
-        put(&mut text, format_args!("3 {a} {b} {c}\n"));
-    }
-    text
+    listed(mesh, header)
 }
 
 /// The mesh as an OFF file.
 fn off_text(mesh: &TriangleMesh) -> String {
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
-    let mut text = format!("OFF\n{vertices} {triangles} 0\n");
+    listed(mesh, format!("OFF\n{vertices} {triangles} 0\n"))
+}
+
+/// A header, then a line for each vertex, and for each triangle with its number of corners.
+fn listed(mesh: &TriangleMesh, mut text: String) -> String {
     for [x, y, z] in coordinates(mesh) {
         put(&mut text, format_args!("{x} {y} {z}\n"));
     }
