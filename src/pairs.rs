@@ -20,7 +20,7 @@ use crate::simd::MAX_WIDTH;
 const LEAST_CAPACITY: usize = 1024;
 
 /// Bytes that a column has allocated, used or not.
-fn bytes<T>(column: &Vec<T>) -> usize {
+pub(crate) fn bytes<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()
 }
 

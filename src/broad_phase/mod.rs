@@ -9,6 +9,7 @@
 use std::ops::Range;
 
 use crate::bodies::Places;
+use crate::pairs::bytes;
 use crate::settings::Finder;
 use crate::simd::Lanes;
 use crate::threads::Executor;
@@ -47,11 +48,6 @@ pub trait FirstTest {
     fn run<L: Lanes>(&mut self, l: L, i: usize, run: Range<usize>);
     /// Scattered pairs of slots, but not the block's long runs.
     fn block<L: Lanes>(&mut self, l: L, block: &Block<'_>);
-}
-
-/// Bytes that a column has allocated, used or not.
-fn bytes<T>(column: &Vec<T>) -> usize {
-    column.capacity() * size_of::<T>()
 }
 
 /// A pair finder with its bodies arranged.
@@ -284,7 +280,7 @@ impl PairFinder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::{MAX_WIDTH, Tier};
+    use crate::simd::Tier;
     use crate::threads::Threads;
 
     fn population(bodies: usize) -> Population {
@@ -307,24 +303,6 @@ mod tests {
             finder.arrange(executor, &places, &balls, &places.body, None);
         }
         finder
-    }
-
-    /// Every finder has a vector of entries after its slots.
-    #[test]
-    fn every_finder_pads_its_slots() {
-        for &finder in Finder::ALL {
-            for bodies in [1, 2, 70] {
-                let (finder, padded) = (arranged(finder, bodies), bodies + MAX_WIDTH);
-                let slots = finder.own_slots();
-                let columns = slots.columns.iter().map(Vec::len);
-                assert!(
-                    columns.eq([padded; 4]) || slots.balls.len() == padded,
-                    "{}",
-                    finder.name()
-                );
-                assert_eq!(finder.names().len(), padded);
-            }
-        }
     }
 
     /// Cells are kept for bodies that stay as long as the same finder suits.
