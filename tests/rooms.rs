@@ -56,6 +56,7 @@ const BENCH: &[&str] = &[
     "percentiles",
     "remedy",
     "decimate",
+    "posed_ordops",
     "random",
     "hash",
     "mpi",

@@ -8,11 +8,11 @@ mod common;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use sdop::culler::Culler;
-use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
 use sdop::settings::{CullSettings, Overlap, Strategy};
 use sdop::simd::Tier;
 use sdop::volume::DirectionSet;
+use sdop_bench::posed_ordops::PosedOrDops;
 use sdop_bench::scene::Scene;
 
 fn pairs(scene: &Scene, strategy: Strategy) -> PairList {

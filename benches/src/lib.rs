@@ -20,6 +20,7 @@ pub mod network;
 pub mod number;
 pub mod outsiders;
 pub mod percentiles;
+pub mod posed_ordops;
 pub mod random;
 pub mod record;
 pub mod remedy;

@@ -31,14 +31,6 @@ impl Places {
         Self { body, shape, moving }
     }
 
-    /// The order of the user's columns, with every body taken as moving: for timing a stage without
-    /// a culler.
-    #[must_use]
-    pub fn as_given(bodies: &Bodies) -> Self {
-        let n = bodies.shape.len();
-        Self { body: (0..n as u32).collect(), shape: bodies.shape.clone(), moving: n }
-    }
-
     /// Number of bodies.
     #[must_use]
     pub fn len(&self) -> usize {

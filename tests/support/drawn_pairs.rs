@@ -1,13 +1,13 @@
 //! Random pairs of shapes for estimators with known answers.
 
 use sdop::bodies::Bodies;
-use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
 use sdop::rounding::pose::{rotate, rotation};
 use sdop::settings::Overlap;
 use sdop::simd::Tier;
 use sdop::volume::{OrDop, Shape};
 use sdop_bench::hull_test::{HullGraph, PosedHull, may_touch};
+use sdop_bench::posed_ordops::PosedOrDops;
 use sdop_bench::random::Stream;
 
 /// The seed of the draws; scenes count their seeds from 1.

@@ -8,11 +8,11 @@
 
 use super::plan::PaperScene;
 use crate::measure::turns::{Regime, Turns, median, next_turn, turn_frames};
+use crate::posed_ordops::PosedOrDops;
 use crate::scene::Scene;
 use crate::simulate::{SimulationError, Trajectory};
 use sdop::bodies::Bodies;
 use sdop::choice::choices;
-use sdop::overlap::ordop::PosedOrDops;
 use sdop::pairs::PairList;
 use sdop::settings::Overlap;
 use sdop::simd::Tier;

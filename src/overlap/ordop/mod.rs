@@ -34,12 +34,10 @@
 mod axes;
 pub mod edges;
 pub mod kernel;
-mod posed;
 pub mod reach;
 pub mod slabs;
 pub mod support;
 pub mod table;
 
 pub use kernel::{OrDopColumns, TestOutcome};
-pub use posed::PosedOrDops;
 pub use table::SlabTables;

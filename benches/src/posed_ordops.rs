@@ -1,15 +1,12 @@
-//! [`PosedOrDops`]: the or-DOPs of one frame, without a culler, with which studies and benches test
-//! listed pairs.
+//! [`PosedOrDops`]: the or-DOPs of one frame, without a culler, to test listed pairs.
 
-use super::kernel::OrDopColumns;
-use super::table::SlabTables;
-use crate::bodies::Bodies;
-use crate::bodies::Places;
-use crate::settings::Overlap;
-use crate::simd::Tier;
-use crate::threads::Threads;
-use crate::update::{OrDopRows, RowsByNumber, ShapeFrame, ShapeFrames, UpdateInputs};
-use crate::volume::{DirectionSet, OrDop, Shape};
+use sdop::bodies::{Bodies, Places};
+use sdop::overlap::ordop::{OrDopColumns, SlabTables};
+use sdop::settings::Overlap;
+use sdop::simd::Tier;
+use sdop::threads::Threads;
+use sdop::update::{OrDopRows, RowsByNumber, ShapeFrame, ShapeFrames, UpdateInputs};
+use sdop::volume::{DirectionSet, OrDop, Shape};
 
 /// Rows and tables in the order of the bodies' columns, so that pairs of rows are pairs of bodies.
 #[derive(Debug)]
@@ -29,11 +26,13 @@ impl PosedOrDops {
         let directions = shapes.clone().next().map(|(_, ordop)| ordop.directions);
         let frames: ShapeFrames =
             shapes.clone().map(|(shape, ordop)| ShapeFrame::new(shape, &ordop.basis)).collect();
-        let places = Places::as_given(bodies);
-        let mut rows = OrDopRows::new(places.len());
+        let n = bodies.len();
+        let (body, shape) = ((0..n as u32).collect(), bodies.shape.clone());
+        let places = Places { body, shape, moving: n };
+        let mut rows = OrDopRows::new(n);
         let posed = UpdateInputs { frames: &frames, bodies, places: &places, balls: &[] };
         let pool = Threads::default();
-        rows.update(pool.executor(tier), posed, 0..places.len(), 1);
+        rows.update(pool.executor(tier), posed, 0..n, 1);
         Self { rows, tables: SlabTables::new(directions.unwrap_or(DirectionSet::K6), shapes) }
     }
 
