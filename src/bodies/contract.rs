@@ -37,16 +37,6 @@ impl ContractError {
     pub fn help(&self) -> &str {
         self.hint
     }
-
-    /// The same error with the body's number in a larger set, in which these bodies begin at
-    /// `first`.
-    #[cfg(feature = "internals")]
-    #[doc(hidden)]
-    #[must_use]
-    pub fn numbered(self, first: usize) -> Self {
-        let body = self.body + first;
-        Self { body, ..self }
-    }
 }
 
 /// The most bodies that a culler can hold. Its table of balls has one quad per body and one vector
@@ -95,15 +85,5 @@ mod tests {
         let told = check_number(MOST_BODIES + 1).map_err(|error| error.problem());
         let [more, most] = [MOST_BODIES + 1, MOST_BODIES];
         assert_eq!(told, Err(format!("body {most}: number {more} of {most} at most")));
-    }
-
-    /// An error names a body of a share by its number in the whole scene.
-    #[cfg(feature = "internals")]
-    #[test]
-    fn error_uses_scene_body_number() {
-        let own =
-            ContractError { body: 3, quantity: "shape", value: "7".to_owned(), hint: "mend it" };
-        let whole = ContractError { body: 43, ..own.clone() };
-        assert_eq!(own.numbered(40), whole);
     }
 }

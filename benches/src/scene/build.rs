@@ -87,7 +87,8 @@ impl SceneFile {
         check_bodies(&bodies, &shapes)
             .and_then(|()| fine.check(&bodies))
             .and_then(|()| velocities.check(bodies.len()))
-            .map_err(|error| self.contract_error(&groups, &error.numbered(share.held.start)))?;
+            .map_err(|error| ContractError { body: error.body + share.held.start, ..error })
+            .map_err(|error| self.contract_error(&groups, &error))?;
         self.spec.cull.check(share.all)?;
         let scene = Scene {
             name: self.spec.name.clone(),
