@@ -8,8 +8,7 @@
 
 use std::sync::Arc;
 
-use super::change_log::{ChangeLog, PairChange};
-use super::events::{Changes, CurrentPairs, Event, PairDifference};
+use super::events::{ChangeLog, Changes, CurrentPairs, Event, PairChange, PairDifference};
 use super::movers::Movers;
 use super::pair_log::{PairLog, WorldPairs};
 use super::reported_pairs::ReportedPairs;

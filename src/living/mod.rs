@@ -4,7 +4,6 @@
 //! A [`LivingSet`] holds these. Its bodies' volumes are in a [`VolumeSource`]: posed meshes in a
 //! `World`, boxes in a [`BoxWorld`](crate::BoxWorld).
 
-mod change_log;
 mod cull;
 mod error;
 mod events;
