@@ -5,7 +5,7 @@ use super::images::{Image, ImageSource, PlacedBody, Placement};
 use super::periods::Periods;
 use super::{PeriodicError, PeriodicEvents};
 use crate::cull_error::CullError;
-use crate::living::{BodyId, LivingSet, WorldError};
+use crate::living::{BodyId, Ids, LivingSet, WorldError};
 use crate::simd::in_default_mode;
 
 /// The images of all bodies are placed anew if more than one in this number of bodies was set.
@@ -27,13 +27,16 @@ pub struct PeriodicPair {
 #[derive(Clone, Debug)]
 pub struct Periodic<V: ImageSource> {
     pub(super) periods: Periods,
-    /// All images. An image that is not moved has the id of its body.
+    ids: Ids,
+    /// The image of each body that is held within the period, by the body's slot.
+    homes: Vec<BodyId>,
+    /// All images.
     world: LivingSet<V>,
-    /// The bodies by slot of the world; slots of images have invalid entries.
+    /// The bodies by slot of that image; slots of other images have invalid entries.
     pub(super) bodies: Vec<PlacedBody<V::Given>>,
     /// The images by slot of the world.
     pub(super) images: Vec<Image>,
-    /// The other images of each body, by slot.
+    /// The other images of each body, by slot of the first.
     ghosts: Vec<Vec<BodyId>>,
     pub(super) borders: Borders,
     /// Slots of bodies whose images across borders have to be placed by the next cull, or of all.
@@ -59,6 +62,8 @@ impl<V: ImageSource> Periodic<V> {
         let periods = Periods::new(periods)?;
         Ok(Self {
             periods,
+            ids: Ids::default(),
+            homes: Vec::new(),
             world,
             bodies: Vec::new(),
             images: Vec::new(),
@@ -87,9 +92,12 @@ impl<V: ImageSource> Periodic<V> {
     /// it. Nothing is changed.
     pub fn set_periods(&mut self, periods: [Option<f64>; 3]) -> Result<(), PeriodicError> {
         let periods = Periods::new(periods)?;
-        let slots: Vec<usize> = self.slots_of_bodies().collect();
-        let place = |&slot: &usize| V::place(&self.world, slot, &self.bodies[slot].body, &periods);
-        let places = in_default_mode(|| slots.iter().map(place).collect::<Result<Vec<_>, _>>())?;
+        let slots: Vec<usize> = self.ids.filled().map(|row| self.homes[row].slot()).collect();
+        let place = |(id, &slot): (BodyId, &usize)| {
+            V::place(&self.world, id.slot(), &self.bodies[slot].body, &periods)
+        };
+        let places = || self.ids.iter().zip(&slots).map(place).collect::<Result<Vec<_>, _>>();
+        let places = in_default_mode(places)?;
         (self.periods, self.borders) = (periods, Borders::new(&periods));
         self.are_all_late = true;
         in_default_mode(|| {
@@ -101,7 +109,7 @@ impl<V: ImageSource> Periodic<V> {
         Ok(())
     }
 
-    /// Adds a body, anywhere.
+    /// Adds a body, anywhere. Slots are those of bodies: images take none.
     ///
     /// # Errors
     /// Along a periodic axis, the body is as long as half of the period or longer, or farther than
@@ -109,11 +117,16 @@ impl<V: ImageSource> Periodic<V> {
     pub fn insert(&mut self, body: impl Into<V::Given>) -> Result<BodyId, PeriodicError> {
         let body = body.into();
         in_default_mode(|| {
-            let slot = self.world.next_slot();
-            let place = V::place(&self.world, slot, &body, &self.periods)?;
-            let id = self.world.insert(V::image(&body, place.shift, &self.periods))?;
-            self.name(id, Image::new(id, 0, &place), PlacedBody { body, place });
-            self.look_across(id.slot(), &place);
+            let place = V::place(&self.world, self.ids.next_slot(), &body, &self.periods)?;
+            let home = self.world.insert(V::image(&body, place.shift, &self.periods))?;
+            let row = self.ids.next();
+            if self.ids.take() {
+                self.homes.push(home);
+            }
+            self.homes[row] = home;
+            let id = self.ids.id(row as u32);
+            self.name(home, Image::new(id, 0, &place), PlacedBody { body, place });
+            self.look_across(home.slot(), &place);
             Ok(id)
         })
     }
@@ -123,11 +136,11 @@ impl<V: ImageSource> Periodic<V> {
     /// # Errors
     /// The body has been removed before.
     pub fn remove(&mut self, id: BodyId) -> Result<(), PeriodicError> {
-        let slot = self.slot(id)?;
-        for ghost in self.ghosts[slot].drain(..) {
+        let home = self.homes[self.ids.remove(id)?];
+        for ghost in self.ghosts[home.slot()].drain(..) {
             self.world.remove(ghost)?;
         }
-        Ok(self.world.remove(id)?)
+        Ok(self.world.remove(home)?)
     }
 
     /// The body as it was inserted or set.
@@ -145,7 +158,7 @@ impl<V: ImageSource> Periodic<V> {
     pub fn set(&mut self, id: BodyId, body: impl Into<V::Given>) -> Result<(), PeriodicError> {
         let (slot, body) = (self.slot(id)?, body.into());
         in_default_mode(|| {
-            let mut place = V::place(&self.world, slot, &body, &self.periods)?;
+            let mut place = V::place(&self.world, id.slot(), &body, &self.periods)?;
             if V::IS_EXACT {
                 self.settle(slot, &mut place);
             }
@@ -157,12 +170,30 @@ impl<V: ImageSource> Periodic<V> {
     /// Whether the body exists.
     #[must_use]
     pub fn contains(&self, id: BodyId) -> bool {
-        self.slot(id).is_ok()
+        self.ids.slot(id).is_ok()
     }
 
     /// The ids of all bodies, sorted by slot.
     pub fn ids(&self) -> impl Iterator<Item = BodyId> + '_ {
-        self.slots_of_bodies().map(|slot| self.images[slot].of)
+        self.ids.iter()
+    }
+
+    /// All present bodies as they were inserted or set, sorted by slot.
+    pub fn bodies(&self) -> impl Iterator<Item = (BodyId, V::Given)> + '_ {
+        let body = |row: usize| self.bodies[self.homes[row].slot()].body;
+        self.ids.filled().map(move |row| (self.ids.id(row as u32), body(row)))
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there are no bodies.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     /// Excludes a pair of bodies with all of their images: it is not reported until
@@ -172,8 +203,7 @@ impl<V: ImageSource> Periodic<V> {
     /// # Errors
     /// A body that has been removed.
     pub fn exclude(&mut self, a: BodyId, b: BodyId) -> Result<bool, PeriodicError> {
-        self.slot(a)?;
-        self.slot(b)?;
+        let [a, b] = [self.home(a)?, self.home(b)?];
         Ok(self.world.exclude(a, b)?)
     }
 
@@ -182,19 +212,21 @@ impl<V: ImageSource> Periodic<V> {
     /// # Errors
     /// A body that has been removed.
     pub fn include(&mut self, a: BodyId, b: BodyId) -> Result<bool, PeriodicError> {
-        self.slot(a)?;
-        self.slot(b)?;
+        let [a, b] = [self.home(a)?, self.home(b)?];
         Ok(self.world.include(a, b)?)
     }
 
     /// Whether a pair is excluded.
     #[must_use]
     pub fn is_excluded(&self, a: BodyId, b: BodyId) -> bool {
-        self.world.is_excluded(a, b)
+        match [a, b].map(|id| self.home(id)) {
+            [Ok(a), Ok(b)] => self.world.is_excluded(a, b),
+            _ => false,
+        }
     }
 
-    /// The world that holds the bodies and their images across borders, for its counters. A body
-    /// has the same id there.
+    /// The world that holds the bodies and their images across borders, for its counters. Ids there
+    /// are those of images.
     #[must_use]
     pub fn images(&self) -> &LivingSet<V> {
         &self.world
@@ -243,17 +275,14 @@ impl<V: ImageSource> Periodic<V> {
         events
     }
 
-    /// The slot of a present body.
-    fn slot(&self, id: BodyId) -> Result<usize, WorldError> {
-        let slot = id.slot();
-        let is_body = self.world.contains(id) && self.images[slot].axes == 0;
-        is_body.then_some(slot).ok_or(WorldError::Gone(id))
+    /// The image of a present body that is held within the period.
+    fn home(&self, id: BodyId) -> Result<BodyId, WorldError> {
+        self.ids.slot(id).map(|row| self.homes[row])
     }
 
-    fn slots_of_bodies(&self) -> impl Iterator<Item = usize> + '_ {
-        let slots = self.images.iter().enumerate();
-        let bodies = slots.filter(|(_, image)| image.axes == 0 && self.world.contains(image.of));
-        bodies.map(|(slot, _)| slot)
+    /// The slot of that image.
+    fn slot(&self, id: BodyId) -> Result<usize, WorldError> {
+        self.home(id).map(BodyId::slot)
     }
 
     /// Notes what a slot of the world has got.
@@ -287,8 +316,8 @@ impl<V: ImageSource> Periodic<V> {
         let (image, placed) = (&mut self.images[slot], &mut self.bodies[slot]);
         (placed.body, placed.place) = (*body, *place);
         (image.shift, image.is_small) = (place.shift, place.is_small);
-        let of = image.of;
-        self.world.set_checked(of, &V::image(body, place.shift, &self.periods));
+        let home = self.homes[image.of.slot()];
+        self.world.set_checked(home, &V::image(body, place.shift, &self.periods));
         if self.images[slot].across != 0 {
             self.put_ghosts(slot);
         }
@@ -349,15 +378,16 @@ impl<V: ImageSource> Periodic<V> {
     /// Wraps the body in a slot, if there is one, and places its images.
     fn place_anew(&mut self, slot: usize) -> Result<(), WorldError> {
         let Image { of, axes, .. } = self.images[slot];
-        if axes != 0 || !self.world.contains(of) {
+        if axes != 0 || self.slot(of) != Ok(slot) {
             return Ok(());
         }
         let (body, periods) = (&self.bodies[slot].body, &self.periods);
         if V::IS_EXACT // others are wrapped whenever they are set
-            && let Ok(place) = V::place(&self.world, slot, body, periods)
+            && let Ok(place) = V::place(&self.world, of.slot(), body, periods)
             && place.shift != self.images[slot].shift
         {
-            self.world.set_checked(of, &V::image(body, place.shift, periods));
+            let home = self.homes[of.slot()];
+            self.world.set_checked(home, &V::image(body, place.shift, periods));
             self.images[slot] =
                 Image { across: self.images[slot].across, ..Image::new(of, 0, &place) };
             self.bodies[slot].place = place;
@@ -414,7 +444,8 @@ impl<V: ImageSource> Periodic<V> {
             let bodies = [first.of, second.of];
             let image = [0, 1, 2].map(|axis| second.shift[axis] - first.shift[axis]);
             if !(one.is_small && two.is_small) {
-                let [placed, other] = bodies.map(|id| &self.bodies[id.slot()]);
+                let home = |id: BodyId| self.homes[id.slot()].slot();
+                let [placed, other] = bodies.map(|id| &self.bodies[home(id)]);
                 if !V::may_touch(&self.periods, placed, other, image) {
                     continue;
                 }
@@ -426,10 +457,16 @@ impl<V: ImageSource> Periodic<V> {
                 self.across.push(pair);
             }
         }
-        let world = &self.world;
-        self.across.retain(|pair| !world.is_excluded(pair.bodies[0], pair.bodies[1]));
+        let (world, homes) = (&self.world, &self.homes);
+        let is_excluded = |pair: &PeriodicPair| {
+            let [a, b] = pair.bodies.map(|id| homes[id.slot()]);
+            world.is_excluded(a, b)
+        };
+        self.across.retain(|pair| !is_excluded(pair));
         self.across.sort_unstable();
+        self.pairs.sort(); // they are, unless slots of images were given again in another order
         merge(&mut self.pairs, &self.across);
+        self.ids.settle();
         Ok(())
     }
 }

@@ -113,6 +113,7 @@ fn only_bodies_can_be_named() {
     assert_eq!(boxes.images().len(), 3);
     let image = boxes.images().ids().find(|id| ![a, b].contains(id)).unwrap();
     let gone = boxes.insert(at(0.0)).unwrap();
+    assert_eq!(gone.slot(), 2, "images take no slots of bodies");
     boxes.remove(gone).unwrap();
     for id in [image, gone] {
         assert!(!boxes.contains(id) && boxes.body(id).is_err());
