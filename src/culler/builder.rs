@@ -115,7 +115,7 @@ impl CullerBuilder {
     ///
     /// # Errors
     /// Bodies or shapes that break the contract
-    /// ([`check_bodies`](crate::bodies::contract::check_bodies)); invalid settings (a missing
+    /// ([`check_bodies`](crate::volume::check_bodies)); invalid settings (a missing
     /// interest or budget, a body that doesn't exist); threads that the system refuses to start; a
     /// shape far from its origin ([`Shape::pose_offset`]).
     pub fn build(&self, shapes: &[Shape], bodies: &Bodies) -> Result<Culler, CullError> {

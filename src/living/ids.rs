@@ -19,7 +19,8 @@ pub struct BodyId {
 
 impl BodyId {
     /// The body's index into columns with one entry per body: less than
-    /// [`World::slots`](super::World::slots), and reused for another body once this one is removed.
+    /// [`LivingSet::slots`](super::LivingSet::slots), and reused for another body once this one is
+    /// removed.
     #[must_use]
     pub fn slot(self) -> usize {
         self.slot as usize
