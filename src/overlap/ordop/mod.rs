@@ -26,10 +26,11 @@
 //! | pairs, bounds and the choice of loader once per block; no frames kept that no later axis needs | 8.7 |
 //!
 //! Rows are prefetched where there are more than the caches hold ([`kernel`]); with fewer, that
-//! took 13 to 18 % longer. Rejected from counts: trying only axes on which the slab and an inscribed
-//! ball leave a gap (4.7 of 18 per pair, but 8.8 for the worst of 16 lanes, and a separate axis per
-//! lane costs half as much again); trying the axis nearest to Δ first (saves at most one in eight
-//! evaluations); packing between A's normals (a packing costs as much as five axes).
+//! took 13 to 18 % longer. Rejected from counts: trying only axes on which the slab and an
+//! inscribed ball leave a gap (4.7 of 18 per pair, but 8.8 for the worst of 16 lanes, and a
+//! separate axis per lane costs half as much again); trying the axis nearest to Δ first (saves at
+//! most one in eight evaluations); packing between A's normals (a packing costs as much as five
+//! axes).
 
 mod axes;
 pub mod edges;
