@@ -81,7 +81,7 @@ fn unused_shapes_are_removed() {
         let number = world.add_shape(narrow.clone()).unwrap();
         let at = |x: f64| Body::at(number, [0.0, 0.0, 0.0, 1.0], [x, 0.0, 0.0]);
         let still = world.insert(Body { margin: 0.1, ..at(0.0).fixed() }).unwrap();
-        let other = world.insert(at(4.0)).unwrap();
+        let other = world.insert(at(7.0)).unwrap(); // only two wide ones meet
         let used = world.remove_shape(number).unwrap_err().problem();
         assert!(used.starts_with("shape 3 (") && used.ends_with("of body 0"), "{used}");
         let culled = usize::from(way.strategy != Strategy::None);
