@@ -51,7 +51,7 @@ const METHODS: [(&str, &str, &str); 24] = [
     ("Periodic", "nnn--", "cull cull_up_to"),
     ("Periodic", "lll--", "events pairs"),
     ("Periodic", "", "body contains exclude ids images include insert is_excluded periods remove"),
-    ("Periodic", "", "set set_periods"),
+    ("Periodic", "", "bodies is_empty len set set_periods"),
     ("PartCuller", "!!!n!", "cull"),
     ("PartCuller", "lllll", "body_pairs pairs"),
 ];
