@@ -60,28 +60,6 @@ impl CullError {
         Err(Self::OutOfMemory)
     }
 
-    /// Lists the pairs of a frame that passes them on in portions, if there are no more than the
-    /// limit.
-    pub(crate) fn list_up_to(
-        limit: usize,
-        list: &mut PairList,
-        cull: impl FnOnce(&mut (dyn FnMut(&PairList) + Send)) -> Result<u64, Self>,
-    ) -> Result<(), Self> {
-        let outcome = cull(&mut |portion| list.append_up_to(portion, limit));
-        Self::check_memory(list)?;
-        match outcome {
-            Ok(pairs) if pairs == list.len() as u64 => Ok(()),
-            Ok(pairs) => {
-                list.clear();
-                Err(Self::TooManyPairs { pairs, limit })
-            }
-            Err(error) => {
-                list.clear();
-                Err(error)
-            }
-        }
-    }
-
     /// How to mend it.
     #[must_use]
     pub fn help(&self) -> &str {

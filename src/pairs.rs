@@ -7,7 +7,7 @@ mod partners;
 mod runs;
 mod sort;
 
-pub(crate) use found::Found;
+pub(crate) use found::FoundPartners;
 pub(crate) use in_step::out_of_step;
 pub(crate) use merge::{Merge, Merged};
 pub(crate) use partners::{PartnerPairs, Partners};

@@ -39,7 +39,7 @@ fn periods(given: &Bound<'_, PyAny>) -> PyResult<[Option<f64>; 3]> {
 fn changed<V: ImageSource>(
     world: &mut Periodic<V>,
     id: u64,
-    change: impl FnOnce(&mut V::Given),
+    change: impl FnOnce(&mut V::UserBody),
 ) -> Result<(), PeriodicError> {
     let id = BodyId::from_bits(id);
     let mut body = world.body(id)?;

@@ -128,15 +128,14 @@ impl BoxCuller {
     /// # Errors
     /// An end is infinite or NaN, a lower end is above the upper one, there are more boxes than can
     /// be numbered, the column of groups has another length, or there are more pairs than memory
-    /// holds. Then [`Self::pairs`] is empty, and
-    /// the next frame is culled as usual.
+    /// holds. Then [`Self::pairs`] is empty, and the next frame is culled as usual.
     pub fn cull(&mut self, boxes: &[Aabb]) -> Result<&PairList, CullError> {
         self.list(boxes, None)
     }
 
     fn list(&mut self, boxes: &[Aabb], limit: Option<usize>) -> Result<&PairList, CullError> {
         self.pairs.clear();
-        self.take_in(boxes)?;
+        self.prepare(boxes)?;
         let filter = PairFilter::of_groups(self.groups.as_deref());
         self.frames.list(boxes, filter, limit, &mut self.pairs)?;
         Ok(&self.pairs)
@@ -155,7 +154,7 @@ impl BoxCuller {
         mut take: impl FnMut(&PairList) + Send,
     ) -> Result<u64, CullError> {
         self.pairs.clear();
-        self.take_in(boxes)?;
+        self.prepare(boxes)?;
         let filter = PairFilter::of_groups(self.groups.as_deref());
         self.frames.pass_on(boxes, filter, &mut take)
     }
@@ -170,9 +169,8 @@ impl BoxCuller {
         self.list(boxes, Some(limit))
     }
 
-    /// Checks the lengths of a frame's columns, and takes the boxes for new ones if their number
-    /// differs from that of the frame before.
-    fn take_in(&mut self, boxes: &[Aabb]) -> Result<(), CullError> {
+    /// Checks the lengths of a frame's columns. If the number of boxes has changed, all are new.
+    fn prepare(&mut self, boxes: &[Aabb]) -> Result<(), CullError> {
         check_number(boxes.len())?;
         if let Some(groups) = &self.groups {
             check_column("groups", groups.len(), boxes.len())?;

@@ -10,7 +10,7 @@ use crate::bodies::{Aabb, PairFilter, Places, read_ahead};
 use crate::broad_phase::{Balls, EndSlots, GivenBoxes, PairFinder, Population, Reorder, Volume};
 use crate::counters::VolumeCounters;
 use crate::cull_error::CullError;
-use crate::listing::{self, FirstVolume, HitNames, ListParts, Listing, Output, Tasks};
+use crate::listing::{self, FirstVolume, HitNames, ListParts, Listing, Output, Tasks, list_up_to};
 use crate::pairs::PairList;
 use crate::rounding::cube::less_than_sure;
 use crate::settings::Finder;
@@ -155,7 +155,7 @@ impl BoxFrames {
     ) -> Result<(), CullError> {
         list.clear();
         if let Some(limit) = limit {
-            return CullError::list_up_to(limit, list, |take| self.pass_on(boxes, filter, take));
+            return list_up_to(limit, list, |take| self.pass_on(boxes, filter, take));
         }
         self.cull(boxes, filter, Output::List(list))?;
         CullError::check_memory(list)

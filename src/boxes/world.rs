@@ -11,9 +11,9 @@ use crate::bodies::{Aabb, Groups, Motion};
 use crate::broad_phase::{BoxIndex, IndexedBox, tags};
 use crate::counters::{RestCounters, VolumeCounters};
 use crate::living::{
-    BodyId, Ids, LivingSet, Members, TakePortion, VolumeSource, WorldError, renumber_column,
+    BodyId, Ids, LivingSet, Members, PortionReader, VolumeSource, WorldError, renumber_column,
 };
-use crate::pairs::{Found, PairList};
+use crate::pairs::{FoundPartners, PairList};
 use crate::threads::Threads;
 
 /// A box to be inserted.
@@ -185,14 +185,13 @@ impl VolumeSource for Boxes {
         members.movers.take_index(index);
     }
 
-    fn find_changed(&mut self, members: &mut Members, most: usize) -> Option<Found> {
+    fn find_changed(&mut self, members: &mut Members, most: usize) -> Option<FoundPartners> {
         if members.movers.need_index() {
             self.make_index(members);
         }
         let mut found = members.movers.take_changed(&members.ids);
-        let (ids, groups) = (&members.ids, &members.groups);
-        members.movers.list(found.bodies.iter().map(|&row| self.indexed(row, ids, groups)));
-        let work = members.find(&mut found, most)?;
+        let indexed = |row, ids: &Ids, groups: &[Groups]| self.indexed(row, ids, groups);
+        let work = members.find(&mut found, most, indexed)?;
         self.frames.counters += VolumeCounters {
             updates: found.present as u64,
             tests: work as u64,
@@ -224,7 +223,7 @@ impl VolumeSource for Boxes {
     fn pass_on_all(
         &mut self,
         members: &Members,
-        take: &mut TakePortion<'_>,
+        take: &mut PortionReader<'_>,
     ) -> Result<u64, WorldError> {
         Ok(self.frames.pass_on(&self.bounds, members.filter(), take)?)
     }

@@ -30,7 +30,7 @@ use crate::{
     bodies::{Bodies, Groups, PairFilter, Places},
     broad_phase::{Balls, PairFinder},
     counters::{Clock, Counters, Seconds},
-    listing::{Output, Totals},
+    listing::{Output, Totals, list_up_to},
     overlap::intervals::IntervalSlots,
     pairs::PairList,
     settings::{CullSettings, Finder, Interest},
@@ -270,7 +270,7 @@ impl Culler {
     ) -> Result<(), CullError> {
         pairs.clear();
         if let Some(limit) = limit {
-            return CullError::list_up_to(limit, pairs, |take| self.pass_on(bodies, filter, take));
+            return list_up_to(limit, pairs, |take| self.pass_on(bodies, filter, take));
         }
         let start = Clock::start();
         self.check_set(bodies)?;

@@ -9,7 +9,7 @@ use crate::bodies::{Aabb, Bodies, Places};
 use crate::broad_phase::Balls;
 use crate::counters::{Clock, RestCounters, VolumeCounters};
 use crate::overlap::ordop::OrDopColumns;
-use crate::pairs::{Found, PairList};
+use crate::pairs::{FoundPartners, PairList};
 use crate::rounding::{down, sphere::apart, up, widen};
 use crate::settings::Flow;
 use crate::simd::{Kernel, Lanes, Tier, dispatch};
@@ -58,7 +58,12 @@ impl Culler {
 
     /// Keeps the reported pairs among those whose boxes meet. The bodies are those of the last call
     /// of [`Self::boxes_of`]; `interest` has whether each is of interest.
-    pub(crate) fn test_found(&mut self, bodies: &Bodies, found: &mut Found, interest: &[bool]) {
+    pub(crate) fn test_found(
+        &mut self,
+        bodies: &Bodies,
+        found: &mut FoundPartners,
+        interest: &[bool],
+    ) {
         let mut clock = Clock::start();
         self.place_sample(bodies, &found.partners);
         let candidates = found.partners.len();
@@ -123,7 +128,7 @@ impl Culler {
 
     /// Keeps the pairs that pass the first test, of bodies in the first places with partners in the
     /// places after them.
-    fn keep_near(&self, found: &mut Found) -> VolumeCounters {
+    fn keep_near(&self, found: &mut FoundPartners) -> VolumeCounters {
         let Sample { balls, ends: slabs, places, .. } = &self.sample;
         let (tests, count) = (found.partners.len() as u64, found.present);
         if self.volumes.intervals.is_some() {
@@ -140,7 +145,7 @@ impl Culler {
     fn refine_found(
         &mut self,
         bodies: &Bodies,
-        found: &mut Found,
+        found: &mut FoundPartners,
         interest: &[bool],
     ) -> VolumeCounters {
         let is_refined = |a: u32, b: u32| {
@@ -190,7 +195,7 @@ impl Culler {
 struct KeepNear<'a> {
     /// Those of the bodies, then those of their partners.
     balls: &'a [[f32; 4]],
-    found: &'a mut Found,
+    found: &'a mut FoundPartners,
 }
 
 impl Kernel for KeepNear<'_> {

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use self::hit_names::HitSlots;
 pub(crate) use self::hit_names::{HitNames, PairNames, SlotNames};
-pub(crate) use self::output::{Output, PAIRS_PER_PORTION, TaskOutput};
+pub(crate) use self::output::{Output, PAIRS_PER_PORTION, TaskOutput, list_up_to};
 pub(crate) use self::tasks::{Task, Tasks, split_work};
 use crate::bodies::PairFilter;
 use crate::broad_phase::{Block, FirstTest, MOST_CANDIDATES, PairFinder, SlotTest};

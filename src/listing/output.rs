@@ -8,6 +8,7 @@
 
 use std::sync::{Condvar, Mutex, MutexGuard};
 
+use crate::cull_error::CullError;
 use crate::pairs::PairList;
 
 /// Pairs in a portion. It may have one block of candidates more.
@@ -28,6 +29,24 @@ impl Output<'_> {
     pub fn is_in_portions(&self) -> bool {
         matches!(self, Self::Portions(_))
     }
+}
+
+/// Culls a frame in portions, and lists its pairs if there are no more than the limit. `cull`
+/// returns their number.
+pub(crate) fn list_up_to(
+    limit: usize,
+    list: &mut PairList,
+    cull: impl FnOnce(&mut (dyn FnMut(&PairList) + Send)) -> Result<u64, CullError>,
+) -> Result<(), CullError> {
+    let outcome = cull(&mut |portion| list.append_up_to(portion, limit));
+    CullError::check_memory(list)?;
+    let refused = match outcome {
+        Ok(pairs) if pairs == list.len() as u64 => return Ok(()),
+        Ok(pairs) => CullError::TooManyPairs { pairs, limit },
+        Err(error) => error,
+    };
+    list.clear();
+    Err(refused)
 }
 
 /// The destination of a task's list while it is being written.

@@ -104,7 +104,7 @@ impl<V: VolumeSource> LivingSet<V> {
             };
             counted = members.movers.counters(&members.ids);
             members.pairs.apply(&found, &members.movers, &members.ids);
-            members.movers.reuse(found);
+            members.movers.end_search(found);
             volumes.end_changed(members);
         }
         members.ids.settle();

@@ -36,7 +36,10 @@ pub enum Event {
 #[derive(Clone, Debug, Default)]
 pub struct Events {
     pub(super) now: CurrentPairs,
-    pub(super) change: PairDifference,
+    /// The former pairs, if most have changed: no third list is made of a crowd's pairs.
+    pub(super) before: Option<Arc<ReportedPairs>>,
+    /// Empty if there are former pairs.
+    pub(super) changes: Changes,
 }
 
 /// The pairs of the later cull.
@@ -44,20 +47,6 @@ pub struct Events {
 pub(super) enum CurrentPairs {
     List(Arc<ReportedPairs>),
     Partners { slots: Arc<Partners>, ids: Arc<Vec<BodyId>> },
-}
-
-/// What tells the former cull's pairs from the later one's.
-#[derive(Clone, Debug)]
-pub(super) enum PairDifference {
-    /// The former pairs, if most have changed: no third list is made of a crowd's pairs.
-    Since(Arc<ReportedPairs>),
-    Listed(Changes),
-}
-
-impl Default for PairDifference {
-    fn default() -> Self {
-        Self::Since(Arc::default())
-    }
 }
 
 /// The pairs that have begun and ended between two culls, each kind sorted.
@@ -86,25 +75,14 @@ impl Events {
     /// The events between two culls.
     pub(super) fn between(before: Arc<ReportedPairs>, now: Arc<ReportedPairs>) -> Self {
         let most = (before.len() + now.len()) / LISTED_SHARE + ALWAYS_LISTED;
-        let change = match Changes::between(&before, &now, most) {
-            Some(changes) => PairDifference::Listed(changes),
-            None => PairDifference::Since(before),
-        };
-        Self { now: CurrentPairs::List(now), change }
-    }
-
-    /// The former pairs, or the changes.
-    fn difference(&self) -> (Option<&ReportedPairs>, Option<&Changes>) {
-        match &self.change {
-            PairDifference::Since(before) => (Some(before), None),
-            PairDifference::Listed(changes) => (None, Some(changes)),
-        }
+        let changes = Changes::between(&before, &now, most);
+        let before = changes.is_none().then_some(before);
+        Self { now: CurrentPairs::List(now), before, changes: changes.unwrap_or_default() }
     }
 
     /// All events, sorted by the slots of their pairs.
     pub fn iter(&self) -> impl Iterator<Item = Event> + '_ {
-        let (before, changes) = self.difference();
-        let merged = before.map(|before| {
+        let merged = self.before.as_ref().map(|before| {
             let both = Merge::new(before.pairs(), self.now.pairs(), Ord::cmp);
             both.map(|merged| match merged {
                 Merged::First(pair) => Event::Ended(pair),
@@ -112,7 +90,8 @@ impl Events {
                 Merged::Both(_, pair) => Event::Persisting(pair),
             })
         });
-        let listed = changes.map(|Changes { begun, ended }| {
+        let listed = merged.is_none().then(|| {
+            let Changes { begun, ended } = &self.changes;
             let now = Merge::new(begun, self.now.pairs(), |begun, pair| (*begun).cmp(pair));
             let now = now.map(|merged| match merged {
                 Merged::First(&pair) | Merged::Both(_, pair) => (pair, Event::Begun(pair)),
@@ -127,17 +106,22 @@ impl Events {
         merged.into_iter().flatten().chain(listed.into_iter().flatten())
     }
 
+    /// These listed pairs, or those of all events that `pick` picks.
+    fn changed<'a>(
+        &'a self,
+        listed: &'a [[BodyId; 2]],
+        pick: fn(Event) -> Option<[BodyId; 2]>,
+    ) -> impl Iterator<Item = [BodyId; 2]> + 'a {
+        let found = self.before.is_some().then(|| self.iter().filter_map(pick));
+        found.into_iter().flatten().chain(listed.iter().copied())
+    }
+
     /// Pairs reported now and not before.
     pub fn begun(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
-        let (before, changes) = self.difference();
-        let found = before.map(|_| {
-            self.iter().filter_map(|event| match event {
-                Event::Begun(pair) => Some(pair),
-                _ => None,
-            })
-        });
-        let listed = changes.map(|changes| changes.begun.iter().copied());
-        found.into_iter().flatten().chain(listed.into_iter().flatten())
+        self.changed(&self.changes.begun, |event| match event {
+            Event::Begun(pair) => Some(pair),
+            _ => None,
+        })
     }
 
     /// Pairs reported now and before.
@@ -150,15 +134,10 @@ impl Events {
 
     /// Pairs reported before and not now; those of a body removed since then are among them.
     pub fn ended(&self) -> impl Iterator<Item = [BodyId; 2]> + '_ {
-        let (before, changes) = self.difference();
-        let found = before.map(|_| {
-            self.iter().filter_map(|event| match event {
-                Event::Ended(pair) => Some(pair),
-                _ => None,
-            })
-        });
-        let listed = changes.map(|changes| changes.ended.iter().copied());
-        found.into_iter().flatten().chain(listed.into_iter().flatten())
+        self.changed(&self.changes.ended, |event| match event {
+            Event::Ended(pair) => Some(pair),
+            _ => None,
+        })
     }
 }
 

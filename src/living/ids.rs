@@ -333,12 +333,13 @@ pub(crate) fn renumbered_pairs<T>(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
 
-    fn filled(slots: u32) -> Ids {
+    /// The ids of this number of bodies.
+    pub fn filled(slots: u32) -> Ids {
         let mut ids = Ids::default();
         (0..slots).for_each(|_| assert!(ids.take()));
         ids

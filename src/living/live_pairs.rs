@@ -8,12 +8,12 @@
 
 use std::sync::Arc;
 
-use super::events::{ChangeLog, Changes, CurrentPairs, Event, PairChange, PairDifference};
+use super::events::{ChangeLog, Changes, CurrentPairs, Event, PairChange};
 use super::movers::Movers;
 use super::pair_log::{PairLog, WorldPairs};
 use super::reported_pairs::ReportedPairs;
 use super::{BodyId, Events, Ids};
-use crate::pairs::{Found, Merge, Merged, PairList, Partners};
+use crate::pairs::{FoundPartners, Merge, Merged, PairList, Partners};
 
 /// The number of bodies by which prefetching is ahead.
 const PREFETCH_DISTANCE: usize = 8;
@@ -82,7 +82,7 @@ impl LivePairs {
 
     /// Gives bodies that have changed the partners that were found, updates the lists of these, and
     /// logs each pair that has begun or ended once. Copies the lists if events share them.
-    pub fn apply(&mut self, found: &Found, movers: &Movers, ids: &Ids) {
+    pub fn apply(&mut self, found: &FoundPartners, movers: &Movers, ids: &Ids) {
         self.keep_by_body(ids);
         let Self { live: Some(live), differences, .. } = self else { return };
         let PairsByBody { partners: shared, changes, .. } = live;
@@ -126,11 +126,13 @@ impl LivePairs {
         let Some(live) = &mut self.live else {
             return self.log.events();
         };
-        let change = match live.changes.replace(ChangeLog::default()) {
-            Some(changes) => PairDifference::Listed(changes.net()),
-            None => PairDifference::default(), // all have begun
-        };
-        live.events(change, ids)
+        match live.changes.replace(ChangeLog::default()) {
+            Some(changes) => live.events(changes.net(), ids),
+            None => {
+                let before = Some(Arc::default()); // all have begun
+                Events { before, ..live.events(Changes::default(), ids) }
+            }
+        }
     }
 
     /// Keeps the pairs of the last cull, and those of the last events, while the world changes its
@@ -188,10 +190,10 @@ impl PairsByBody {
     }
 
     /// The events of these changes.
-    fn events(&self, change: PairDifference, ids: &Ids) -> Events {
+    fn events(&self, changes: Changes, ids: &Ids) -> Events {
         let slots = self.partners.clone();
         let now = CurrentPairs::Partners { slots, ids: self.table(ids).clone() };
-        Events { now, change }
+        Events { now, before: None, changes }
     }
 
     /// The pairs of the last call of `events`.
@@ -199,7 +201,7 @@ impl PairsByBody {
         let Some(changes) = self.changes.clone() else {
             return ReportedPairs::default();
         };
-        let events = self.events(PairDifference::Listed(changes.net()), ids);
+        let events = self.events(changes.net(), ids);
         ReportedPairs::compact(events.iter().filter_map(|event| match event {
             Event::Begun(_) => None,
             Event::Persisting(pair) | Event::Ended(pair) => Some(pair),
@@ -230,13 +232,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
+    use super::super::ids::tests::filled as ids;
     use super::*;
-
-    fn ids(bodies: u32) -> Ids {
-        let mut ids = Ids::default();
-        (0..bodies).for_each(|_| assert!(ids.take()));
-        ids
-    }
 
     /// Changes the pairs to these.
     fn change(live: &mut LivePairs, ids: &Ids, wanted: &BTreeSet<[u32; 2]>) {
@@ -245,7 +242,7 @@ mod tests {
             let mut partners: Vec<u32> = of_body.map(|[i, j]| i + j - body).collect();
             partners.sort_unstable();
             let ends = vec![partners.len()];
-            let found = Found { bodies: vec![body], present: 1, partners, ends };
+            let found = FoundPartners { bodies: vec![body], present: 1, partners, ends };
             live.apply(&found, &Movers::default(), ids);
         }
     }

@@ -4,7 +4,8 @@ use super::live_pairs::LivePairs;
 use super::movers::Movers;
 use super::{BodyId, Groups, Ids, Motion, WorldError, renumber_column, renumbered_pairs};
 use crate::bodies::{ExcludedPairs, PairFilter, PairRules};
-use crate::pairs::Found;
+use crate::broad_phase::IndexedBox;
+use crate::pairs::FoundPartners;
 
 /// The bodies of a set by row: who they are, which of them may be pairs, which have changed, and
 /// which pairs were reported.
@@ -47,11 +48,6 @@ impl Members {
     pub(crate) fn note(&mut self, row: usize, is_replaced: bool) {
         self.replaced |= is_replaced;
         self.movers.note(row, &self.ids);
-    }
-
-    /// Notes that a body has come or gone.
-    pub(super) fn note_replaced(&mut self, row: usize) {
-        self.note(row, true);
     }
 
     pub(super) fn set_excluded(
@@ -97,9 +93,15 @@ impl Members {
         PairFilter::new(groups, &self.excluded)
     }
 
-    /// The partners of the changed bodies, whose boxes are listed: see [`Movers::find`].
-    pub(crate) fn find(&mut self, found: &mut Found, most: usize) -> Option<usize> {
-        let rules = PairRules { groups: &self.groups, excluded: &self.excluded };
-        self.movers.find(found, rules, most)
+    /// The partners of these bodies, of which `indexed` returns the boxes: see [`Movers::find`].
+    pub(crate) fn find(
+        &mut self,
+        found: &mut FoundPartners,
+        most: usize,
+        mut indexed: impl FnMut(u32, &Ids, &[Groups]) -> IndexedBox,
+    ) -> Option<usize> {
+        let Self { ids, groups, excluded, movers, .. } = self;
+        movers.list(found.bodies.iter().map(|&row| indexed(row, ids, groups)));
+        movers.find(found, PairRules { groups, excluded }, most)
     }
 }

@@ -27,7 +27,7 @@ pub use pair_log::{PairIds, WorldPairs};
 pub use pair_lookup::PairLookup;
 #[cfg(feature = "serde")]
 pub use snapshot::SnapshotError;
-pub use source::{TakePortion, VolumeSource};
+pub use source::{PortionReader, VolumeSource};
 
 pub(crate) use self::ids::{Ids, renumber_column, renumbered_pairs};
 #[cfg(feature = "serde")]
@@ -81,7 +81,7 @@ impl<V: VolumeSource> LivingSet<V> {
             self.volumes.push();
         }
         self.put(row, &body, true);
-        self.members.note_replaced(row);
+        self.members.note(row, true);
         Ok(self.members.ids.id(row as u32))
     }
 
@@ -93,7 +93,7 @@ impl<V: VolumeSource> LivingSet<V> {
         let row = self.members.ids.remove(id)?;
         self.volumes.take_out(row);
         self.members.excluded.remove_all(row as u32);
-        self.members.note_replaced(row);
+        self.members.note(row, true);
         if self.members.ids.are_sparse() {
             self.renumber(Ids::compact);
         }

@@ -11,7 +11,7 @@ use super::Ids;
 use crate::bodies::PairRules;
 use crate::broad_phase::{BoxIndex, IndexedBox, Search};
 use crate::counters::RestCounters;
-use crate::pairs::Found;
+use crate::pairs::FoundPartners;
 
 /// Changed bodies are searched one by one if they are at most one in this number of bodies.
 /// Otherwise finding all pairs anew is faster.
@@ -59,7 +59,7 @@ pub(crate) struct Movers {
     /// The changed bodies.
     boxes: Vec<IndexedBox>,
     /// The last frame's, for its memory.
-    found: Found,
+    found: FoundPartners,
     search: Search,
 }
 
@@ -77,7 +77,7 @@ impl Default for Movers {
             pause: 0,
             last_pause: 0,
             boxes: Vec::new(),
-            found: Found::default(),
+            found: FoundPartners::default(),
             search: Search::default(),
         }
     }
@@ -211,7 +211,7 @@ impl Movers {
     }
 
     /// The bodies that have changed, to be searched for: those that are gone come last.
-    pub fn take_changed(&mut self, ids: &Ids) -> Found {
+    pub fn take_changed(&mut self, ids: &Ids) -> FoundPartners {
         let mut found = std::mem::take(&mut self.found);
         found.partners.clear();
         found.ends.clear();
@@ -247,7 +247,12 @@ impl Movers {
     /// Moves changed bodies in the index, and lists the bodies whose boxes meet each one's. Groups
     /// have one entry per row. Returns the work that it took, in boxes and cells read; `None` if
     /// that is too much, or if there are more than `most` pairs.
-    pub fn find(&mut self, found: &mut Found, rules: PairRules<'_>, most: usize) -> Option<usize> {
+    pub fn find(
+        &mut self,
+        found: &mut FoundPartners,
+        rules: PairRules<'_>,
+        most: usize,
+    ) -> Option<usize> {
         let (mut work, most_work) = (0, WORK_PER_BODY * rules.groups.len());
         let mut index = self.index.take()?;
         let boxes = &self.boxes;
@@ -258,7 +263,7 @@ impl Movers {
         }
         index.compact();
         for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
-            let Found { partners, ends, .. } = &mut *found;
+            let FoundPartners { partners, ends, .. } = &mut *found;
             let left = most_work - work;
             let read = index.find_partners(seekers, rules, &mut self.search, partners, ends, left);
             // A pair of two changed bodies is found twice.
@@ -273,7 +278,7 @@ impl Movers {
     }
 
     /// Ends a cull in which these bodies were searched for.
-    pub fn reuse(&mut self, found: Found) {
+    pub fn end_search(&mut self, found: FoundPartners) {
         self.found = found;
         self.end();
         self.served = self.served.saturating_add(1);

@@ -204,14 +204,8 @@ impl PairLog {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+    use super::super::ids::tests::filled as ids;
     use super::*;
-
-    /// Ids of this number of bodies.
-    fn ids(bodies: u32) -> Ids {
-        let mut ids = Ids::default();
-        (0..bodies).for_each(|_| assert!(ids.take()));
-        ids
-    }
 
     fn cull(log: &mut PairLog, ids: &Ids, pairs: impl IntoIterator<Item = [u32; 2]>) {
         let mut list = log.take();

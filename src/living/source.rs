@@ -5,11 +5,11 @@ use std::fmt::Debug;
 use super::{Groups, Members, Motion, WorldError};
 use crate::bodies::contract::ContractError;
 use crate::counters::RestCounters;
-use crate::pairs::{Found, PairList};
+use crate::pairs::{FoundPartners, PairList};
 
 /// A function that is given reported pairs in portions.
 #[doc(hidden)]
-pub type TakePortion<'a> = dyn FnMut(&PairList) + Send + 'a;
+pub type PortionReader<'a> = dyn FnMut(&PairList) + Send + 'a;
 
 /// The volumes of a set's bodies, in rows, and how their pairs are found: `Meshes` or
 /// [`Boxes`](crate::boxes::Boxes). Only this crate has any.
@@ -58,7 +58,7 @@ pub trait VolumeSource: Clone + Debug {
 
     /// The partners of the bodies that have changed. `None` if finding all pairs would be faster,
     /// or if these bodies are near more than `most` others.
-    fn find_changed(&mut self, members: &mut Members, most: usize) -> Option<Found>;
+    fn find_changed(&mut self, members: &mut Members, most: usize) -> Option<FoundPartners>;
 
     /// Counts a cull in which only changed bodies were searched for.
     fn count_changed(&mut self, counted: RestCounters, pairs: usize, seconds: f64);
@@ -84,7 +84,7 @@ pub trait VolumeSource: Clone + Debug {
     fn pass_on_all(
         &mut self,
         members: &Members,
-        take: &mut TakePortion<'_>,
+        take: &mut PortionReader<'_>,
     ) -> Result<u64, WorldError>;
 
     /// Bytes of intermediate lists of pairs.

@@ -2,7 +2,7 @@
 
 /// Bodies that have changed, and the partners that were found for each.
 #[derive(Clone, Debug, Default)]
-pub struct Found {
+pub struct FoundPartners {
     /// The bodies. The first `present` of them exist; the others are gone, and have no partners.
     pub bodies: Vec<u32>,
     pub present: usize,
@@ -11,7 +11,7 @@ pub struct Found {
     pub ends: Vec<usize>,
 }
 
-impl Found {
+impl FoundPartners {
     /// The bodies that exist.
     pub fn present(&self) -> &[u32] {
         &self.bodies[..self.present]

@@ -82,7 +82,7 @@ fn meets(
 }
 
 impl ImageSource for Boxes {
-    type Given = PeriodicBox;
+    type UserBody = PeriodicBox;
 
     const IS_EXACT: bool = true;
 

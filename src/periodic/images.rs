@@ -50,7 +50,7 @@ impl Image {
 #[doc(hidden)]
 pub trait ImageSource: VolumeSource {
     /// A body as the user gives it, anywhere.
-    type Given: Copy + Debug + PartialEq + Sync;
+    type UserBody: Copy + Debug + PartialEq + Sync;
 
     /// Whether pairs are decided exactly, so that they don't depend on the period in which a body
     /// is held.
@@ -60,26 +60,26 @@ pub trait ImageSource: VolumeSource {
     fn place(
         set: &LivingSet<Self>,
         slot: usize,
-        body: &Self::Given,
+        body: &Self::UserBody,
         periods: &Periods,
     ) -> Result<Placement, PeriodicError>;
 
     /// The image of a body that is moved by whole periods and has a place.
-    fn image(body: &Self::Given, shift: [i32; 3], periods: &Periods) -> Self::Body;
+    fn image(body: &Self::UserBody, shift: [i32; 3], periods: &Periods) -> Self::Body;
 
     /// Whether a reported pair may touch, the second body moved by whole periods. It is true for at
     /// most one such number. Two small bodies need not be asked about.
     fn may_touch(
         periods: &Periods,
-        a: &PlacedBody<Self::Given>,
-        b: &PlacedBody<Self::Given>,
+        a: &PlacedBody<Self::UserBody>,
+        b: &PlacedBody<Self::UserBody>,
         image: [i32; 3],
     ) -> bool;
 
     /// Whether a body that an index has found may touch a volume, moved by this number of periods.
     fn may_touch_volume(
         _periods: &Periods,
-        _body: &PlacedBody<Self::Given>,
+        _body: &PlacedBody<Self::UserBody>,
         _image: [i32; 3],
         _volume: &QueryVolume<'_>,
     ) -> bool {

@@ -39,19 +39,19 @@
 mod borders;
 mod boxes;
 mod error;
-mod events;
 mod images;
+mod pairs;
 pub(crate) mod periods;
 mod query;
 mod world;
 
 pub use boxes::PeriodicBox;
 pub use error::PeriodicError;
-pub use events::PeriodicEvents;
 pub use images::ImageSource;
 pub(crate) use images::{PlacedBody, Placement};
+pub use pairs::{PeriodicEvents, PeriodicPair};
 pub use query::{PeriodicHit, PeriodicIndex};
-pub use world::{Periodic, PeriodicPair};
+pub use world::Periodic;
 
 use crate::boxes::{BoxCullerBuilder, BoxWorld, Boxes};
 

@@ -57,7 +57,7 @@ pub struct PeriodicIndex<V: ImageSource> {
     /// How far bodies reach from the middle of the period.
     reach: [f64; 3],
     images: Vec<Image>,
-    bodies: Vec<PlacedBody<V::Given>>,
+    bodies: Vec<PlacedBody<V::UserBody>>,
 }
 
 impl<V: ImageSource> Default for PeriodicIndex<V>

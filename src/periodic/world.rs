@@ -1,25 +1,16 @@
 //! A world with periodic axes: bodies, their images, and the pairs of both.
 
+use super::PeriodicError;
 use super::borders::Borders;
 use super::images::{Image, ImageSource, PlacedBody, Placement};
+use super::pairs::{PeriodicEvents, PeriodicPair, merge};
 use super::periods::Periods;
-use super::{PeriodicError, PeriodicEvents};
 use crate::cull_error::CullError;
 use crate::living::{BodyId, Ids, LivingSet, WorldError};
 use crate::simd::in_default_mode;
 
 /// The images of all bodies are placed anew if more than one in this number of bodies was set.
 const BODIES_PER_CHANGE: usize = 16;
-
-/// Two bodies that may touch, the second one moved by whole periods.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct PeriodicPair {
-    /// The bodies, the lower slot first.
-    pub bodies: [BodyId; 2],
-    /// The number of periods along each axis by which the second body is moved, from where the user
-    /// has put it, so that it may touch the first.
-    pub image: [i32; 3],
-}
 
 /// A long-lived set of bodies in space that repeats along some axes. See the [module](super).
 ///
@@ -33,7 +24,7 @@ pub struct Periodic<V: ImageSource> {
     /// All images.
     world: LivingSet<V>,
     /// The bodies by slot of that image; slots of other images have invalid entries.
-    pub(super) bodies: Vec<PlacedBody<V::Given>>,
+    pub(super) bodies: Vec<PlacedBody<V::UserBody>>,
     /// The images by slot of the world.
     pub(super) images: Vec<Image>,
     /// The other images of each body, by slot of the first.
@@ -114,7 +105,7 @@ impl<V: ImageSource> Periodic<V> {
     /// # Errors
     /// Along a periodic axis, the body is as long as half of the period or longer, or farther than
     /// 2²⁸ periods from the origin; or it is outside of the contract.
-    pub fn insert(&mut self, body: impl Into<V::Given>) -> Result<BodyId, PeriodicError> {
+    pub fn insert(&mut self, body: impl Into<V::UserBody>) -> Result<BodyId, PeriodicError> {
         let body = body.into();
         in_default_mode(|| {
             let place = V::place(&self.world, self.ids.next_slot(), &body, &self.periods)?;
@@ -147,7 +138,7 @@ impl<V: ImageSource> Periodic<V> {
     ///
     /// # Errors
     /// The body has been removed.
-    pub fn body(&self, id: BodyId) -> Result<V::Given, PeriodicError> {
+    pub fn body(&self, id: BodyId) -> Result<V::UserBody, PeriodicError> {
         Ok(self.bodies[self.slot(id)?].body)
     }
 
@@ -155,7 +146,7 @@ impl<V: ImageSource> Periodic<V> {
     ///
     /// # Errors
     /// The body has been removed, or as [`Self::insert`].
-    pub fn set(&mut self, id: BodyId, body: impl Into<V::Given>) -> Result<(), PeriodicError> {
+    pub fn set(&mut self, id: BodyId, body: impl Into<V::UserBody>) -> Result<(), PeriodicError> {
         let (slot, body) = (self.slot(id)?, body.into());
         in_default_mode(|| {
             let mut place = V::place(&self.world, id.slot(), &body, &self.periods)?;
@@ -179,7 +170,7 @@ impl<V: ImageSource> Periodic<V> {
     }
 
     /// All present bodies as they were inserted or set, sorted by slot.
-    pub fn bodies(&self) -> impl Iterator<Item = (BodyId, V::Given)> + '_ {
+    pub fn bodies(&self) -> impl Iterator<Item = (BodyId, V::UserBody)> + '_ {
         let body = |row: usize| self.bodies[self.homes[row].slot()].body;
         self.ids.filled().map(move |row| (self.ids.id(row as u32), body(row)))
     }
@@ -286,7 +277,7 @@ impl<V: ImageSource> Periodic<V> {
     }
 
     /// Notes what a slot of the world has got.
-    fn name(&mut self, id: BodyId, image: Image, body: PlacedBody<V::Given>) {
+    fn name(&mut self, id: BodyId, image: Image, body: PlacedBody<V::UserBody>) {
         let slot = id.slot();
         if self.images.len() <= slot {
             self.images.resize(slot + 1, image);
@@ -312,7 +303,7 @@ impl<V: ImageSource> Periodic<V> {
 
     /// Sets a present body and the images that it has.
     #[inline]
-    fn put(&mut self, slot: usize, body: &V::Given, place: &Placement) {
+    fn put(&mut self, slot: usize, body: &V::UserBody, place: &Placement) {
         let (image, placed) = (&mut self.images[slot], &mut self.bodies[slot]);
         (placed.body, placed.place) = (*body, *place);
         (image.shift, image.is_small) = (place.shift, place.is_small);
@@ -468,19 +459,5 @@ impl<V: ImageSource> Periodic<V> {
         merge(&mut self.pairs, &self.across);
         self.ids.settle();
         Ok(())
-    }
-}
-
-/// Merges a sorted list into another.
-fn merge(pairs: &mut Vec<PeriodicPair>, others: &[PeriodicPair]) {
-    let (mut left, mut end) = (pairs.len(), pairs.len() + others.len());
-    pairs.extend_from_slice(others);
-    for &other in others.iter().rev() {
-        while left > 0 && pairs[left - 1] > other {
-            (left, end) = (left - 1, end - 1);
-            pairs[end] = pairs[left];
-        }
-        end -= 1;
-        pairs[end] = other;
     }
 }

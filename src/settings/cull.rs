@@ -197,6 +197,15 @@ pub enum SettingsError {
 
 crate::problem::errors!(SettingsError);
 
+impl Budget {
+    fn check(self, has_clock: bool) -> Result<(), SettingsError> {
+        match self {
+            Self::Microseconds(_) if !has_clock => Err(SettingsError::NoClock),
+            _ => Ok(()),
+        }
+    }
+}
+
 impl SettingsError {
     /// How to mend it.
     #[must_use]
@@ -238,9 +247,7 @@ impl CullSettings {
                 "give budget = { tests = 1000 } or budget = { microseconds = 500 }",
             ));
         }
-        if matches!(self.budget, Some(Budget::Microseconds(_))) && !HAS_CLOCK {
-            return Err(SettingsError::NoClock);
-        }
+        self.budget.map_or(Ok(()), |budget| budget.check(HAS_CLOCK))?;
         self.interest.as_ref().map_or(Ok(()), |interest| interest.check(bodies))
     }
 }
@@ -286,5 +293,21 @@ impl Interest {
             return wrong(format!("range {range}"), "a length above 0, or leave it out");
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn budgets_of_time_need_a_clock() {
+        for (budget, has_clock, is_sound) in [
+            (Budget::Microseconds(5), true, true),
+            (Budget::Microseconds(5), false, false),
+            (Budget::Tests(5), false, true),
+        ] {
+            assert_eq!(budget.check(has_clock).is_ok(), is_sound, "{budget:?}");
+        }
     }
 }

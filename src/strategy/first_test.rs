@@ -12,7 +12,7 @@ use crate::simd::Lanes;
 
 /// The volumes of a strategy's first test.
 #[derive(Clone, Copy)]
-pub(super) enum TestedFirst<'a> {
+pub(super) enum FirstVolumeTest<'a> {
     /// Spheres in slot order.
     Spheres(SlotBodies<'a>),
     /// World-aligned slabs.
@@ -21,7 +21,7 @@ pub(super) enum TestedFirst<'a> {
     PassAll,
 }
 
-impl FirstVolume for TestedFirst<'_> {
+impl FirstVolume for FirstVolumeTest<'_> {
     #[inline(always)]
     fn list<L: Lanes>(self, l: L, parts: ListParts<'_, Self>) -> VolumeCounters {
         match self {
@@ -33,12 +33,12 @@ impl FirstVolume for TestedFirst<'_> {
 }
 
 /// The candidates of a frame, and the strategy's first test.
-pub(super) fn listing(inputs: Inputs<'_>, listed: PairNames) -> Listing<'_, TestedFirst<'_>> {
+pub(super) fn listing(inputs: Inputs<'_>, listed: PairNames) -> Listing<'_, FirstVolumeTest<'_>> {
     let arranged = inputs.arranged;
     let first = match inputs.setup.scheme.first {
-        None => TestedFirst::PassAll,
-        Some(TestedVolume::Sphere) => TestedFirst::Spheres(arranged.slots),
-        Some(_) => TestedFirst::Intervals(inputs.volumes.intervals),
+        None => FirstVolumeTest::PassAll,
+        Some(TestedVolume::Sphere) => FirstVolumeTest::Spheres(arranged.slots),
+        Some(_) => FirstVolumeTest::Intervals(inputs.volumes.intervals),
     };
     Listing {
         tier: inputs.executor.tier,

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use super::first_test::{self, TestedFirst};
+use super::first_test::{self, FirstVolumeTest};
 use super::interest::InterestFilter;
 use super::refine::Refine;
 use super::{Inputs, Scratch, Task};
@@ -40,7 +40,7 @@ pub(super) fn flow(
 
 /// Runs one task: candidates are refined whenever they fill a block.
 fn refine_blocks(
-    listing: &Listing<'_, TestedFirst<'_>>,
+    listing: &Listing<'_, FirstVolumeTest<'_>>,
     parts: Range<usize>,
     refine: &Refine<'_>,
     interest: Option<&[bool]>,

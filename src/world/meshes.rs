@@ -15,9 +15,9 @@ use crate::broad_phase::{BoxIndex, IndexedBox, tags};
 use crate::counters::RestCounters;
 use crate::culler::Culler;
 use crate::living::{
-    BodyId, Ids, Members, TakePortion, VolumeSource, renumber_column, renumbered_pairs,
+    BodyId, Ids, Members, PortionReader, VolumeSource, renumber_column, renumbered_pairs,
 };
-use crate::pairs::{Found, PairList};
+use crate::pairs::{FoundPartners, PairList};
 use crate::settings::Interest;
 use crate::simd::in_default_mode;
 use crate::strategy::RefinementRanks;
@@ -202,7 +202,7 @@ impl VolumeSource for Meshes {
         members.movers.take_index(index);
     }
 
-    fn find_changed(&mut self, members: &mut Members, most: usize) -> Option<Found> {
+    fn find_changed(&mut self, members: &mut Members, most: usize) -> Option<FoundPartners> {
         self.place_changed(members).ok()?;
         if !members.movers.are_few() {
             return None;
@@ -214,10 +214,8 @@ impl VolumeSource for Meshes {
         let mut found = members.movers.take_changed(&members.ids);
         let boxes = self.culler.boxes_of(&self.bodies, found.present());
         self.culler.count_sample_updates(found.present);
-        let (mut boxes, groups) = (boxes.into_iter(), &members.groups);
-        let indexed = |&row: &u32| self.indexed(row, groups, boxes.next());
-        members.movers.list(found.bodies.iter().map(indexed));
-        members.find(&mut found, most)?;
+        let mut boxes = boxes.into_iter();
+        members.find(&mut found, most, |row, _, groups| self.indexed(row, groups, boxes.next()))?;
         self.culler.test_found(&self.bodies, &mut found, &self.is_of_interest);
         Some(found)
     }
@@ -261,7 +259,7 @@ impl VolumeSource for Meshes {
     fn pass_on_all(
         &mut self,
         members: &Members,
-        take: &mut TakePortion<'_>,
+        take: &mut PortionReader<'_>,
     ) -> Result<u64, WorldError> {
         Ok(self.culler.pass_on(&self.bodies, members.filter(), take)?)
     }

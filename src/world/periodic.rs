@@ -55,7 +55,7 @@ impl PeriodicWorld {
 }
 
 impl ImageSource for Meshes {
-    type Given = Body;
+    type UserBody = Body;
 
     const IS_EXACT: bool = false;
 

@@ -155,8 +155,8 @@ impl AskedWorld for World {
 impl<V: ImageSource> AskedWorld for Periodic<V>
 where
     LivingSet<V>: QuerySource,
-    Self: JudgedWorld<Body = V::Given>,
-    V::Given: AskedBody,
+    Self: JudgedWorld<Body = V::UserBody>,
+    V::UserBody: AskedBody,
 {
     type Index = PeriodicIndex<V>;
 
@@ -171,7 +171,7 @@ where
     fn ask(
         &self,
         index: &mut PeriodicIndex<V>,
-        _: &[(BodyId, V::Given)],
+        _: &[(BodyId, V::UserBody)],
         volumes: &[QueryVolume<'_>],
     ) -> Result<Option<Vec<Found>>, HistoryError> {
         index.update(self);

@@ -196,13 +196,13 @@ impl JudgedWorld for World {
 
 impl<V: ImageSource> JudgedWorld for Periodic<V>
 where
-    V::Given: Properties,
+    V::UserBody: Properties,
 {
-    forwarded!(V::Given);
+    forwarded!(V::UserBody);
 
     type Saved = Self;
 
-    fn change(&mut self, id: BodyId, _: V::Given, to: V::Given) -> Result<(), HistoryError> {
+    fn change(&mut self, id: BodyId, _: V::UserBody, to: V::UserBody) -> Result<(), HistoryError> {
         Ok(self.set(id, to)?)
     }
 
@@ -220,7 +220,7 @@ where
         Some([events.begun(), events.persisting(), events.ended()].map(of))
     }
 
-    fn all(&self) -> Vec<(BodyId, V::Given)> {
+    fn all(&self) -> Vec<(BodyId, V::UserBody)> {
         self.ids().filter_map(|id| Some((id, self.body(id).ok()?))).collect()
     }
 

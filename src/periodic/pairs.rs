@@ -1,7 +1,18 @@
-//! Events of a periodic world: what has begun and ended since they were last read.
+//! The pairs of a periodic world, and its events: what has begun and ended since they were last
+//! read.
 
-use super::PeriodicPair;
+use crate::living::BodyId;
 use crate::pairs::{Merge, Merged};
+
+/// Two bodies that may touch, the second one moved by whole periods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PeriodicPair {
+    /// The bodies, the lower slot first.
+    pub bodies: [BodyId; 2],
+    /// The number of periods along each axis by which the second body is moved, from where the user
+    /// has put it, so that it may touch the first.
+    pub image: [i32; 3],
+}
 
 /// The pairs that have begun, persist or have ended between two culls of a periodic world, each
 /// kind sorted by slots. It doesn't borrow the world.
@@ -47,5 +58,19 @@ impl PeriodicEvents {
     #[must_use]
     pub fn ended(&self) -> &[PeriodicPair] {
         &self.ended
+    }
+}
+
+/// Merges a sorted list into another.
+pub(super) fn merge(pairs: &mut Vec<PeriodicPair>, others: &[PeriodicPair]) {
+    let (mut left, mut end) = (pairs.len(), pairs.len() + others.len());
+    pairs.extend_from_slice(others);
+    for &other in others.iter().rev() {
+        while left > 0 && pairs[left - 1] > other {
+            (left, end) = (left - 1, end - 1);
+            pairs[end] = pairs[left];
+        }
+        end -= 1;
+        pairs[end] = other;
     }
 }
