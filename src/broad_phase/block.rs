@@ -152,10 +152,16 @@ impl RunWriter<'_> {
             self.write(CODES_PER_STORE, code);
             self.len += length;
         } else {
-            let slot = self.page.first + lane;
-            self.page.long[self.long_len] = (slot as u32, run.start, run.end);
-            self.long_len += 1;
+            self.push_long(lane, run);
         }
+    }
+
+    /// Appends the slots of `run` as candidates of the slot in `lane`, as a run however long it is.
+    #[inline(always)]
+    pub fn push_long(&mut self, lane: usize, run: Range<u32>) {
+        let slot = self.page.first + lane;
+        self.page.long[self.long_len] = (slot as u32, run.start, run.end);
+        self.long_len += 1;
     }
 
     #[inline(always)]

@@ -126,21 +126,24 @@ impl Sweep {
     pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
         let moving_parts = self.moving.div_ceil(SLOTS_PER_PART);
         for part in parts {
-            if part < moving_parts {
-                for i in part * SLOTS_PER_PART..self.moving.min((part + 1) * SLOTS_PER_PART) {
-                    test.run(l, i, i + 1..self.end(l, i, i + 1..self.moving));
-                    // Static bodies that begin no earlier than this one.
-                    let fixed = &self.lo[self.moving..self.len];
-                    let start = self.moving + fixed.partition_point(|&lo| lo < self.lo[i]);
-                    test.run(l, i, start..self.end(l, i, start..self.len));
-                }
+            let (slots, moves) = if part < moving_parts {
+                (part * SLOTS_PER_PART..self.moving, true)
             } else {
-                let first = self.moving + (part - moving_parts) * SLOTS_PER_PART;
-                for i in first..self.len.min(first + SLOTS_PER_PART) {
+                (self.moving + (part - moving_parts) * SLOTS_PER_PART..self.len, false)
+            };
+            for i in slots.take(SLOTS_PER_PART) {
+                let (moving, fixed) = (&self.lo[..self.moving], &self.lo[self.moving..self.len]);
+                let runs = if moves {
+                    // Moving bodies after it, and static ones that begin no earlier.
+                    let start = self.moving + fixed.partition_point(|&lo| lo < self.lo[i]);
+                    [i + 1..self.moving, start..self.len]
+                } else {
                     // Moving bodies that begin later than this static one.
-                    let moving = &self.lo[..self.moving];
-                    let start = moving.partition_point(|&lo| lo <= self.lo[i]);
-                    test.run(l, i, start..self.end(l, i, start..self.moving));
+                    [moving.partition_point(|&lo| lo <= self.lo[i])..self.moving, 0..0]
+                };
+                // A loop, although they are two: the test is compiled into it once.
+                for run in runs {
+                    test.run(l, i, run.start..self.end(l, i, run));
                 }
             }
         }

@@ -12,7 +12,7 @@ use crate::overlap::ordop::OrDopColumns;
 use crate::pairs::{FoundPartners, PairList};
 use crate::rounding::{down, sphere::apart, up, widen};
 use crate::settings::Flow;
-use crate::simd::{Kernel, Lanes, Tier, dispatch};
+use crate::simd::{Kernel, Lanes, in_one_lane};
 use crate::threads::FrameWork;
 use crate::update::{OrDopRows, RowsByNumber, UpdateInputs, update_spheres};
 
@@ -136,7 +136,7 @@ impl Culler {
             let of = |place: usize| &slabs[place * each..(place + 1) * each];
             found.retain(|number, at, _| meet(of(number), of(count + at)));
         } else {
-            dispatch(Tier::SCALAR, KeepNear { balls, found });
+            in_one_lane(KeepNear { balls, found });
         }
         VolumeCounters { updates: 0, tests, hits: found.partners.len() as u64 }
     }

@@ -6,7 +6,7 @@
 //! written and read again is the same. For that reason the offset, and the decision whether to use
 //! one, are computed from the coordinates that result, with a margin of a sixteenth.
 
-use crate::rounding::{exp2, up};
+use crate::rounding::{exp2, two_sum, up};
 
 /// 15/16 of 2⁻²⁰: how far rounding may move a point of a mesh that stays where it is, as a multiple
 /// of the mesh's largest extent. The sixteenth is what re-centring moves at most.
@@ -68,7 +68,7 @@ pub(super) fn rounding(points: &[[f64; 3]], offset: [f64; 3]) -> f32 {
     let squared = |&point: &[f64; 3]| {
         let vertex = vertex(point, offset);
         let moved = |i: usize| {
-            let (difference, lost) = difference(point[i], offset[i]);
+            let (difference, lost) = two_sum(point[i], -offset[i]);
             (difference - f64::from(vertex[i])) + lost
         };
         (0..3).map(|i| moved(i).powi(2)).sum::<f64>()
@@ -79,13 +79,6 @@ pub(super) fn rounding(points: &[[f64; 3]], offset: [f64; 3]) -> f32 {
         return 0.0;
     }
     up(squared.sqrt() * (1.0 + exp2(-40)))
-}
-
-/// a − b = difference + lost exactly, by Knuth's two-sum.
-fn difference(a: f64, b: f64) -> (f64, f64) {
-    let difference = a - b;
-    let of_b = difference - a;
-    (difference, (a - (difference - of_b)) - (b + of_b))
 }
 
 /// A box about points.

@@ -53,6 +53,13 @@ pub const FINDER_FACTOR: f64 = 1.0 + exp2(-20);
 /// 2⁻⁷⁸: the same where squares underflow, R being 2⁻⁷⁰ at least. Proof: `finder.g`.
 pub const FINDER_FLOOR: f64 = exp2(-78);
 
+/// a + b = sum + lost exactly, in any order of magnitude (Knuth's two-sum).
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
 /// The smallest f32 that certainly exceeds the exact value that `x`, a result of f64 arithmetic,
 /// approximates.
 ///
@@ -105,6 +112,12 @@ pub const fn widen(radius: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sums_keep_what_is_lost() {
+        assert_eq!(two_sum(1.0e16, 1.0), (1.0e16, 1.0));
+        assert_eq!(two_sum(0.5, -0.25), (0.25, 0.0));
+    }
 
     #[test]
     fn outward_means_strictly_past_the_nearest() {

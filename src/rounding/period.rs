@@ -7,7 +7,7 @@
 //! rounded sum, and since rounding keeps order, the larger numbers decide unless they are equal.
 //! Then the smaller ones do. Theorem I of `paper/proofs/LEMMAS.md`.
 
-use super::exp2;
+use super::{exp2, two_sum};
 
 /// 2⁻⁵⁶ and 2⁵⁶: the shortest and the longest period. Then neither products of whole numbers and a
 /// period nor their rounding errors underflow or overflow.
@@ -51,7 +51,7 @@ pub fn shifted(x: f64, n: i32, period: f64) -> (f64, f64) {
     let n = f64::from(n);
     let way = n * period;
     let sum = x + way;
-    if n.mul_add(period, -way) == 0.0 && lost(x, way) == 0.0 {
+    if n.mul_add(period, -way) == 0.0 && two_sum(x, way).1 == 0.0 {
         return (sum, 0.0);
     }
     (sum, SHIFT_ERROR * (n.abs() + 1.0) * period)
@@ -69,21 +69,14 @@ pub fn is_within(lo: f64, hi: f64, n: i32, period: f64) -> bool {
     if gap != way {
         return gap < way;
     }
-    lost(lo, -hi) <= n.mul_add(period, -way)
+    two_sum(lo, -hi).1 <= n.mul_add(period, -way)
 }
 
 /// Whether hi − lo is less than half of the period, in exact arithmetic.
 #[must_use]
 pub fn is_below_half(lo: f64, hi: f64, period: f64) -> bool {
     let twice = 2.0 * (hi - lo);
-    twice < period || twice == period && lost(hi, -lo) < 0.0
-}
-
-/// What rounding takes from a + b (Knuth's two-sum).
-fn lost(a: f64, b: f64) -> f64 {
-    let sum = a + b;
-    let of_b = sum - a;
-    (a - (sum - of_b)) + (b - of_b)
+    twice < period || twice == period && two_sum(hi, -lo).1 < 0.0
 }
 
 #[cfg(test)]

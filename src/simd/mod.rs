@@ -85,6 +85,11 @@ pub trait Kernel {
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
 
+/// Runs `kernel` in one lane. It is not compiled for any other tier.
+pub fn in_one_lane<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run(scalar::Scalar::<false>::new())
+}
+
 /// Runs `kernel` in the tier that `tier` names.
 pub fn dispatch<K: Kernel>(tier: Tier, kernel: K) -> K::Output {
     match tier.tier() {

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::{Basis, DirectionSet};
 use crate::mesh::in_f64;
-use crate::rounding::{ceil_f32, down, floor_f32, up};
+use crate::rounding::{ceil_f32, down, floor_f32, two_sum, up};
 
 /// An oriented k-DOP in the body frame: `lo[i] ≤ d_i·x ≤ hi[i]` for every vertex x in exact
 /// arithmetic, with d_i = Σ_j coefficient_ij·column_j.
@@ -84,14 +84,6 @@ fn dot_bounds(a: DVec3, b: DVec3) -> (f64, f64) {
     let value = sum + tail;
     let error = f64::EPSILON * 2.0 * (sum.abs() + tail.abs());
     (value - error, value + error)
-}
-
-/// Knuth's two-sum: a + b = sum + error exactly, in any order of magnitude.
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let of_b = sum - a;
-    let of_a = sum - of_b;
-    (sum, (a - of_a) + (b - of_b))
 }
 
 #[cfg(test)]

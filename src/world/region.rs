@@ -4,8 +4,8 @@
 //! is added to the body's margin, so that volumes at the rounded place contain the exact mesh
 //! (theorem T).
 
-use crate::rounding::exp2;
 use crate::rounding::query::largest;
+use crate::rounding::{exp2, two_sum};
 
 /// √3·2⁻²⁴ < 2⁻²³: the largest distance by which rounding the local translation to f64 and then to
 /// f32 moves a body, as a multiple of its largest coordinate.
@@ -44,19 +44,12 @@ impl Region {
 
     /// The differences from the origin, and those from the corner then, and whether all are exact.
     fn differences(&self, t: [f64; 3]) -> ([f64; 3], [f64; 3], bool) {
-        let from_origin = [0, 1, 2].map(|i| difference(t[i], self.origin[i]));
+        let from_origin = [0, 1, 2].map(|i| two_sum(t[i], -self.origin[i]));
         let far = from_origin.map(|(sum, _)| sum);
-        let from_corner = [0, 1, 2].map(|i| difference(far[i], self.corner[i]));
+        let from_corner = [0, 1, 2].map(|i| two_sum(far[i], -self.corner[i]));
         let is_exact = from_origin.iter().chain(&from_corner).all(|(_, lost)| *lost == 0.0);
         (far, from_corner.map(|(sum, _)| sum), is_exact)
     }
-}
-
-/// a − b in f64, and its exact rounding error (Knuth's two-sum).
-fn difference(a: f64, b: f64) -> (f64, f64) {
-    let sum = a - b;
-    let of_b = sum - a;
-    (sum, (a - (sum - of_b)) - (b + of_b))
 }
 
 #[cfg(test)]
@@ -70,20 +63,13 @@ mod tests {
     fn share(region: &Region, t: [f64; 3]) -> f64 {
         let (placed, bound) = region.place(t);
         let moved = |i: usize| {
-            let (first, lost) = difference(t[i], region.origin[i]);
-            let (second, lost_again) = difference(first, region.corner[i]);
+            let (first, lost) = two_sum(t[i], -region.origin[i]);
+            let (second, lost_again) = two_sum(first, -region.corner[i]);
             (f64::from(placed[i]) - second) - (lost + lost_again)
         };
         assert!(bound > 0.0);
         let sum: f64 = (0..3).map(|i| (moved(i) / bound).powi(2)).sum();
         sum.sqrt()
-    }
-
-    #[test]
-    fn a_difference_keeps_what_is_lost() {
-        let (sum, lost) = difference(1.0e16, -1.0);
-        assert_eq!((sum, lost), (1.0e16, 1.0));
-        assert_eq!(difference(0.5, 0.25), (0.25, 0.0));
     }
 
     #[test]

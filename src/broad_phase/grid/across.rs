@@ -1,14 +1,9 @@
 //! Pairs between two levels of the grid: whichever side is cheaper searches for the other.
 
-use std::ops::Range;
-
-use super::Grid;
 use super::level::GridLevel;
-use super::near::hand_over;
-use crate::broad_phase::{BLOCK_BODIES, BlockPage, FirstTest};
-use crate::rounding::skin::Reach;
+use super::{Grid, GridPart, PartSearch};
+use crate::broad_phase::BlockPage;
 use crate::rounding::widen;
-use crate::simd::Lanes;
 
 /// How bodies of one level find those of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,67 +42,71 @@ pub fn plan(a: &GridLevel, b: &GridLevel) -> (bool, LevelSearch) {
 }
 
 impl Grid {
-    /// Finds the pairs of a slot in `seekers`, whose balls grow by `grown`, and a slot in the level
-    /// `target`, which is another level.
+    /// Lists pairs of which one slot is in the search's first block and the other in another level;
+    /// as many as there is room for.
     #[inline(always)]
-    pub(super) fn across<L: Lanes>(
+    pub(super) fn across(
         &self,
-        l: L,
-        (seekers, grown): (Range<usize>, Reach),
-        target: &GridLevel,
+        part: &GridPart,
+        how: LevelSearch,
+        search: &mut PartSearch,
         page: &mut BlockPage,
-        test: &mut impl FirstTest,
     ) {
-        let starts = target.starts.as_slice();
+        let (grown, target) = (self.levels[part.seeker].reach, &self.levels[part.level]);
+        let (starts, bodies) = (target.starts.as_slice(), search.block());
         let (table, most_span) = (target.cells.table_len(), target.cells.most_span());
-        let all = target.range.start as u32..target.range.end as u32;
-        let mut first = seekers.start;
-        while first < seekers.end {
-            let mut pen = page.restart(first);
-            for i in first..seekers.end.min(first + BLOCK_BODIES) {
-                let ball = &self.slots.balls[i];
-                let reach = f64::from(widen(grown.of(ball[3]))) + target.widest;
-                let Some([lo, hi]) = target.cells.around(ball, reach) else {
-                    continue;
-                };
-                if (0..3).any(|axis| hi[axis] - lo[axis] >= most_span) {
-                    if pen.is_full(1) {
-                        pen.done();
-                        hand_over(l, page, test);
-                        pen = page.restart(first);
-                    }
-                    pen.push(i - first, all.clone());
-                    continue;
-                }
-                for z in lo[2]..=hi[2] {
-                    for y in lo[1]..=hi[1] {
-                        if pen.is_full(2) {
-                            pen.done();
-                            hand_over(l, page, test);
-                            pen = page.restart(first);
-                        }
-                        let row = target.cells.index([lo[0], y, z]) as usize;
-                        let end = row + (hi[0] - lo[0]) as usize + 1;
-                        pen.push(i - first, starts[row]..starts[end.min(table)]);
-                        if end > table {
-                            pen.push(i - first, starts[0]..starts[end - table]);
-                        }
-                    }
-                }
+        let mut pen = page.restart(bodies.start);
+        for lane in search.lane..bodies.len() {
+            if how == LevelSearch::All {
+                pen.push_long(lane, target.slots());
+                continue;
             }
-            pen.done();
-            hand_over(l, page, test);
-            first += BLOCK_BODIES;
+            let resumed = search.row.take();
+            let ball = &self.slots.balls[bodies.start + lane];
+            let reach = f64::from(widen(grown.of(ball[3]))) + target.widest;
+            let Some([lo, hi]) = target.cells.around(ball, reach) else {
+                continue;
+            };
+            let [mut z, mut y] = resumed.unwrap_or([lo[2], lo[1]]);
+            if (0..3).any(|axis| hi[axis] - lo[axis] >= most_span) {
+                if pen.is_full(1) {
+                    (search.lane, search.row) = (lane, None);
+                    return pen.done();
+                }
+                pen.push(lane, target.slots());
+                continue;
+            }
+            while z <= hi[2] {
+                while y <= hi[1] {
+                    if pen.is_full(2) {
+                        (search.lane, search.row) = (lane, Some([z, y]));
+                        return pen.done();
+                    }
+                    let row = target.cells.index([lo[0], y, z]) as usize;
+                    let end = row + (hi[0] - lo[0]) as usize + 1;
+                    pen.push(lane, starts[row]..starts[end.min(table)]);
+                    if end > table {
+                        pen.push(lane, starts[0]..starts[end - table]);
+                    }
+                    y += 1;
+                }
+                (z, y) = (z + 1, lo[1]);
+            }
         }
+        pen.done();
+        search.next_block();
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::PartKind;
     use super::super::cells::{Cells, TableLayout};
+    use std::ops::Range;
+
     use super::*;
-    use crate::broad_phase::{BallBounds, Block};
-    use crate::simd::{Kernel, Tier, dispatch};
+    use crate::broad_phase::{BallBounds, Block, FirstTest};
+    use crate::simd::{Kernel, Lanes, Tier, dispatch};
 
     const TARGETS: usize = 24;
     const SEEKERS: usize = 30;
@@ -131,12 +130,9 @@ mod tests {
 
     impl Kernel for SearchAcross<'_> {
         type Output = PairCount;
-        #[inline(always)]
         fn run<L: Lanes>(self, l: L) -> PairCount {
             let mut count = PairCount([[0; TARGETS]; SEEKERS]);
-            let (seekers, mut page) = (self.0.levels[1].range.clone(), BlockPage::new());
-            let seekers = (seekers, Reach::NONE);
-            self.0.across(l, seekers, &self.0.levels[0], &mut page, &mut count);
+            self.0.find(l, 0..1, &mut count);
             count
         }
     }
@@ -164,6 +160,9 @@ mod tests {
             let pool = crate::threads::Threads::default();
             let executor = crate::threads::Executor { tier: Tier::SCALAR, pool: &pool };
             grid.arrange(executor, &balls, &names);
+            let (slots, kind) =
+                (grid.levels[1].range.clone(), PartKind::Across(LevelSearch::Cells));
+            grid.parts = vec![GridPart { slots, seeker: 1, level: 0, kind }];
             let PairCount(found) = dispatch(Tier::SCALAR, SearchAcross(&grid));
             for (i, found) in (TARGETS..).zip(found) {
                 for (j, times) in found.into_iter().enumerate() {

@@ -57,6 +57,11 @@ impl GridLevel {
         Self { range, ..self }
     }
 
+    /// Its slots.
+    pub fn slots(&self) -> Range<u32> {
+        self.range.start as u32..self.range.end as u32
+    }
+
     /// Sorts the level's bodies into their slots; within a cell they keep the order of places.
     /// `place_cells` and `slot_cells` are columns over all places and all slots.
     pub fn sort(

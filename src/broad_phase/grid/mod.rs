@@ -19,7 +19,7 @@ pub use self::cells::{Cells, TableLayout};
 
 use self::across::LevelSearch;
 use self::level::GridLevel;
-use super::{BlockPage, FirstTest, Reorder, Slots, bytes};
+use super::{BLOCK_BODIES, BlockPage, FirstTest, Reorder, Slots, bytes};
 use crate::rounding::skin::Reach;
 use crate::simd::Lanes;
 use crate::threads::Executor;
@@ -253,24 +253,49 @@ impl Grid {
         self.planned.get_or_insert(candidates);
     }
 
+    /// Passes the candidates of parts to `test`, page by page. Pages are filled without knowing the
+    /// test: it is compiled into few places, which otherwise takes half of the library's compiling.
     #[inline(always)]
     pub(super) fn find<L: Lanes>(&self, l: L, parts: Range<usize>, test: &mut impl FirstTest) {
         let mut page = BlockPage::new();
         for part in &self.parts[parts] {
-            let (slots, level) = (part.slots.clone(), &self.levels[part.level]);
-            match part.kind {
-                PartKind::Near => self.near(l, level, slots, &mut page, test),
-                PartKind::Across(LevelSearch::Cells) => {
-                    let grown = self.levels[part.seeker].reach;
-                    self.across(l, (slots, grown), level, &mut page, test);
+            let mut search = PartSearch { seekers: part.slots.clone(), ..PartSearch::default() };
+            while !search.seekers.is_empty() {
+                match part.kind {
+                    PartKind::Near => self.near(part, &mut search, &mut page),
+                    PartKind::Across(how) => self.across(part, how, &mut search, &mut page),
                 }
-                PartKind::Across(LevelSearch::All) => {
-                    for i in slots {
-                        test.run(l, i, level.range.clone());
-                    }
+                if !page.block().codes().is_empty() {
+                    test.block(l, &page.block());
+                }
+                for (i, run) in page.long_runs() {
+                    test.run(l, i, run);
                 }
             }
         }
+    }
+}
+
+/// The seekers of a part whose candidates are not on a page yet, and where the first block of them
+/// goes on if a page had no room for all of its rows: in which lane, and with which z and y.
+#[derive(Clone, Debug, Default)]
+struct PartSearch {
+    seekers: Range<usize>,
+    lane: usize,
+    row: Option<[u32; 2]>,
+}
+
+impl PartSearch {
+    /// The seekers whose candidates share a page.
+    #[inline(always)]
+    fn block(&self) -> Range<usize> {
+        self.seekers.start..self.seekers.end.min(self.seekers.start + BLOCK_BODIES)
+    }
+
+    /// Goes on to the seekers after the block.
+    #[inline(always)]
+    fn next_block(&mut self) {
+        (self.seekers.start, self.lane) = (self.block().end, 0);
     }
 }
 

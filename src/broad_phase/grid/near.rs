@@ -7,35 +7,23 @@
 
 use std::ops::Range;
 
-use super::Grid;
 use super::cells::TableLayout;
 use super::level::GridLevel;
-use crate::broad_phase::{BLOCK_BODIES, BlockPage, FirstTest, RunWriter};
-use crate::simd::Lanes;
+use super::{Grid, GridPart, PartSearch};
+use crate::broad_phase::{BlockPage, RunWriter};
 
 impl Grid {
-    /// Pairs of which one slot is in `range` and the other in the same level.
+    /// Lists pairs of which one slot is in the search's first block and the other in its level.
     #[inline(always)]
-    pub(super) fn near<L: Lanes>(
-        &self,
-        l: L,
-        level: &GridLevel,
-        range: Range<usize>,
-        page: &mut BlockPage,
-        test: &mut impl FirstTest,
-    ) {
-        let mut first = range.start;
-        while first < range.end {
-            let bodies = first..range.end.min(first + BLOCK_BODIES);
-            let pen = page.restart(first);
-            match (level.cells.layout(), level.cells.forward().try_into()) {
-                (TableLayout::Box, Ok(rows)) => self.in_space(level, bodies, rows, pen),
-                (TableLayout::Box, Err(_)) => self.in_box(level, bodies, pen),
-                (TableLayout::Wrapped, _) => self.wrapped(level, bodies, pen),
-            }
-            hand_over(l, page, test);
-            first += BLOCK_BODIES;
+    pub(super) fn near(&self, part: &GridPart, search: &mut PartSearch, page: &mut BlockPage) {
+        let (level, bodies) = (&self.levels[part.level], search.block());
+        let pen = page.restart(bodies.start);
+        match (level.cells.layout(), level.cells.forward().try_into()) {
+            (TableLayout::Box, Ok(rows)) => self.in_space(level, bodies, rows, pen),
+            (TableLayout::Box, Err(_)) => self.in_box(level, bodies, pen),
+            (TableLayout::Wrapped, _) => self.wrapped(level, bodies, pen),
         }
+        search.next_block();
     }
 
     /// In a box of more than one cell per axis. `rows` are those of the cells.
@@ -100,14 +88,5 @@ impl Grid {
             }
         }
         pen.done();
-    }
-}
-
-/// Passes a page's candidates to the test.
-#[inline(always)]
-pub(super) fn hand_over<L: Lanes>(l: L, page: &BlockPage, test: &mut impl FirstTest) {
-    test.block(l, &page.block());
-    for (i, run) in page.long_runs() {
-        test.run(l, i, run);
     }
 }

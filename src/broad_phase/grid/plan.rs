@@ -10,7 +10,7 @@ use std::ops::Range;
 use super::cells::{Cells, TableLayout};
 use super::level::{AssignCells, GridLevel};
 use crate::broad_phase::BallBounds;
-use crate::simd::{self, dispatch};
+use crate::simd::{Tier, in_one_lane};
 
 /// The mean number of bodies in a body's cell, including itself, above which large bodies are split
 /// off. Uniform scenes reach it at 13 sphere partners per body.
@@ -32,7 +32,7 @@ pub fn levels(balls: &[[f32; 4]], range: Range<usize>, order: &mut [u32]) -> Vec
         let rest = &mut order[from..];
         let mut level = gather(balls, rest);
         let (mut layout, crowd) = fit(&level);
-        let half = 0.5 * BallBounds::of(simd::Tier::SCALAR, &level).widest;
+        let half = 0.5 * BallBounds::of(Tier::SCALAR, &level).widest;
         let wide = |place: &u32| balls[*place as usize][3] > half;
         let crowded = crowd > MOST_PER_CELL * rest.len() as u64 && levels.len() + 1 < MOST_LEVELS;
         let mut count = rest.len();
@@ -58,7 +58,7 @@ fn gather(balls: &[[f32; 4]], places: &[u32]) -> Vec<[f32; 4]> {
 /// The better table layout for some balls, and how crowded its cells are: the sum, over all balls,
 /// of the number of balls in the same cell.
 fn fit(balls: &[[f32; 4]]) -> (TableLayout, u64) {
-    let bounds = BallBounds::of(simd::Tier::SCALAR, balls);
+    let bounds = BallBounds::of(Tier::SCALAR, balls);
     let [in_box, wrapped] = [TableLayout::Box, TableLayout::Wrapped]
         .map(|layout| Cells::fit(&bounds, balls.len(), layout));
     let crowd_in_box = crowd(&in_box, balls);
@@ -74,7 +74,7 @@ fn fit(balls: &[[f32; 4]]) -> (TableLayout, u64) {
 fn crowd(cells: &Cells, balls: &[[f32; 4]]) -> u64 {
     let mut cell_of = vec![0; balls.len()];
     let to = &mut cell_of;
-    dispatch(simd::Tier::SCALAR, AssignCells { cells, balls, to });
+    in_one_lane(AssignCells { cells, balls, to });
     let mut counts = vec![0u64; cells.table_len()];
     for &cell in &cell_of {
         // A NaN centre has no cell.
@@ -142,7 +142,7 @@ mod tests {
         for (n, step) in (2..120).flat_map(|n| [0.7_f32, 1.0, 1.5, 4.0].map(|step| (n, step))) {
             let at = |i: usize| i as f32 * step;
             let balls: Vec<_> = (0..n).map(|i| [at(i), at(i), at(i), 0.5]).collect();
-            let bounds = BallBounds::of(simd::Tier::SCALAR, &balls);
+            let bounds = BallBounds::of(Tier::SCALAR, &balls);
             let [in_box, others] = [TableLayout::Box, TableLayout::Wrapped]
                 .map(|layout| Cells::fit(&bounds, n, layout));
             let crowds = [&in_box, &others].map(|cells| crowd(cells, &balls));

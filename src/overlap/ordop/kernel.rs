@@ -5,7 +5,7 @@ use super::slabs::LaneSlabs;
 use super::table::SlabTables;
 use crate::pairs::PairList;
 use crate::settings::Overlap;
-use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, prefetch};
+use crate::simd::{Kernel, Lanes, MAX_WIDTH, Tier, dispatch, in_one_lane, prefetch};
 use crate::update::RowsByNumber;
 use crate::volume::DirectionSet;
 
@@ -77,7 +77,7 @@ impl OrDopColumns<'_> {
                 }
             }
         }
-        dispatch(Tier::SCALAR, Test(self, [first, second]))
+        in_one_lane(Test(self, [first, second]))
     }
 
     #[cfg_attr(not(unoptimised), inline(always))]
