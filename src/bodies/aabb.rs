@@ -48,6 +48,14 @@ impl Aabb {
         on(0) & on(1) & on(2)
     }
 
+    /// Whether the other box lies in this one.
+    #[inline(always)]
+    pub(crate) fn contains(&self, other: &Self) -> bool {
+        let on =
+            |axis: usize| (self.min[axis] <= other.min[axis]) & (other.max[axis] <= self.max[axis]);
+        on(0) & on(1) & on(2)
+    }
+
     /// Half of each side's length.
     pub(crate) fn half_sides(&self) -> [f32; 3] {
         std::array::from_fn(|axis| 0.5 * self.max[axis] - 0.5 * self.min[axis])

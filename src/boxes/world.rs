@@ -8,7 +8,7 @@ use super::BoxCullerBuilder;
 use super::frame::BoxFrames;
 use crate::bodies::contract::ContractError;
 use crate::bodies::{Aabb, Groups, Motion};
-use crate::broad_phase::{BoxIndex, IndexedBox, tags};
+use crate::broad_phase::{Candidates, IndexedBox, tags};
 use crate::counters::{RestCounters, VolumeCounters};
 use crate::living::{
     BodyId, Ids, LivingSet, Members, PortionReader, VolumeSource, WorldError, renumber_column,
@@ -181,7 +181,7 @@ impl VolumeSource for Boxes {
     fn make_index(&mut self, members: &mut Members) {
         let Members { ids, groups, .. } = members;
         let present = ids.filled().map(|row| self.indexed(row as u32, ids, groups));
-        let index = BoxIndex::of(present, ids.len());
+        let index = Candidates::of(present, ids.len());
         members.movers.take_index(index);
     }
 

@@ -33,7 +33,7 @@ pub use auto::Population;
 use block::{BLOCK_BODIES, BlockPage, RunWriter};
 pub use block::{Block, MOST_CANDIDATES};
 pub use bounds::BallBounds;
-pub(crate) use box_index::{BoxIndex, IndexedBox, Search, tags};
+pub(crate) use box_index::{BODIES_IN_CACHE, Candidates, IndexedBox, tags};
 pub use ends::{EndSlots, GivenBoxes};
 pub use grid::{Cells, Grid, TableLayout};
 use neighbours::NeighbourList;

@@ -9,22 +9,17 @@
 
 use super::Ids;
 use crate::bodies::PairRules;
-use crate::broad_phase::{BoxIndex, IndexedBox, Search};
+use crate::broad_phase::{BODIES_IN_CACHE, Candidates, IndexedBox};
 use crate::counters::RestCounters;
 use crate::pairs::FoundPartners;
 
 /// Changed bodies are searched one by one if they are at most one in this number of bodies.
-/// Otherwise finding all pairs anew is faster.
+/// Otherwise finding all pairs anew is faster. Beyond the nearer caches, a body that hasn't changed
+/// in the two culls before counts as two: all that is to be known of it is read from memory.
 const BODIES_PER_CHANGE: usize = 16;
 
 /// The largest work of such a search, in boxes read per body of the world.
 const WORK_PER_BODY: usize = 8;
-
-/// Bodies that are searched together.
-const SEEKERS_PER_BATCH: usize = 16;
-
-/// The number of bodies by which prefetching is ahead.
-const PREFETCH_DISTANCE: usize = 8;
 
 /// An index pays if it serves for at least `LEAST_SERVICE` frames. After one that didn't, or after
 /// a frame in which searching one by one took too long, the next frames find all pairs: twice as
@@ -45,11 +40,13 @@ pub(crate) struct Movers {
     cull: u32,
     /// How many of the changed bodies weren't searched for in the cull before.
     thawed: usize,
+    /// What it costs to search for the changed bodies, in bodies that are in the caches.
+    cost: usize,
     /// Whether the next cull finds all pairs, because many bodies have changed or the pairs of the
     /// last cull aren't known.
     are_many: bool,
     /// The bodies as of the last cull. `None` after a cull that found all pairs.
-    index: Option<BoxIndex>,
+    index: Option<Candidates>,
     /// Bodies in the index when it was made, and frames in which it was used.
     indexed: usize,
     served: u32,
@@ -60,7 +57,6 @@ pub(crate) struct Movers {
     boxes: Vec<IndexedBox>,
     /// The last frame's, for its memory.
     found: FoundPartners,
-    search: Search,
 }
 
 impl Default for Movers {
@@ -70,6 +66,7 @@ impl Default for Movers {
             changed_before: Vec::new(),
             cull: FIRST_CULL,
             thawed: 0,
+            cost: 0,
             are_many: true,
             index: None,
             indexed: 0,
@@ -78,7 +75,6 @@ impl Default for Movers {
             last_pause: 0,
             boxes: Vec::new(),
             found: FoundPartners::default(),
-            search: Search::default(),
         }
     }
 }
@@ -97,7 +93,9 @@ impl Movers {
         if former != self.cull {
             self.changed.push(slot as u32);
             self.thawed += usize::from(former + 1 != self.cull);
-            self.are_many = self.changed.len() * BODIES_PER_CHANGE > ids.rows();
+            let is_far = ids.rows() > BODIES_IN_CACHE && former + 2 < self.cull;
+            self.cost += 1 + usize::from(is_far);
+            self.are_many = self.cost * BODIES_PER_CHANGE > ids.rows();
         }
     }
 
@@ -166,7 +164,7 @@ impl Movers {
 
     /// Gives the next cull a number that is higher by `step`.
     fn number_next(&mut self, step: u32) {
-        self.thawed = 0;
+        (self.thawed, self.cost) = (0, 0);
         self.cull = self.cull.checked_add(step).unwrap_or_else(|| {
             self.changed_before.fill(0);
             FIRST_CULL
@@ -233,7 +231,7 @@ impl Movers {
     }
 
     /// Takes an index of all present bodies.
-    pub fn take_index(&mut self, index: BoxIndex) {
+    pub fn take_index(&mut self, index: Candidates) {
         (self.indexed, self.served) = (index.len(), 0);
         self.index = Some(index);
     }
@@ -253,28 +251,14 @@ impl Movers {
         rules: PairRules<'_>,
         most: usize,
     ) -> Option<usize> {
-        let (mut work, most_work) = (0, WORK_PER_BODY * rules.groups.len());
+        let most_work = WORK_PER_BODY * rules.groups.len();
         let mut index = self.index.take()?;
-        let boxes = &self.boxes;
-        for (number, indexed) in boxes.iter().enumerate() {
-            let ahead = [3, 2, 1].map(|steps| boxes.get(number + steps * PREFETCH_DISTANCE));
-            index.prefetch(ahead);
-            index.put(indexed);
+        let work = index.find(&self.boxes, rules, found, [most_work, most]);
+        match work {
+            Some(_) => self.index = Some(index),
+            None => self.back_off(),
         }
-        index.compact();
-        for seekers in boxes.chunks(SEEKERS_PER_BATCH) {
-            let FoundPartners { partners, ends, .. } = &mut *found;
-            let left = most_work - work;
-            let read = index.find_partners(seekers, rules, &mut self.search, partners, ends, left);
-            // A pair of two changed bodies is found twice.
-            let Some(read) = read.filter(|_| partners.len() / 2 <= most) else {
-                self.back_off();
-                return None;
-            };
-            work += read;
-        }
-        self.index = Some(index);
-        Some(work)
+        work
     }
 
     /// Ends a cull in which these bodies were searched for.

@@ -11,7 +11,7 @@ use crate::simd::prefetch;
 /// only one of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Partners {
-    lists: Runs<u32>,
+    lists: Runs<u32, 4>,
     by_number: Vec<Run>,
     /// Entries in all lists, two per pair.
     entries: usize,
@@ -81,17 +81,8 @@ impl Partners {
 
     /// Adds a partner to a number's list, or removes it, unless that is so already.
     pub fn set_partner(&mut self, number: u32, partner: u32, is_in: bool) {
-        let run = &mut self.by_number[number as usize];
-        match (self.lists.get(*run).binary_search(&partner), is_in) {
-            (Err(at), true) => {
-                self.lists.insert(run, at, partner);
-                self.entries += 1;
-            }
-            (Ok(at), false) => {
-                self.lists.remove(run, at);
-                self.entries -= 1;
-            }
-            _ => {}
+        if self.lists.set(&mut self.by_number[number as usize], partner, is_in) {
+            self.entries = if is_in { self.entries + 1 } else { self.entries - 1 };
         }
     }
 

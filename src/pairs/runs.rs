@@ -6,14 +6,8 @@
 //! proportion to its length. When many rooms are free, the owner of the lists moves them next to
 //! each other ([`Runs::compact`]), so that memory follows the present lists.
 
-use std::slice::ChunksExact;
-
 use super::bytes;
 use crate::simd::{CACHE_LINE, prefetch};
-
-/// The smallest room of a list that is not empty, in entries.
-pub(crate) const ROOM: usize = 4;
-const LEAST_ROOM: u32 = ROOM as u32;
 
 /// A list shrinks to half of its room when it fills at most one in this many entries of it.
 const SHRINK_DIVISOR: u32 = 4;
@@ -28,14 +22,17 @@ const GROWTH_DIVISOR: usize = 4;
 /// Where a list's entries are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Run {
-    /// In units of [`LEAST_ROOM`].
+    /// In units of the smallest room.
     start: u32,
     len: u32,
-    /// Zero, or a power of two no less than [`LEAST_ROOM`].
+    /// Zero, or a power of two no less than the smallest room.
     room: u32,
 }
 
 impl Run {
+    /// An empty list.
+    pub const EMPTY: Self = Self { start: 0, len: 0, room: 0 };
+
     /// Whether the list is empty.
     #[inline(always)]
     pub fn is_empty(self) -> bool {
@@ -47,16 +44,12 @@ impl Run {
     pub fn len(self) -> usize {
         self.len as usize
     }
-
-    /// The first entries of the list.
-    pub fn first(self, len: usize) -> Self {
-        Self { len: len as u32, ..self }
-    }
 }
 
-/// The entries of many lists.
+/// The entries of many lists, of which each that isn't empty has room for `LEAST` at least, a power
+/// of two.
 #[derive(Clone, Debug)]
-pub(crate) struct Runs<T> {
+pub(crate) struct Runs<T, const LEAST: usize> {
     items: Vec<T>,
     /// Unused entries before the first room, so that rooms begin with a cache line, or fill one
     /// together.
@@ -67,15 +60,19 @@ pub(crate) struct Runs<T> {
     taken: usize,
 }
 
-impl<T> Default for Runs<T> {
+impl<T, const LEAST: usize> Default for Runs<T, LEAST> {
     fn default() -> Self {
         Self { items: Vec::new(), skipped: 0, free: Vec::new(), taken: 0 }
     }
 }
 
-impl<T: Copy + Default> Runs<T> {
-    fn first(&self, run: Run) -> usize {
-        self.skipped + run.start as usize * LEAST_ROOM as usize
+impl<T: Copy + Default, const LEAST: usize> Runs<T, LEAST> {
+    const LEAST_ROOM: u32 = LEAST as u32;
+
+    /// The number of a list's first entry.
+    #[inline(always)]
+    pub fn first(&self, run: Run) -> usize {
+        self.skipped + run.start as usize * LEAST
     }
 
     /// The entries of a list.
@@ -83,15 +80,6 @@ impl<T: Copy + Default> Runs<T> {
     pub fn get(&self, run: Run) -> &[T] {
         let first = self.first(run);
         &self.items[first..first + run.len()]
-    }
-
-    /// The entries of a list in rooms of the smallest size, with the number of the first one. Those
-    /// after the list's last one are any.
-    #[inline(always)]
-    pub fn rooms(&self, run: Run) -> (usize, ChunksExact<'_, T>) {
-        let first = self.first(run);
-        let end = first + run.len().next_multiple_of(ROOM);
-        (first, self.items[first..end].chunks_exact(ROOM))
     }
 
     /// An entry by its number.
@@ -117,13 +105,13 @@ impl<T: Copy + Default> Runs<T> {
 
     /// Allocates what lists of these lengths will take, none of them empty.
     pub fn reserve_all(&mut self, lengths: impl Iterator<Item = u32>) {
-        let rooms = lengths.map(|len| room_for(len) as usize);
+        let rooms = lengths.map(|len| Self::room_for(len) as usize);
         self.allocate(rooms.sum());
     }
 
     /// As [`Self::reserve_all`], with a share more for lists that grow.
     pub fn reserve_growing(&mut self, lengths: impl Iterator<Item = u32>) {
-        let rooms: usize = lengths.map(|len| room_for(len) as usize).sum();
+        let rooms: usize = lengths.map(|len| Self::room_for(len) as usize).sum();
         self.allocate(rooms + rooms / GROWTH_DIVISOR);
     }
 
@@ -144,7 +132,7 @@ impl<T: Copy + Default> Runs<T> {
 
     /// Makes room for at least `len` entries of an empty list.
     pub fn reserve(&mut self, run: &mut Run, len: usize) {
-        let needed = room_for(len as u32);
+        let needed = Self::room_for(len as u32);
         if needed > run.room {
             self.release(run);
             run.start = self.take_room(needed);
@@ -162,7 +150,7 @@ impl<T: Copy + Default> Runs<T> {
     #[inline]
     pub fn insert(&mut self, run: &mut Run, at: usize, item: T) {
         if run.len == run.room {
-            self.resize(run, (2 * run.room).max(LEAST_ROOM));
+            self.resize(run, (2 * run.room).max(Self::LEAST_ROOM));
         }
         let (first, len) = (self.first(*run), run.len());
         self.items.copy_within(first + at..first + len, first + at + 1);
@@ -177,11 +165,18 @@ impl<T: Copy + Default> Runs<T> {
         self.shorten(run);
     }
 
-    /// Removes the entry at `at`. The last one takes its place.
-    pub fn swap_remove(&mut self, run: &mut Run, at: usize) {
-        let (first, last) = (self.first(*run), run.len() - 1);
-        self.items[first + at] = self.items[first + last];
-        self.shorten(run);
+    /// Adds an entry to a sorted list, or removes it, unless that is so already. Returns whether it
+    /// wasn't.
+    pub fn set(&mut self, run: &mut Run, item: T, is_in: bool) -> bool
+    where
+        T: Ord,
+    {
+        match (self.get(*run).binary_search(&item), is_in) {
+            (Err(at), true) => self.insert(run, at, item),
+            (Ok(at), false) => self.remove(run, at),
+            _ => return false,
+        }
+        true
     }
 
     /// Replaces the list by another.
@@ -191,7 +186,7 @@ impl<T: Copy + Default> Runs<T> {
             self.release(run);
             return;
         }
-        if len > run.room || (len * SHRINK_DIVISOR <= run.room && run.room > LEAST_ROOM) {
+        if len > run.room || (len * SHRINK_DIVISOR <= run.room && run.room > Self::LEAST_ROOM) {
             self.release(run);
             self.reserve(run, items.len());
         }
@@ -203,7 +198,7 @@ impl<T: Copy + Default> Runs<T> {
         run.len -= 1;
         if run.len == 0 {
             self.release(run);
-        } else if run.len * SHRINK_DIVISOR <= run.room && run.room > LEAST_ROOM {
+        } else if run.len * SHRINK_DIVISOR <= run.room && run.room > Self::LEAST_ROOM {
             self.resize(run, run.room / 2);
         }
     }
@@ -230,6 +225,10 @@ impl<T: Copy + Default> Runs<T> {
         *run = Run::default();
     }
 
+    fn room_for(len: u32) -> u32 {
+        len.next_power_of_two().max(Self::LEAST_ROOM)
+    }
+
     fn take_room(&mut self, room: u32) -> u32 {
         self.taken += room as usize;
         let freed = self.free.get_mut(room.ilog2() as usize);
@@ -242,7 +241,12 @@ impl<T: Copy + Default> Runs<T> {
         }
         let start = self.items.len();
         self.items.resize(start + room as usize, T::default());
-        ((start - self.skipped) / LEAST_ROOM as usize) as u32
+        ((start - self.skipped) / LEAST) as u32
+    }
+
+    /// Entries in the rooms of lists.
+    pub fn taken(&self) -> usize {
+        self.taken
     }
 
     /// Whether so much room is free that [`Self::compact`] pays, for this number of lists.
@@ -270,10 +274,6 @@ impl<T: Copy + Default> Runs<T> {
     }
 }
 
-fn room_for(len: u32) -> u32 {
-    len.next_power_of_two().max(LEAST_ROOM)
-}
-
 #[cfg(test)]
 mod tests {
     use rand_chacha::ChaCha8Rng;
@@ -283,8 +283,13 @@ mod tests {
 
     #[test]
     fn lists_in_runs_are_lists() {
+        change_lists::<1>();
+        change_lists::<4>();
+    }
+
+    fn change_lists<const LEAST: usize>() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut runs = Runs::default();
+        let mut runs = Runs::<u32, LEAST>::default();
         let mut lists: Vec<(Run, Vec<u32>)> = vec![Default::default(); 12];
         let mut compacted = 0;
         for step in 0..20_000 {
@@ -303,15 +308,10 @@ mod tests {
                     runs.insert(run, at, step);
                     list.insert(at, step);
                 }
-                (1..3, len) => {
+                (_, len) => {
                     let at = below(len);
                     runs.remove(run, at);
                     list.remove(at);
-                }
-                (_, len) => {
-                    let at = below(len);
-                    runs.swap_remove(run, at);
-                    list.swap_remove(at);
                 }
             }
             assert_eq!((run.len(), run.is_empty()), (list.len(), list.is_empty()));
@@ -329,7 +329,7 @@ mod tests {
 
     #[test]
     fn rooms_are_used_again() {
-        let mut runs = Runs::default();
+        let mut runs = Runs::<u32, 4>::default();
         let mut taken = 0;
         for round in 0..10 {
             let mut lists = [Run::default(); 20];

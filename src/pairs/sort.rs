@@ -212,7 +212,7 @@ fn sort_nearly_sorted(keys: &mut [u64]) {
 
 /// Sorts numbers; short lists without a function call.
 #[inline(always)]
-fn sort_few(numbers: &mut [u32]) {
+pub(crate) fn sort_few(numbers: &mut [u32]) {
     if numbers.len() > MOST_BY_INSERTION {
         return numbers.sort_unstable();
     }

@@ -3,6 +3,8 @@
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
 
+use super::prefetch;
+
 /// A closed, world-aligned box: boxes that touch meet. Its ends are finite, and each lower end is
 /// at most the upper one; sides may have no length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -120,7 +122,7 @@ pub fn boxes_of(numbers: &[[f32; 6]]) -> &[Aabb] {
 }
 
 /// A box in half a cache line, with two numbers that its owner needs.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub struct TaggedBox {
     /// The lower corner.
@@ -137,6 +139,15 @@ const _: () = assert!(size_of::<TaggedBox>() == size_of::<[f32; 8]>());
 const _: () = assert!(align_of::<TaggedBox>() >= size_of::<[f32; 4]>());
 
 impl TaggedBox {
+    /// The box without its numbers.
+    #[inline(always)]
+    pub fn aabb(&self) -> Aabb {
+        Aabb { min: self.min, max: self.max }
+    }
+
+    /// A box that meets none.
+    pub const NONE: Self = Self { min: [f32::NAN; 3], slot: 0, max: [f32::NAN; 3], tags: 0 };
+
     /// Whether the boxes meet, as [`Aabb`] says.
     #[inline(always)]
     #[cfg(target_arch = "x86_64")]
@@ -166,27 +177,142 @@ impl TaggedBox {
     }
 }
 
+/// Four boxes, each in a lane, with two numbers of each that their owner needs: two cache lines. A
+/// lane without a box meets none.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct BoxQuad {
+    /// The lower ends by axis, then the upper ones.
+    ends: [[f32; 4]; 6],
+    /// Whose boxes these are.
+    pub slots: [u32; 4],
+    /// What else is to be known of them.
+    pub tags: [u32; 4],
+}
+
+/// A box in four equal lanes: its upper ends by axis, then its lower ones, as [`BoxQuad::meeting`]
+/// compares them.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(16))]
+pub struct SeekerQuad([[f32; 4]; 6]);
+
+impl SeekerQuad {
+    /// Four times this box.
+    #[inline(always)]
+    pub fn of(&TaggedBox { min, max, .. }: &TaggedBox) -> Self {
+        Self([max[0], max[1], max[2], min[0], min[1], min[2]].map(|end| [end; 4]))
+    }
+}
+
+impl Default for BoxQuad {
+    fn default() -> Self {
+        Self { ends: [[f32::NAN; 4]; 6], slots: [0; 4], tags: [0; 4] }
+    }
+}
+
+impl BoxQuad {
+    /// Puts a box into a lane.
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, &TaggedBox { min, slot, max, tags }: &TaggedBox) {
+        for axis in 0..3 {
+            (self.ends[axis][lane], self.ends[axis + 3][lane]) = (min[axis], max[axis]);
+        }
+        (self.slots[lane], self.tags[lane]) = (slot, tags);
+    }
+
+    /// The box in a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> TaggedBox {
+        let end = |at: usize| self.ends[at][lane];
+        let [min, max] = [0, 3].map(|at| [end(at), end(at + 1), end(at + 2)]);
+        TaggedBox { min, slot: self.slots[lane], max, tags: self.tags[lane] }
+    }
+
+    /// Removes the box in a lane.
+    #[inline(always)]
+    pub fn clear(&mut self, lane: usize) {
+        self.ends.iter_mut().for_each(|ends| ends[lane] = f32::NAN);
+    }
+
+    /// Prefetches both cache lines.
+    #[inline(always)]
+    pub fn prefetch(&self) {
+        prefetch(&self.ends[0]);
+        prefetch(&self.ends[4]);
+    }
+
+    /// The lanes whose boxes meet this one, as [`Aabb`] says, a bit each.
+    #[inline(always)]
+    #[cfg(target_arch = "x86_64")]
+    pub fn meeting(&self, SeekerQuad(seeker): &SeekerQuad) -> u32 {
+        // SAFETY: every CPU of this architecture has SSE2. Each row is four f32, and both types
+        // begin at a multiple of 16 bytes, as all their rows do.
+        unsafe {
+            let row = |rows: &[[f32; 4]; 6], at: usize| _mm_load_ps(rows[at].as_ptr());
+            let from = |at| _mm_cmple_ps(row(&self.ends, at), row(seeker, at));
+            let to = |at| _mm_cmple_ps(row(seeker, at), row(&self.ends, at));
+            let lower = _mm_and_ps(_mm_and_ps(from(0), from(1)), from(2));
+            let upper = _mm_and_ps(_mm_and_ps(to(3), to(4)), to(5));
+            _mm_movemask_ps(_mm_and_ps(lower, upper)) as u32
+        }
+    }
+
+    /// The lanes whose boxes meet this one, as [`Aabb`] says, a bit each.
+    #[inline(always)]
+    #[cfg(not(target_arch = "x86_64"))]
+    pub fn meeting(&self, SeekerQuad(seeker): &SeekerQuad) -> u32 {
+        // Without branches: which boxes meet can't be foreseen.
+        let meets = |lane: usize| {
+            let from = |at: usize| self.ends[at][lane] <= seeker[at][lane];
+            let to = |at: usize| seeker[at][lane] <= self.ends[at][lane];
+            from(0) & from(1) & from(2) & to(3) & to(4) & to(5)
+        };
+        (0..4).map(|lane| u32::from(meets(lane)) << lane).sum()
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Aabb, TaggedBox, boxes_of, numbers_of};
+    use super::{Aabb, BoxQuad, SeekerQuad, TaggedBox, boxes_of, numbers_of};
 
-    /// Boxes that touch on an axis meet, those a step apart don't, whatever slots and tags are.
+    /// Boxes that touch on an axis meet, those a step apart don't, whatever slots and tags are; a
+    /// lane without a box meets none, also one that had a box, and so does a box of NaN.
     #[test]
-    fn tagged_boxes_meet_as_boxes_do() {
-        for number in [0, 1, 0x7fff_ffff, u32::MAX] {
-            let tagged = |min, max| TaggedBox { min, slot: number, max, tags: number };
-            let all = tagged([-1.0; 3], [9.0; 3]);
-            let middle = tagged([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]);
-            assert!(middle.meets(&all) && all.meets(&middle));
+    fn tagged_boxes_and_those_in_lanes_meet_as_boxes_do() {
+        let middle = Aabb { min: [1.0, 2.0, 3.0], max: [4.0, 5.0, 6.0] };
+        let all = Aabb { min: [-1.0; 3], max: [9.0; 3] };
+        let tagged =
+            |&Aabb { min, max }: &Aabb, number| TaggedBox { min, slot: number, max, tags: number };
+        let meeting = |quad: &BoxQuad, aabb: &Aabb| quad.meeting(&SeekerQuad::of(&tagged(aabb, 0)));
+        for (number, lane) in [0, 1, 0x7fff_ffff, u32::MAX].into_iter().zip(0..4) {
+            let alone = |aabb: &Aabb| {
+                let mut quad = BoxQuad::default();
+                quad.put(lane, &tagged(aabb, number));
+                let TaggedBox { slot, tags, .. } = quad.get(lane);
+                assert_eq!((quad.get(lane).aabb(), slot, tags), (*aabb, number, number));
+                quad
+            };
+            let meet = |one: &Aabb, other: &Aabb| {
+                let lanes = meeting(&alone(one), other);
+                let meet = tagged(one, number).meets(&tagged(other, number));
+                assert_eq!(lanes, u32::from(meet) << lane);
+                meet
+            };
             for axis in 0..3 {
                 let (mut below, mut above) = (all, all);
                 (below.max[axis], above.min[axis]) = (middle.min[axis], middle.max[axis]);
-                assert!(middle.meets(&below) && middle.meets(&above));
+                assert!(meet(&middle, &below) && meet(&middle, &above));
+                assert!(meet(&below, &middle) && meet(&above, &middle));
                 below.max[axis] = below.max[axis].next_down();
                 above.min[axis] = above.min[axis].next_up();
-                assert!(!middle.meets(&below) && !middle.meets(&above));
-                assert!(!below.meets(&middle) && !above.meets(&middle));
+                assert!(!meet(&middle, &below) && !meet(&middle, &above));
+                assert!(!meet(&below, &middle) && !meet(&above, &middle));
             }
+            let mut emptied = alone(&middle);
+            emptied.clear(lane);
+            assert_eq!(meeting(&emptied, &all), 0);
+            let none = TaggedBox::NONE;
+            assert!(!none.meets(&tagged(&all, number)) && !tagged(&all, number).meets(&none));
         }
     }
 

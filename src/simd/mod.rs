@@ -32,7 +32,7 @@ mod neon;
 #[cfg(all(target_arch = "x86_64", not(omits = "sse2")))]
 mod sse2;
 
-pub use aabb::{Aabb, TaggedBox, boxes_of, numbers_of};
+pub use aabb::{Aabb, BoxQuad, SeekerQuad, TaggedBox, boxes_of, numbers_of};
 pub use columns::{quads_in_columns, turn_rows};
 pub use fp_mode::{FpMode, in_default_mode};
 pub use lanes::Lanes;

@@ -11,7 +11,7 @@ use super::shapes::{ShapeSlot, check_shape};
 use super::{Body, Groups, Motion, UNTURNED, WorldError};
 use crate::bodies::contract::{ContractError, check_pose};
 use crate::bodies::{Aabb, Bodies};
-use crate::broad_phase::{BoxIndex, IndexedBox, tags};
+use crate::broad_phase::{Candidates, IndexedBox, tags};
 use crate::counters::RestCounters;
 use crate::culler::Culler;
 use crate::living::{
@@ -198,7 +198,7 @@ impl VolumeSource for Meshes {
         let boxes = self.culler.boxes_of(&self.bodies, &all);
         let boxes = all.iter().zip(&boxes);
         let indexed = boxes.map(|(&row, &aabb)| self.indexed(row, &members.groups, Some(aabb)));
-        let index = BoxIndex::of(indexed, all.len());
+        let index = Candidates::of(indexed, all.len());
         members.movers.take_index(index);
     }
 

@@ -3,9 +3,9 @@
 //!
 //! A box is in the cell of its lower corner. Let b be a level's bound, no less than any side of its
 //! boxes, and q a box. A box t of the level that meets q has q.min − b ≤ t.min ≤ q.max on each
-//! axis. The cell of a coordinate x is ⌊fl(x·w)⌋, which never decreases as x grows. Therefore t is
-//! in a cell between that of q.min − b, rounded down, and that of q.max. Rounding adds at most one
-//! cell to that range.
+//! axis. The cell of a coordinate x is fl(x·w), rounded to the nearest whole number, which never
+//! decreases as x grows. Therefore t is in a cell between that of q.min − b, rounded down, and that
+//! of q.max. Rounding adds at most one cell to that range.
 
 use crate::bodies::Aabb;
 
@@ -33,7 +33,12 @@ pub(super) struct BoxLevel {
 }
 
 /// The first and the last cell along each axis.
-pub(super) type CellRange = [[i64; 2]; 3];
+pub(super) type CellRange = [[u64; 2]; 3];
+
+/// Cells further from the origin share a number.
+const LAST_CELL: f64 = (1_u64 << 50) as f64;
+/// The sum with a number up to [`LAST_CELL`] has no fraction, and its bits count whole numbers.
+const WHOLE: f64 = (3_u64 << 51) as f64;
 
 impl BoxLevel {
     /// An empty level for boxes up to a size, in units of `unit`.
@@ -42,57 +47,65 @@ impl BoxLevel {
         Self { number, bound, cells_per_unit: 0.5 / bound, boxes: 0 }
     }
 
-    fn cell(&self, x: f64) -> i64 {
-        // The number rounded down. The cast toward zero saturates, so the result is monotone.
-        let cells = x * self.cells_per_unit;
-        let whole = cells as i64;
-        whole.saturating_sub(i64::from(whole as f64 > cells))
+    /// Whether a box belongs here rather than to smaller or larger boxes. Levels overlap, so one
+    /// that changes its size a little stays where it is.
+    #[inline(always)]
+    pub fn suits(&self, aabb: &Aabb) -> bool {
+        // If the longest side, rounded once, is less than the bound, the exact one is no more.
+        let side = longest_rounded(aabb);
+        side < self.bound && 2.0 * side >= self.bound
     }
 
-    /// The name of the cell of a box of this level.
+    #[inline(always)]
+    fn cell(&self, x: f64) -> u64 {
+        ((x * self.cells_per_unit).clamp(-LAST_CELL, LAST_CELL) + WHOLE).to_bits()
+    }
+
+    /// The place of the cell of a box of this level.
+    #[inline]
     pub fn home(&self, aabb: &Aabb) -> u32 {
-        self.name(aabb.min.map(|x| self.cell(f64::from(x))))
+        self.place(aabb.min.map(|x| self.cell(f64::from(x))))
     }
 
     /// The cells that contain all boxes of this level that meet this one.
+    #[inline(always)]
     pub fn cells_near(&self, aabb: &Aabb) -> CellRange {
         std::array::from_fn(|axis| {
-            let from = (f64::from(aabb.min[axis]) - self.bound).next_down();
+            // By a unit of the last place less, or exact where it is zero.
+            let from = f64::from(aabb.min[axis]) - self.bound;
+            let from = from - f64::EPSILON * from.abs();
             [self.cell(from), self.cell(f64::from(aabb.max[axis]))]
         })
     }
 
-    /// Calls `take` with the name of each cell of a range.
+    /// Calls `take` with the place of the first cell of each row of a range along x, and the number
+    /// of its cells.
     #[inline(always)]
-    pub fn each_name(&self, range: &CellRange, mut take: impl FnMut(u32)) {
-        let [x, y, z] = range.map(|[first, last]| (first, last.abs_diff(first)));
-        for dz in 0..=z.1 {
-            for dy in 0..=y.1 {
-                for dx in 0..=x.1 {
-                    let cell = [(x.0, dx), (y.0, dy), (z.0, dz)];
-                    take(self.name(cell.map(|(first, steps)| first.wrapping_add_unsigned(steps))));
-                }
+    pub fn each_row(&self, range: &CellRange, mut take: impl FnMut(u32, usize)) {
+        let [[x, last], y, z] = *range;
+        for z in z[0]..=z[1] {
+            for y in y[0]..=y[1] {
+                take(self.place([x, y, z]), (last - x) as usize + 1);
             }
         }
     }
 
-    /// A number that few other cells have; never 0. Cells with the same number share their
-    /// boxes, which only costs time.
+    /// A place that few other cells have: that of the row, which y and z are mixed to, and from
+    /// there on one after the other. Places wrap around at 2³².
     #[inline(always)]
-    pub fn name(&self, cell: [i64; 3]) -> u32 {
-        const FACTORS: [u64; 3] =
-            [0x9e37_79b9_7f4a_7c15, 0xc2b2_ae3d_27d4_eb4f, 0x1656_67b1_9e37_79f9];
+    pub fn place(&self, [x, y, z]: [u64; 3]) -> u32 {
+        const FACTORS: [u64; 2] = [0xc2b2_ae3d_27d4_eb4f, 0x1656_67b1_9e37_79f9];
         let start = (self.number as u64).wrapping_mul(0xff51_afd7_ed55_8ccd);
-        let mixed = (cell.iter().zip(FACTORS))
-            .fold(start, |sum, (&x, factor)| sum.wrapping_add((x as u64).wrapping_mul(factor)));
+        let mixed = ([y, z].iter().zip(FACTORS))
+            .fold(start, |sum, (&x, factor)| sum.wrapping_add(x.wrapping_mul(factor)));
         let mixed = (mixed ^ mixed >> 32).wrapping_mul(0xd6e8_feb8_6659_fd93);
-        ((mixed >> 32) as u32).max(1)
+        ((mixed >> 32) as u32).wrapping_add(x as u32)
     }
 }
 
 /// The number of cells in a range.
 pub(super) fn cell_count(range: &CellRange) -> u64 {
-    let [x, y, z] = range.map(|[first, last]| last.abs_diff(first).saturating_add(1));
+    let [x, y, z] = range.map(|[first, last]| last - first + 1);
     x.saturating_mul(y).saturating_mul(z)
 }
 
@@ -153,8 +166,15 @@ impl Levels {
 
 /// An upper bound of the longest side.
 fn longest_side(aabb: &Aabb) -> f64 {
+    longest_rounded(aabb).next_up()
+}
+
+/// The longest side, rounded to the nearest number.
+#[inline(always)]
+fn longest_rounded(aabb: &Aabb) -> f64 {
     let side = |axis: usize| f64::from(aabb.max[axis]) - f64::from(aabb.min[axis]);
-    (0..3).map(side).fold(0.0, f64::max).next_up()
+    let longer = |a: f64, b: f64| if b > a { b } else { a };
+    longer(longer(side(0), side(1)), side(2))
 }
 
 /// Sizes 1, 1.5, 2, 3, 4, 6 … have the numbers 0, 1, 2 …; a size in between has the number of the
@@ -216,7 +236,7 @@ mod tests {
             let index = levels.level_of(&other);
             let level = levels.all[usize::from(index)];
             let home = other.min.map(|x| level.cell(f64::from(x)));
-            prop_assert_eq!(level.home(&other), level.name(home));
+            prop_assert_eq!(level.home(&other), level.place(home));
             let near = level.cells_near(&one);
             let is_near = (0..3).all(|axis| (near[axis][0]..=near[axis][1]).contains(&home[axis]));
             prop_assert!(is_near || !one.meets(&other));

@@ -1,22 +1,19 @@
-//! An index of boxes by location that is changed box by box: a hash table of cells of several sizes
-//! ([`levels`]).
+//! An index of boxes by location that is changed box by box: a table of cells of several sizes
+//! ([`levels`]), and the [`candidates`] that it finds.
 //!
 //! A box that moves, comes or goes changes its old cell and its new one; a query reads the cells
-//! near a box and their boxes. Nothing is sorted, and nothing is rebuilt except a full table of
-//! cells.
+//! near a box and their boxes, four at a time. Nothing is sorted, and nothing is rebuilt. The cells
+//! of a row along x are next to each other in the table, each row begins anywhere, and cells at the
+//! same place share their boxes.
 
+mod candidates;
 mod levels;
 
+pub(crate) use self::candidates::{BODIES_IN_CACHE, Candidates, IndexedBox, tags};
 use self::levels::{Levels, cell_count};
-use crate::bodies::{Aabb, Groups, PairRules};
-use crate::pairs::{ROOM, Run, Runs};
-use crate::simd::{TaggedBox, prefetch};
-
-/// The table of cells is enlarged when more than this share of it is used.
-const MAX_LOAD: [usize; 2] = [3, 4];
-
-/// A new index keeps a table of at most this number of cells per cell with boxes.
-const MOST_SPARE_CELLS: usize = 8;
+use crate::bodies::Aabb;
+use crate::pairs::{Run, Runs, sort_few};
+use crate::simd::{BoxQuad, SeekerQuad, TaggedBox, prefetch};
 
 /// Number of boxes by which prefetching is ahead while an index is made.
 const PREFETCH_DISTANCE: usize = 16;
@@ -24,404 +21,376 @@ const PREFETCH_DISTANCE: usize = 16;
 /// Searching this number of cells takes as long as testing one box.
 const CELLS_PER_BOX: u64 = 2;
 
+/// Boxes in a quad.
+const LANES: usize = 4;
+
 /// Tag of a fixed box.
 const FIXED_TAG: u32 = 1;
-/// Tag of a box that doesn't collide with all groups.
-const GROUPED_TAG: u32 = 2;
 
 /// A cell of the table, within a cache line.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(16))]
 struct Cell {
-    /// See [`BoxLevel::name`](levels::BoxLevel::name); 0 if there is no cell.
-    name: u32,
-    /// Those that aren't fixed come first: a fixed box reads no others.
-    boxes: Run,
+    /// Number of its boxes. They fill all lanes of its quads except some of the last one, and those
+    /// that aren't fixed come first: a fixed box reads no others.
+    boxes: u32,
+    quads: Run,
 }
 
-/// The cell of a box.
-#[derive(Clone, Copy, Debug, Default)]
-struct HomeCell {
-    /// The cell's name, or 0.
+/// What is known of a slot, in a cache line: the box of its body and its cell, and what its
+/// [`Candidates`] need.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Body {
+    /// The box as it is; that in the index may be larger.
+    tagged: TaggedBox,
+    /// The position of its cell in the table.
     cell: u32,
-    /// The number of the box in the cell's list.
+    /// The number of the box in the cell.
     place: u32,
     level: u16,
+    /// Whether the slot has a box in the index.
+    is_present: bool,
+    /// Whether it has an enlarged box and a list that is kept.
+    is_listed: bool,
+    list: Run,
+    /// The last search before which it moved or came.
+    search: u32,
 }
 
-/// A body in the index, or one to be inserted or removed.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct IndexedBox {
-    pub slot: u32,
-    /// A removed body is in no index, and meets no box.
-    pub is_present: bool,
-    pub tags: u32,
-    pub aabb: Aabb,
+impl Body {
+    /// No box.
+    const NONE: Self = Self {
+        tagged: TaggedBox::NONE,
+        cell: 0,
+        place: 0,
+        level: 0,
+        is_present: false,
+        is_listed: false,
+        list: Run::EMPTY,
+        search: 0,
+    };
 }
 
 /// All boxes of a world by location.
 #[derive(Clone, Debug)]
-pub(crate) struct BoxIndex {
+struct BoxIndex {
     levels: Levels,
-    /// Open addressing with linear probing. Cells stay when their last box leaves, until the table
-    /// is rebuilt.
+    /// A power of two.
     cells: Vec<Cell>,
-    taken: usize,
-    boxes: Runs<TaggedBox>,
-    /// The cell of each slot's box.
-    homes: Vec<HomeCell>,
+    quads: Runs<BoxQuad, 1>,
+    /// By slot.
+    bodies: Vec<Body>,
     len: usize,
 }
 
 impl BoxIndex {
-    /// An index of `count` boxes, all present, no two in one slot. It is made in a few passes over
-    /// all boxes: their cells, the length of each cell's list, the lists.
-    pub fn of(boxes: impl Iterator<Item = IndexedBox> + Clone, count: usize) -> Self {
-        let mut index = Self::suited_to(boxes.clone().map(|indexed| indexed.aabb), count);
-        let mut names = Vec::with_capacity(count);
-        for IndexedBox { slot, aabb, .. } in boxes.clone() {
-            let home = index.home_of(&aabb);
-            index.homes.resize(index.homes.len().max(slot as usize + 1), HomeCell::default());
-            index.homes[slot as usize] = home;
-            index.levels.all[usize::from(home.level)].boxes += 1;
-            names.push(home.cell);
+    /// An index of `count` boxes, no two in one slot. It is made in a few passes over all boxes:
+    /// their cells, the room of each cell, the boxes.
+    fn of(boxes: impl Iterator<Item = TaggedBox> + Clone, count: usize) -> Self {
+        let mut index = Self {
+            levels: Levels::suited_to(boxes.clone().map(|tagged| tagged.aabb()), count),
+            cells: vec![Cell::default(); count.next_power_of_two()],
+            quads: Runs::default(),
+            bodies: Vec::new(),
+            len: 0,
+        };
+        let mut counts = vec![0_u32; index.cells.len()];
+        for tagged in boxes.clone() {
+            let (cell, level) = index.cell_of(&tagged.aabb(), &Body::NONE);
+            index.extend_to(tagged.slot as usize + 1);
+            index.bodies[tagged.slot as usize] = Body { tagged, cell, level, ..Body::NONE };
+            counts[cell as usize] += 1;
         }
-        let mut lengths = vec![0; index.cells.len()];
-        for (number, &name) in names.iter().enumerate() {
-            index.prefetch_cell(names.get(number + PREFETCH_DISTANCE));
-            let at = index.find(name);
-            index.taken += usize::from(lengths[at] == 0);
-            index.cells[at].name = name;
-            lengths[at] += 1;
+        let quads = |boxes: u32| boxes.div_ceil(LANES as u32);
+        let filled = counts.iter().filter(|&&boxes| boxes > 0);
+        index.quads.reserve_growing(filled.map(|&boxes| quads(boxes)));
+        for (cell, &boxes) in index.cells.iter_mut().zip(&counts).filter(|(_, boxes)| **boxes > 0) {
+            index.quads.reserve(&mut cell.quads, quads(boxes) as usize);
         }
-        let filled = lengths.iter().copied().filter(|&len| len > 0);
-        index.boxes.reserve_growing(filled);
-        for (cell, &len) in index.cells.iter_mut().zip(&lengths).filter(|(_, len)| **len > 0) {
-            index.boxes.reserve(&mut cell.boxes, len as usize);
-        }
-        for tag in [0, FIXED_TAG] {
-            for (number, (indexed, &name)) in boxes.clone().zip(&names).enumerate() {
-                if indexed.tags & FIXED_TAG == tag {
-                    index.prefetch_cell(names.get(number + PREFETCH_DISTANCE));
-                    let at = index.find(name);
-                    let run = &mut index.cells[at].boxes;
-                    index.homes[indexed.slot as usize].place = run.len() as u32;
-                    index.boxes.push(run, indexed.tagged());
-                }
+        let mut ahead = boxes.clone().skip(PREFETCH_DISTANCE);
+        for tagged in boxes {
+            if let Some(ahead) = ahead.next() {
+                prefetch(&index.cells[index.bodies[ahead.slot as usize].cell as usize]);
             }
-        }
-        index.len = names.len();
-        if MOST_SPARE_CELLS * index.taken < index.cells.len() {
-            index.make_room();
+            let Body { cell, level, .. } = index.bodies[tagged.slot as usize];
+            index.insert(&tagged, cell, level);
         }
         index
     }
 
-    /// An empty index with levels chosen for these boxes.
-    fn suited_to(boxes: impl Iterator<Item = Aabb>, count: usize) -> Self {
-        Self {
-            levels: Levels::suited_to(boxes, count),
-            cells: vec![Cell::default(); (2 * count + 16).next_power_of_two()],
-            taken: 0,
-            boxes: Runs::default(),
-            homes: Vec::new(),
-            len: 0,
+    /// Makes room for slots below this one.
+    fn extend_to(&mut self, slots: usize) {
+        if self.bodies.len() < slots {
+            self.bodies.resize(slots, Body::NONE);
         }
     }
 
-    /// Number of boxes.
-    pub fn len(&self) -> usize {
-        self.len
+    /// The cell and the level of a box that comes in place of this body's.
+    #[inline(always)]
+    fn cell_of(&mut self, aabb: &Aabb, former: &Body) -> (u32, u16) {
+        let level = self.levels.all.get(usize::from(former.level));
+        let level = match level.filter(|level| former.is_present && level.suits(aabb)) {
+            Some(_) => former.level,
+            None => self.levels.level_of(aabb),
+        };
+        (self.levels.all[usize::from(level)].home(aabb) & self.mask(), level)
     }
 
-    /// The cell of a box that isn't in its list yet.
-    fn home_of(&mut self, aabb: &Aabb) -> HomeCell {
-        let level = self.levels.level_of(aabb);
-        HomeCell { cell: self.levels.all[usize::from(level)].home(aabb), place: 0, level }
+    fn mask(&self) -> u32 {
+        (self.cells.len() - 1) as u32
     }
 
-    /// Moves a box to its present cell, or removes it if it is gone. It takes the same time however
-    /// many boxes share a cell.
-    pub fn put(&mut self, indexed: &IndexedBox) {
-        let &IndexedBox { slot, is_present, ref aabb, .. } = indexed;
-        if !is_present {
-            return self.remove(slot);
-        }
-        if self.homes.len() <= slot as usize {
-            self.homes.resize(slot as usize + 1, HomeCell::default());
-        }
-        let mut home = self.home_of(aabb);
-        let entry = indexed.tagged();
-        let former = self.homes[slot as usize];
-        if [former.cell, former.level.into()] == [home.cell, home.level.into()] {
-            let at = self.find(home.cell);
-            let boxes = self.boxes.get_mut(self.cells[at].boxes);
-            if (boxes[former.place as usize].tags ^ entry.tags) & FIXED_TAG == 0 {
-                boxes[former.place as usize] = entry;
-                return;
+    /// Puts a box into the cells, in place of the one that its slot may have there. It takes about
+    /// the same time however many boxes share a cell.
+    #[inline]
+    fn put(&mut self, tagged: &TaggedBox) {
+        let body = self.bodies[tagged.slot as usize];
+        let (cell, level) = self.cell_of(&tagged.aabb(), &body);
+        if body.is_present && (body.cell, body.level) == (cell, level) {
+            let quads = self.quads.get_mut(self.cells[cell as usize].quads);
+            let (quad, lane) = (body.place as usize / LANES, body.place as usize % LANES);
+            if (quads[quad].tags[lane] ^ tagged.tags) & FIXED_TAG == 0 {
+                return quads[quad].put(lane, tagged);
             }
         }
-        self.remove(slot);
-        if (self.taken + 1) * MAX_LOAD[1] > self.cells.len() * MAX_LOAD[0] {
-            self.make_room();
+        self.remove(tagged.slot);
+        self.insert(tagged, cell, level);
+    }
+
+    /// Puts a box that is in no cell into this one.
+    fn insert(&mut self, tagged: &TaggedBox, cell: u32, level: u16) {
+        let body = &mut self.bodies[tagged.slot as usize];
+        (body.cell, body.level, body.is_present) = (cell, level, true);
+        let Cell { boxes, quads } = &mut self.cells[cell as usize];
+        let last = *boxes;
+        *boxes += 1;
+        if last as usize % LANES == 0 {
+            self.quads.push(quads, BoxQuad::default());
         }
-        let at = self.find(home.cell);
-        if self.cells[at].name == 0 {
-            self.cells[at].name = home.cell;
-            self.taken += 1;
+        let mut place = last;
+        if tagged.tags & FIXED_TAG == 0 {
+            place = self.movable(cell, last);
+            if place < last {
+                self.move_box(cell, place, last);
+            }
         }
-        let first_fixed = self.movable(self.cells[at].boxes);
-        let run = &mut self.cells[at].boxes;
-        let mut place = run.len();
-        self.boxes.push(run, entry);
-        if entry.tags & FIXED_TAG == 0 && first_fixed < place {
-            let boxes = self.boxes.get_mut(*run);
-            boxes.swap(first_fixed, place);
-            self.homes[boxes[place].slot as usize].place = place as u32;
-            place = first_fixed;
-        }
-        home.place = place as u32;
-        self.levels.all[usize::from(home.level)].boxes += 1;
-        self.homes[slot as usize] = home;
+        self.set(cell, place, tagged);
+        self.levels.all[usize::from(level)].boxes += 1;
         self.len += 1;
     }
 
-    /// Removes a box, if it is there. The last one of its cell and kind takes its place.
+    /// Removes a box from the cells, if it is there. The last one of its cell and kind takes its
+    /// place.
     fn remove(&mut self, slot: u32) {
-        let home = match self.homes.get_mut(slot as usize) {
-            Some(home) if home.cell != 0 => *home,
-            _ => return,
-        };
-        let at = self.find(home.cell);
-        let movable = self.movable(self.cells[at].boxes);
-        let run = &mut self.cells[at].boxes;
-        let mut place = home.place as usize;
+        let body = &mut self.bodies[slot as usize];
+        if !std::mem::take(&mut body.is_present) {
+            return;
+        }
+        let Body { cell, mut place, level, .. } = *body;
+        let count = self.cells[cell as usize].boxes;
+        let (movable, last) = (self.movable(cell, count), count - 1);
         if place < movable {
-            let boxes = self.boxes.get_mut(*run);
-            boxes.swap(place, movable - 1);
-            self.homes[boxes[place].slot as usize].place = place as u32;
+            self.move_box(cell, movable - 1, place);
             place = movable - 1;
         }
-        self.boxes.swap_remove(run, place);
-        if let Some(moved) = self.boxes.get(*run).get(place) {
-            self.homes[moved.slot as usize].place = place as u32;
+        if place < last {
+            self.move_box(cell, last, place);
         }
-        self.homes[slot as usize] = HomeCell::default();
-        self.levels.all[usize::from(home.level)].boxes -= 1;
+        let Cell { boxes, quads } = &mut self.cells[cell as usize];
+        *boxes = last;
+        let last = last as usize;
+        self.quads.get_mut(*quads)[last / LANES].clear(last % LANES);
+        if last % LANES == 0 {
+            self.quads.remove(quads, last / LANES);
+        }
+        self.levels.all[usize::from(level)].boxes -= 1;
         self.len -= 1;
     }
 
-    /// The number of boxes in a cell that aren't fixed.
-    fn movable(&self, run: Run) -> usize {
-        self.boxes.get(run).partition_point(|entry| entry.tags & FIXED_TAG == 0)
+    /// The number of boxes in a cell that aren't fixed, of `count` in all.
+    fn movable(&self, cell: u32, count: u32) -> u32 {
+        let quads = self.quads.get(self.cells[cell as usize].quads);
+        let is_fixed = |place: u32| {
+            quads[place as usize / LANES].tags[place as usize % LANES] & FIXED_TAG != 0
+        };
+        let (mut from, mut to) = (0, count);
+        if count > 0 && !is_fixed(count - 1) {
+            from = count;
+        }
+        while from < to {
+            let middle = from + (to - from) / 2;
+            (from, to) = if is_fixed(middle) { (from, middle) } else { (middle + 1, to) };
+        }
+        from
     }
 
-    /// The position of a cell in the table, or where it would be inserted.
+    /// Copies the box in a place of a cell to another place.
+    fn move_box(&mut self, cell: u32, from: u32, to: u32) {
+        let quads = self.quads.get(self.cells[cell as usize].quads);
+        let tagged = quads[from as usize / LANES].get(from as usize % LANES);
+        self.set(cell, to, &tagged);
+    }
+
     #[inline(always)]
-    fn find(&self, name: u32) -> usize {
-        let mask = self.cells.len() - 1;
-        let mut at = name as usize & mask;
-        loop {
-            let found = self.cells[at].name;
-            if found == name || found == 0 {
-                return at;
-            }
-            at = (at + 1) & mask;
-        }
-    }
-
-    /// Rebuilds the table without empty cells, so large that half of it is free, and the lists of
-    /// its cells without the rooms that nothing is in.
-    fn make_room(&mut self) {
-        let filled = self.cells.iter().filter(|cell| !cell.boxes.is_empty());
-        let size = (2 * filled.clone().count() + 16).next_power_of_two();
-        let mut filled: Vec<Cell> = filled.copied().collect();
-        self.taken = filled.len();
-        self.cells = vec![Cell::default(); size];
-        self.boxes.compact(filled.iter_mut().map(|cell| &mut cell.boxes));
-        for cell in filled {
-            let at = self.find(cell.name);
-            self.cells[at] = cell;
-        }
+    fn set(&mut self, cell: u32, place: u32, tagged: &TaggedBox) {
+        let quads = self.quads.get_mut(self.cells[cell as usize].quads);
+        quads[place as usize / LANES].put(place as usize % LANES, tagged);
+        self.bodies[tagged.slot as usize].place = place;
     }
 
     /// Frees the room that boxes have left in cells, if it is much.
-    pub fn compact(&mut self) {
-        if self.boxes.is_sparse(self.cells.len()) {
-            self.boxes.compact(self.cells.iter_mut().map(|cell| &mut cell.boxes));
+    fn compact(&mut self) {
+        if self.quads.is_sparse(self.cells.len()) {
+            self.quads.compact(self.cells.iter_mut().map(|cell| &mut cell.quads));
         }
     }
 
-    /// Prefetches what [`Self::put`] will read of later boxes: for the last of them the name of its
-    /// cell, for the next one the cell, for the one that comes soon the boxes in the cell.
-    #[inline]
-    pub fn prefetch(&self, [last, next, soon]: [Option<&IndexedBox>; 3]) {
-        let home = |indexed: &IndexedBox| self.homes.get(indexed.slot as usize);
-        if let Some(home) = last.and_then(home) {
-            prefetch(home);
-        }
-        self.prefetch_cell(next.and_then(home).map(|home| &home.cell));
-        if let Some(home) = soon.and_then(home)
-            && home.cell != 0
-        {
-            self.boxes.prefetch(self.cells[self.find(home.cell)].boxes);
-        }
-    }
-
+    /// Prefetches what [`Self::put`] will read of later boxes: for the last of them the body, for
+    /// the next one its cell, for the one that comes soon its quad.
     #[inline(always)]
-    fn prefetch_cell(&self, name: Option<&u32>) {
-        if let Some(&name) = name {
-            prefetch(&self.cells[name as usize & (self.cells.len() - 1)]);
+    fn prefetch(&self, [last, next, soon]: [Option<&IndexedBox>; 3]) {
+        let body = |ahead: &IndexedBox| self.bodies.get(ahead.slot as usize);
+        if let Some(body) = last.and_then(body) {
+            prefetch(body);
+        }
+        if let Some(body) = next.and_then(body) {
+            prefetch(&self.cells[body.cell as usize]);
+        }
+        if let Some(body) = soon.and_then(body).filter(|body| body.is_present) {
+            let first = self.quads.first(self.cells[body.cell as usize].quads);
+            self.quads.entry(first + body.place as usize / LANES).prefetch();
         }
     }
 
-    /// Appends, for each of some boxes, the slots of those that meet it, are not both fixed, and
-    /// are allowed by the rules: sorted, each once. The end of each box's part is appended to
-    /// `ends`. Returns the number of boxes and cells read, or `None` before any box is read if
-    /// there are more than `most`.
+    /// Lists and prefetches the quads of the cells near each of these boxes. Returns the number of
+    /// their cells and boxes, or `None` if there are more than `most`.
     #[inline(never)]
-    pub fn find_partners(
-        &self,
-        seekers: &[IndexedBox],
-        rules: PairRules<'_>,
-        search: &mut Search,
-        found: &mut Vec<u32>,
-        ends: &mut Vec<usize>,
-        most: usize,
-    ) -> Option<usize> {
-        // Three passes, so that many cache misses overlap.
-        search.clear();
+    fn search(&self, seekers: &[TaggedBox], search: &mut Search, most: usize) -> Option<usize> {
+        let Search { rows, quads, ends, .. } = search;
+        rows.clear();
+        quads.clear();
+        ends.clear();
+        // Two passes here and one by the caller, so that many cache misses overlap.
         for seeker in seekers {
-            if seeker.is_present {
-                self.list_cells(&seeker.aabb, search);
-            } else {
-                search.ends.push((search.names.len(), false));
-            }
+            self.list_rows(&seeker.aabb(), rows);
+            ends.push(rows.len());
         }
-        let everywhere = search.ends.iter().filter(|(_, is_everywhere)| *is_everywhere);
-        let mut work = search.names.len() + self.len * everywhere.count();
-        let mut first = 0;
-        for (seeker, &(end, _)) in seekers.iter().zip(&search.ends) {
-            for &name in &search.names[std::mem::replace(&mut first, end)..end] {
-                let mut run = self.cells[self.find(name)].boxes;
-                if !run.is_empty() {
-                    self.boxes.prefetch(run);
-                    if seeker.tags & FIXED_TAG != 0 {
-                        run = run.first(self.movable(run));
-                    }
-                }
-                work += run.len();
-                search.runs.push(run);
-            }
-        }
-        if work > most {
-            return None;
-        }
-        let mut first = 0;
-        for (seeker, &(end, is_everywhere)) in seekers.iter().zip(&search.ends) {
-            let start = found.len();
-            let (tagged, hits) = (seeker.tagged(), &mut search.hits);
-            hits.count = 0;
-            if is_everywhere {
-                for cell in &self.cells {
-                    self.look_into(cell.boxes, &tagged, hits);
+        let (mut work, mut first) = (0, 0);
+        for (end, seeker) in ends.iter_mut().zip(seekers) {
+            let is_fixed = seeker.tags & FIXED_TAG != 0;
+            for &row in &rows[std::mem::replace(&mut first, *end)..*end] {
+                work += self.list_quads(row, is_fixed, quads);
+                if work > most {
+                    return None;
                 }
             }
-            for &run in &search.runs[std::mem::replace(&mut first, end)..end] {
-                self.look_into(run, &tagged, hits);
-            }
-            let met = hits.numbers[..hits.count].iter();
-            let met = met.map(|&number| self.boxes.entry(number));
-            let allowed = met.filter(|met| seeker.may_meet(met, rules));
-            found.extend(allowed.map(|met| met.slot));
-            sort_each_once(found, start);
-            ends.push(found.len());
+            *end = quads.len();
         }
         Some(work)
     }
 
-    /// Lists the cells to be searched for a box, or notes that all are.
-    fn list_cells(&self, aabb: &Aabb, search: &mut Search) {
-        let start = search.names.len();
+    /// Lists the rows of cells to be searched for a box: the whole table, if they have too many.
+    #[inline(always)]
+    fn list_rows(&self, aabb: &Aabb, rows: &mut Vec<CellRow>) {
+        let start = rows.len();
         let mut left = CELLS_PER_BOX * self.len as u64;
         for level in self.levels.all.iter().filter(|level| level.boxes > 0) {
             let range = level.cells_near(aabb);
             let Some(rest) = left.checked_sub(cell_count(&range)) else {
-                search.names.truncate(start);
-                search.ends.push((start, true));
+                rows.truncate(start);
+                rows.push(CellRow { first: 0, len: self.cells.len() });
                 return;
             };
             left = rest;
-            level.each_name(&range, |name| {
-                self.prefetch_cell(Some(&name));
-                search.names.push(name);
+            level.each_row(&range, |first, len| {
+                let row = CellRow { first: first & self.mask(), len };
+                prefetch(&self.cells[row.first as usize]);
+                rows.push(row);
             });
         }
-        search.ends.push((search.names.len(), false));
     }
 
-    /// Appends the boxes of a cell that meet this one. Nearly all cells have few boxes, so there is
-    /// no branch that depends on how many, or on which of them meet.
+    /// Lists and prefetches the quads in a row of cells, which goes on at the start of the table
+    /// where it ends: for a fixed seeker, those of boxes that aren't fixed. Returns the number of
+    /// cells and boxes.
     #[inline(always)]
-    fn look_into(&self, run: Run, &seeker: &TaggedBox, hits: &mut Hits) {
-        hits.make_room(run.len() + ROOM);
-        let (mut count, entries) = (hits.count, &mut hits.numbers[..]);
-        let (first, rooms) = self.boxes.rooms(run);
-        let (mut number, end) = (first, first + run.len());
-        for room in rooms {
-            for entry in room {
-                entries[count] = number;
-                count += usize::from(entry.meets(&seeker) & (number < end));
-                number += 1;
+    fn list_quads(
+        &self,
+        CellRow { first, len }: CellRow,
+        is_fixed: bool,
+        quads: &mut Vec<u32>,
+    ) -> usize {
+        let mut work = len;
+        for step in 0..len {
+            let at = (first as usize + step) & (self.cells.len() - 1);
+            let Cell { mut boxes, quads: run } = self.cells[at];
+            if is_fixed {
+                boxes = self.movable(at as u32, boxes);
+            }
+            work += boxes as usize;
+            let number = self.quads.first(run) as u32;
+            for number in number..number + boxes.div_ceil(LANES as u32) {
+                self.quads.entry(number as usize).prefetch();
+                quads.push(number);
             }
         }
-        hits.count = count;
+        work
     }
-}
 
-/// The boxes that meet a seeker.
-#[derive(Clone, Debug, Default)]
-struct Hits {
-    /// Numbers of entries, of which the first `count` are in use.
-    numbers: Vec<usize>,
-    count: usize,
-}
-
-impl Hits {
+    /// Calls `take` with the slot and the tags of each box in these quads that meets this one: some
+    /// twice, and the one itself.
     #[inline(always)]
-    fn make_room(&mut self, more: usize) {
-        if self.numbers.len() < self.count + more {
-            self.grow(more);
+    fn each_meeting(
+        &self,
+        seeker: &TaggedBox,
+        quads: &[u32],
+        hits: &mut Vec<(u32, u32)>,
+        mut take: impl FnMut(u32, u32),
+    ) {
+        if hits.len() < quads.len() {
+            hits.resize(2 * quads.len(), (0, 0));
+        }
+        // Without branches: which boxes meet can't be foreseen.
+        let (seeker, mut count) = (SeekerQuad::of(seeker), 0);
+        for &number in quads {
+            let lanes = self.quads.entry(number as usize).meeting(&seeker);
+            hits[count] = (number, lanes);
+            count += usize::from(lanes != 0);
+        }
+        for &(number, mut lanes) in &hits[..count] {
+            let quad = self.quads.entry(number as usize);
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize % LANES;
+                lanes &= lanes - 1;
+                take(quad.slots[lane], quad.tags[lane]);
+            }
         }
     }
+}
 
-    #[cold]
-    fn grow(&mut self, more: usize) {
-        self.numbers.resize(2 * (self.count + more), 0);
-    }
+/// Cells next to each other.
+#[derive(Clone, Copy, Debug)]
+struct CellRow {
+    first: u32,
+    len: usize,
 }
 
 /// Buffers of searches, kept from frame to frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Search {
-    names: Vec<u32>,
-    runs: Vec<Run>,
-    /// The end of each seeker's cells, and whether all cells are searched.
-    ends: Vec<(usize, bool)>,
-    hits: Hits,
-}
-
-impl Search {
-    fn clear(&mut self) {
-        self.names.clear();
-        self.runs.clear();
-        self.ends.clear();
-    }
+struct Search {
+    rows: Vec<CellRow>,
+    quads: Vec<u32>,
+    /// The end of each seeker's rows, then of its quads.
+    ends: Vec<usize>,
+    /// The quads that a seeker meets, in their first part.
+    hits: Vec<(u32, u32)>,
 }
 
 /// Sorts the numbers from `start` on, and removes duplicates.
+#[inline(always)]
 fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
-    numbers[start..].sort_unstable();
+    sort_few(&mut numbers[start..]);
     let mut end = start;
     for at in start..numbers.len() {
         if end == start || numbers[end - 1] != numbers[at] {
@@ -430,26 +399,4 @@ fn sort_each_once(numbers: &mut Vec<u32>, start: usize) {
         }
     }
     numbers.truncate(end);
-}
-
-impl IndexedBox {
-    fn tagged(&self) -> TaggedBox {
-        TaggedBox { min: self.aabb.min, slot: self.slot, max: self.aabb.max, tags: self.tags }
-    }
-
-    /// Whether a pair with another box, is reported if the boxes
-    /// meet.
-    fn may_meet(&self, other: &TaggedBox, rules: PairRules<'_>) -> bool {
-        let &TaggedBox { slot, tags, .. } = other;
-        let are_fixed = self.tags & tags & FIXED_TAG != 0;
-        let collide = (self.tags | tags) & GROUPED_TAG == 0
-            || rules.groups[self.slot as usize].collide(rules.groups[slot as usize]);
-        let may_meet = slot != self.slot && !are_fixed && collide;
-        may_meet && !rules.excluded.contains(self.slot, slot)
-    }
-}
-
-/// The tags of a body.
-pub(crate) fn tags(is_dynamic: bool, groups: Groups) -> u32 {
-    (FIXED_TAG * u32::from(!is_dynamic)) | (GROUPED_TAG * u32::from(groups != Groups::ALL))
 }
