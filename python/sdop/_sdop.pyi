@@ -21,6 +21,7 @@ __all__ = [
     "SdopError",
     "Shape",
     "World",
+    "__version__",
     "box_pairs",
     "exact_meet",
     "judge",
@@ -35,6 +36,8 @@ _Origin = Literal["file", "ball"]
 _Periods = Sequence[float | None] | NDArray[np.float64]
 _PeriodicPairs = tuple[NDArray[np.uint64], NDArray[np.int32]]
 _Pose = tuple[ArrayLike, ArrayLike]
+
+__version__: str
 
 class SdopError(ValueError): ...
 class CaseSkipped(Exception): ...

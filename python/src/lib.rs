@@ -21,6 +21,10 @@ mod world;
 #[pyo3::pymodule]
 mod _sdop {
     #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "its name in Python")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    #[pymodule_export]
     use super::boxes::{BoxCuller, BoxWorld, box_pairs, rounded_outward};
     #[pymodule_export]
     use super::compound::{Compound, PartCuller};

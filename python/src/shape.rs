@@ -3,9 +3,9 @@
 use std::sync::OnceLock;
 
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyUserWarning;
+use pyo3::exceptions::{PyOSError, PyUserWarning};
 use pyo3::prelude::*;
-use sdop::mesh::ReadOptions;
+use sdop::mesh::{MeshError, Problem, ReadOptions};
 use sdop::{Axes, DirectionSet, Origin, ShapeSpec, TriangleMesh};
 use sdop_judge::truth::reference_shapes::Shapes;
 use sdop_reference as reference;
@@ -69,7 +69,7 @@ impl Shape {
     }
 
     /// Reads a mesh file: OBJ, STL, PLY, OFF or .tri. Keywords as for `Shape`. Warns of what had to
-    /// be guessed or ignored.
+    /// be guessed or ignored. A missing file is a `FileNotFoundError`.
     #[staticmethod]
     #[pyo3(signature = (path, *, radius=None, origin="file", k=18, axes="principal"))]
     fn load(
@@ -81,8 +81,8 @@ impl Shape {
         axes: &str,
     ) -> PyResult<Self> {
         let spec = spec(radius, origin, k, axes)?;
-        let read = || sdop::mesh::read(&path, &ReadOptions::default()).map_err(refused);
-        let mesh = py.detach(read)?;
+        let read = || sdop::mesh::read(&path, &ReadOptions::default());
+        let mesh = py.detach(read).map_err(unread)?;
         for warning in &mesh.warnings {
             let text = std::ffi::CString::new(warning.replace('\0', " "))?;
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
@@ -194,6 +194,17 @@ impl From<sdop::Shape> for Shape {
     fn from(built: sdop::Shape) -> Self {
         Self { built, judged: OnceLock::new() }
     }
+}
+
+/// Why a file wasn't read. For the system's errors, `OSError` selects its subclass by the code.
+fn unread(error: MeshError) -> PyErr {
+    let MeshError { file, problem: Problem::Io { source, .. }, .. } = &error else {
+        return refused(error);
+    };
+    let Some(code) = source.raw_os_error() else { return refused(error) };
+    let text = source.to_string();
+    let text = text.split(" (os error").next().unwrap_or_default();
+    PyOSError::new_err((code, text.to_owned(), file.clone()))
 }
 
 fn spec(radius: Option<f32>, origin: &str, k: u32, axes: &str) -> PyResult<ShapeSpec> {

@@ -230,7 +230,6 @@ def test_a_body_says_that_it_rests():
         (lambda s: sdop.Culler([s], [0]).cull([[0, 0, 0, 1]], [[np.inf, 0, 0]]), "inf"),
         (lambda s: sdop.Shape([[0, 0, 0]], [[0, 0, 1]]), "0"),
         (lambda s: sdop.Shape(np.zeros((0, 3)), np.zeros((0, 3), int)), "no vert"),
-        (lambda s: sdop.Shape.load("nowhere.obj"), "nowhere.obj"),
         (lambda s: sdop.World([s]).insert(3, [0, 0, 0, 1], [0, 0, 0]), "3"),
         (lambda s: sdop.World([s]).remove(12345678901), "no longer"),
         (lambda s: sdop.World([s]).insert(0, [0, 0, 1], [0, 0, 0]), r"rotation has shape \[3\]\nhelp: .*four"),
@@ -252,6 +251,12 @@ def test_a_body_says_that_it_rests():
 def test_what_is_wrong_is_said_with_a_remedy(call, text):
     with pytest.raises(sdop.SdopError, match=text):
         call(sdop.Shape(*bracket()))
+
+
+def test_missing_file_is_not_found():
+    with pytest.raises(FileNotFoundError, match="No such file.*nowhere.obj") as raised:
+        sdop.Shape.load("nowhere.obj")
+    assert raised.value.filename == "nowhere.obj"
 
 
 @pytest.mark.parametrize(
