@@ -1,10 +1,10 @@
 //! Which boxes may meet which, while few of them move.
 //!
-//! Besides its box a body has an enlarged one, which contains it. A body that moves within its
-//! enlarged box keeps its candidates: all bodies whose enlarged boxes meet its own. Only one that
-//! leaves it gets another, and is searched for in an index of the enlarged boxes. How much a box is
-//! enlarged follows from its last motion. Bodies that have not moved have no list of candidates, and
-//! no enlarged box; they are in the lists of others.
+//! A body that moves often has an enlarged box, which contains its own, and a list of candidates:
+//! all bodies whose enlarged boxes meet it. If a body has no enlarged box, its own counts. While a
+//! body moves within its enlarged box, its partners are among its candidates. One that leaves it
+//! gets another, and is searched for in an index of all these boxes. How much a box is enlarged
+//! follows from its last motion. Bodies that seldom move are searched for whenever they do.
 
 use super::{Body, BoxIndex, FIXED_TAG, Search, sort_each_once};
 use crate::bodies::{Aabb, Groups, PairRules};
