@@ -23,11 +23,11 @@ const FRAMES_AHEAD: f32 = 6.0;
 const FRAMES_ASIDE: f32 = 1.0;
 
 /// A box that has moved by more than its longest side over this isn't enlarged: it would meet too
-/// many.
+/// many, or be left at once.
 const SIDE_PER_MOTION: f32 = 8.0;
 
 /// A body has moved often if fewer than this number of searches have passed since it moved before.
-/// Lists pay in frames in which most bodies have, because each is of use for several moves. In a
+/// Lists pay in frames in which half of the bodies have, because each is of use for several moves. In a
 /// world whose boxes are in the nearer caches, they pay for bodies that move less often too.
 const MOST_REST: u32 = 4;
 const MOST_REST_IN_CACHE: u32 = 32;
@@ -125,7 +125,7 @@ impl Candidates {
             self.index.prefetch(ahead);
             self.put(indexed);
         }
-        self.lists_pay = 2 * std::mem::take(&mut self.often) > changed.len();
+        self.lists_pay = 2 * std::mem::take(&mut self.often) >= changed.len();
         self.index.compact();
         let mut work = self.list_candidates(most_work)?;
         work += self.find_unlisted(rules, most_work.checked_sub(work)?)?;
@@ -172,15 +172,16 @@ impl Candidates {
         {
             return;
         }
-        body.is_listed = self.lists_pay && rest < most_rest;
-        if !body.is_listed {
+        let is_to_list = self.lists_pay && rest < most_rest;
+        let enlarged = is_to_list.then(|| enlarge(&indexed.aabb, &former.aabb())).flatten();
+        body.is_listed = enlarged.is_some();
+        let Some(enlarged) = enlarged else {
             if !body.list.is_empty() {
                 self.lists.replace(&mut body.list, &[]);
             }
             self.index.put(&tagged);
             return self.unlisted.push(tagged);
-        }
-        let enlarged = enlarge(&indexed.aabb, &former.aabb());
+        };
         if self.enlarged.len() <= slot as usize {
             self.enlarged.resize(self.index.bodies.len(), Aabb::default());
         }
@@ -338,14 +339,15 @@ fn may_meet(body: &TaggedBox, [slot, tags]: [u32; 2], rules: PairRules<'_>) -> b
     !are_fixed && collide && !rules.excluded.contains(body.slot, slot)
 }
 
-/// A box that contains this one, and those that it will probably be in the next frames.
-fn enlarge(aabb: &Aabb, former: &Aabb) -> Aabb {
+/// A box that contains this one, and those that it will probably be in the next frames. `None` if
+/// it moves too fast.
+fn enlarge(aabb: &Aabb, former: &Aabb) -> Option<Aabb> {
     let motion = [0, 1, 2]
         .map(|axis| [aabb.min[axis] - former.min[axis], aabb.max[axis] - former.max[axis]]);
     let most = motion.as_flattened().iter().fold(0.0_f32, |most, by| most.max(by.abs()));
     let side = (0..3).map(|axis| aabb.max[axis] - aabb.min[axis]).fold(0.0, f32::max);
     if !(SIDE_PER_MOTION * most <= side) {
-        return *aabb;
+        return None;
     }
     let mut enlarged = *aabb;
     for (axis, [lower, upper]) in motion.into_iter().enumerate() {
@@ -355,7 +357,7 @@ fn enlarge(aabb: &Aabb, former: &Aabb) -> Aabb {
         enlarged.min[axis] = (aabb.min[axis] + (lower - aside)).max(f32::MIN);
         enlarged.max[axis] = (aabb.max[axis] + (upper + aside)).min(f32::MAX);
     }
-    enlarged
+    Some(enlarged)
 }
 
 /// The tags of a body.

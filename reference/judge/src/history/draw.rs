@@ -259,7 +259,8 @@ fn groups(below: &mut dyn FnMut(u32) -> u32) -> Groups {
 }
 
 /// Draws a history with a change per frame, of these kinds in turn, and often a second one: so few
-/// that a world searches for each changed body. Now and then there are many. `new` draws a body
+/// that a world searches for each changed body. Now and then there are many. In the larger ones a
+/// body drifts in each frame, which worlds expect it to go on doing. `new` draws a body
 /// next to others, `moved` copies a pose or a part of it (1, 2) or lets it drift, and `own` makes a
 /// change that only bodies of this kind have.
 fn draw<B: Properties>(
@@ -270,10 +271,12 @@ fn draw<B: Properties>(
     below: &mut dyn FnMut(u32) -> u32,
 ) -> History<B> {
     let mut drawn = Drawn { bodies: Vec::new(), excluded: Vec::new(), saved: None };
-    for _ in 0..FIRST[below(2) as usize] {
+    let count = FIRST[below(2) as usize];
+    for _ in 0..count {
         let body = new(&drawn.present(), below);
         drawn.bodies.push(Some(body));
     }
+    let drifting = (count == FIRST[1]).then(|| below(count as u32) as usize);
     let first = drawn.present();
     let offset = below(kinds.len() as u32) as usize;
     let mut frames = Vec::with_capacity(FRAMES);
@@ -286,6 +289,11 @@ fn draw<B: Properties>(
                 _ => kinds[below(kinds.len() as u32) as usize],
             };
             changes.extend(drawn.change(kind, &new, &moved, &own, below).map(|one| (kind, one)));
+        }
+        if let Some((number, body)) = drifting.and_then(|at| Some((at, drawn.bodies[at]?))) {
+            let body = moved(&body, &body, DRIFT, below);
+            drawn.bodies[number] = Some(body);
+            changes.push((ChangeKind::Moved, Change::Set(number, body)));
         }
         frames.push(changes);
     }
