@@ -27,8 +27,8 @@ const FRAMES_ASIDE: f32 = 1.0;
 const SIDE_PER_MOTION: f32 = 8.0;
 
 /// A body has moved often if fewer than this number of searches have passed since it moved before.
-/// Lists pay in frames in which half of the bodies have, because each is of use for several moves. In a
-/// world whose boxes are in the nearer caches, they pay for bodies that move less often too.
+/// Lists pay in frames in which half of the bodies have, because each is of use for several moves.
+/// In a world whose boxes are in the nearer caches, they pay for bodies that move less often too.
 const MOST_REST: u32 = 4;
 const MOST_REST_IN_CACHE: u32 = 32;
 
