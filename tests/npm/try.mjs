@@ -24,6 +24,11 @@ world.remove(b);
 assert.deepEqual([...world.cull()], []);
 assert.deepEqual([...world.events().ended], [a, b]);
 
+// What browsers load.
+const web = await import(new URL("node_modules/sdop/web/sdop.js", import.meta.url).href);
+web.initSync({ module: readFileSync("node_modules/sdop/web/sdop_bg.wasm") });
+assert.deepEqual([...web.boxPairs(new Float32Array([0, 0, 0, 1, 1, 1, 1, 0, 0, 2, 1, 1]))], [0, 1]);
+
 for (const [act, message] of [
   [() => sdop.boxPairs(new Float32Array(5)), /^boxes: 5 numbers; give 6 for each entry$/],
   [() => sdop.boxPairs(new Float32Array([Number.NaN, 0, 0, 1, 1, 1])), /body 0/],
