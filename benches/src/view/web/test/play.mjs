@@ -55,6 +55,25 @@ async function refuse(browser) {
   console.log("ok      an unknown strategy is explained");
 }
 
+/** A dropped file is the mesh of all bodies. */
+async function drop(browser) {
+  const tab = await open(browser, "bodies=50&frames=60");
+  const wedge = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  await tab.read(`{
+    const given = new DataTransfer();
+    given.items.add(new File([${JSON.stringify(wedge)}], "wedge.obj"));
+    document.dispatchEvent(Object.assign(new Event("drop"), { dataTransfer: given }));
+  }`);
+  for (let tries = 0; (await tab.read("document.getElementById('scene')?.textContent")) !== "own-50"; tries++) {
+    if (tries > 100) throw new Error("a dropped file isn't shown");
+    await sleep(100);
+  }
+  const [nu, nv, hits, reported] = await tab.read(READ);
+  assert.ok(nu === 80 && nv === 1180 + hits && reported <= hits, String([nu, nv, hits, reported]));
+  await finish(tab);
+  console.log("ok      a dropped mesh");
+}
+
 async function finish(tab) {
   assert.deepEqual(tab.errors, [], "console");
   assert.deepEqual(tab.requests.filter((request) => !/^(?:file|data|blob):/.test(request)), [], "requests");
@@ -90,6 +109,7 @@ try {
   await compare(browser, "bodies=500&frames=240&seed=7", record("paper-500", "--frames", "240", "--seed", "7"));
 
   await refuse(browser);
+  await drop(browser);
 
   const phone = await open(browser, "bodies=50&frames=60&meshes=balls", { width: 390, height: 844, touch: true });
   assert.ok(await phone.read("document.documentElement.scrollWidth <= innerWidth"), "wider than a phone");
