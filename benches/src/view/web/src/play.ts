@@ -64,6 +64,7 @@ function buildForm(): void {
   style.textContent = "#play-form { display: grid; gap: .3rem } #play-form label { display: grid; grid-template-columns: 1fr 11rem; align-items: center } #play-form :is(input, select) { font: inherit; width: 100%; min-height: 2.1rem }";
   form.append(row, style);
   form.addEventListener("submit", (event) => event.preventDefault());
+  form.addEventListener("keydown", (event) => event.stopPropagation()); // the viewer has keys, too
   element("notes").before(form);
   document.addEventListener("dragover", (event) => event.preventDefault());
   document.addEventListener("drop", (event) => {

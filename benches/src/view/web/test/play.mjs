@@ -117,6 +117,9 @@ try {
   await sleep(500);
   assert.ok(Number(await phone.read("document.getElementById('frame').textContent")) > 0, "it plays");
   assert.ok((await phone.read("document.getElementById('play-bodies').value")) === "50");
+  await phone.read("document.getElementById('play-seed').select()");
+  await phone.key("2"); // elsewhere a key of the viewer
+  assert.equal(await phone.read("document.getElementById('play-seed').value"), "2");
   await finish(phone);
   console.log("ok      balls at a phone's width");
 } finally {
