@@ -104,6 +104,7 @@
 //! | `readers` | reads and writes mesh files: OBJ, STL, PLY, OFF, `.tri` |
 //! | `serde` | serialises settings, counters, and snapshots of worlds |
 //! | `c` | the interface for C and C++, `src/c/sdop.h` |
+//! | `wasm` | the interface for JavaScript, for `wasm32-unknown-unknown` |
 //!
 //! Every error prints what is wrong and how to mend the input; `problem` and `help` are its halves.
 //!
@@ -139,6 +140,8 @@ pub mod query;
 pub mod settings;
 #[cfg(feature = "shapes")]
 pub mod volume;
+#[cfg(feature = "wasm")]
+pub mod wasm;
 #[cfg(feature = "shapes")]
 pub mod world;
 

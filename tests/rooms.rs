@@ -37,6 +37,7 @@ const LIBRARY: &[&str] = &[
     "world",
     "compound",
     "c",
+    "wasm",
 ];
 const JUDGE: &[&str] = &[
     "claim",
@@ -82,6 +83,7 @@ const BENCH: &[&str] = &[
     // The program.
     "commands",
     "main",
+    "live",
 ];
 /// All files of a crate that have no room of their own.
 const REST: &str = "(the rest)";

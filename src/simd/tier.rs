@@ -73,6 +73,7 @@ impl Tier {
     /// All tiers of this CPU, slowest first.
     #[must_use]
     pub fn available() -> Vec<Self> {
+        #[allow(unused_mut, reason = "a target may have no other tier")]
         let mut tiers = vec![Self::SCALAR];
         #[cfg(all(target_arch = "x86_64", not(omits = "sse2")))]
         tiers.extend(sse2::Sse2::new().map(|token| Self(Isa::Sse2(token))));

@@ -165,7 +165,7 @@ impl BoxIndex {
         let Cell { boxes, quads } = &mut self.cells[cell as usize];
         let last = *boxes;
         *boxes += 1;
-        if last as usize % LANES == 0 {
+        if (last as usize).is_multiple_of(LANES) {
             self.quads.push(quads, BoxQuad::default());
         }
         let mut place = last;
@@ -201,7 +201,7 @@ impl BoxIndex {
         *boxes = last;
         let last = last as usize;
         self.quads.get_mut(*quads)[last / LANES].clear(last % LANES);
-        if last % LANES == 0 {
+        if last.is_multiple_of(LANES) {
             self.quads.remove(quads, last / LANES);
         }
         self.levels.all[usize::from(level)].boxes -= 1;
