@@ -21,7 +21,7 @@ use sdop::world::Body;
 use sdop::{Groups, Motion};
 
 /// Bodies at first. With as many, a few changes per frame leave the others' pairs as they are.
-const FIRST: [usize; 2] = [32, 48];
+const FIRST: [usize; 2] = [32, 64];
 /// Frames: each kind of change comes twice.
 const FRAMES: usize = 2 * ChangeKind::ALL.len();
 /// Contact margins that are drawn, the last one larger than bodies.
@@ -259,8 +259,8 @@ fn groups(below: &mut dyn FnMut(u32) -> u32) -> Groups {
 }
 
 /// Draws a history with a change per frame, of these kinds in turn, and often a second one: so few
-/// that a world searches for each changed body. Now and then there are many. In the larger ones a
-/// body drifts in each frame, which worlds expect it to go on doing. `new` draws a body
+/// that a world searches for each changed body. Now and then there are many. In the larger ones two
+/// bodies near each other drift in each frame, as worlds expect them to go on. `new` draws a body
 /// next to others, `moved` copies a pose or a part of it (1, 2) or lets it drift, and `own` makes a
 /// change that only bodies of this kind have.
 fn draw<B: Properties>(
@@ -276,7 +276,11 @@ fn draw<B: Properties>(
         let body = new(&drawn.present(), below);
         drawn.bodies.push(Some(body));
     }
-    let drifting = (count == FIRST[1]).then(|| below(count as u32) as usize);
+    let mut drifting = Vec::new();
+    if count == FIRST[1] {
+        drifting.extend([0, 1]);
+        drawn.bodies[1] = drawn.bodies[0].map(|body| new(&[body], below));
+    }
     let first = drawn.present();
     let offset = below(kinds.len() as u32) as usize;
     let mut frames = Vec::with_capacity(FRAMES);
@@ -290,10 +294,12 @@ fn draw<B: Properties>(
             };
             changes.extend(drawn.change(kind, &new, &moved, &own, below).map(|one| (kind, one)));
         }
-        if let Some((number, body)) = drifting.and_then(|at| Some((at, drawn.bodies[at]?))) {
-            let body = moved(&body, &body, DRIFT, below);
-            drawn.bodies[number] = Some(body);
-            changes.push((ChangeKind::Moved, Change::Set(number, body)));
+        for &number in &drifting {
+            if let Some(body) = drawn.bodies[number] {
+                let body = moved(&body, &body, DRIFT, below);
+                drawn.bodies[number] = Some(body);
+                changes.push((ChangeKind::Moved, Change::Set(number, body)));
+            }
         }
         frames.push(changes);
     }
