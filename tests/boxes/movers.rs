@@ -1,7 +1,9 @@
 //! The cost of frames in which few boxes change, by counters.
 
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
 use sdop::boxes::BoxBody;
-use sdop::{Aabb, BodyId, BoxWorld, Groups, Motion};
+use sdop::{Aabb, BodyId, BoxCuller, BoxWorld, Groups, Motion};
 
 use crate::boxes::scenes::{Kind, boxes};
 use sdop_judge::draw::random::Random;
@@ -83,4 +85,37 @@ fn parked_boxes_cost_their_changes() {
         assert_eq!(world.pairs().len(), count);
         assert!(world.pairs().all(|pair| pair[1] == visitor));
     }
+}
+
+/// Boxes of which a few others drift in each frame: some come often enough to have candidates, and
+/// have none again after a rest.
+#[test]
+fn fresh_movers_keep_their_pairs() {
+    let (count, movers) = (1000, 50);
+    let side = (64.0_f64 / 3.0 * count as f64).cbrt() as f32;
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let mut unit = || (random.next_u32() >> 8) as f32 / (1 << 24) as f32;
+    let mut places: Vec<[f32; 3]> =
+        (0..count).map(|_| [0; 3].map(|_| (unit() - 0.5) * side)).collect();
+    let mut steps: Vec<[f32; 3]> =
+        (0..count).map(|_| [0; 3].map(|_| 0.16 * (unit() - 0.5))).collect();
+    let bounds = |at: [f32; 3]| Aabb::new(at.map(|x| x - 1.0), at.map(|x| x + 1.0));
+    let mut boxes: Vec<Aabb> = places.iter().map(|&at| bounds(at)).collect();
+    let (mut world, mut culler) = (BoxWorld::new(), BoxCuller::new());
+    let ids: Vec<BodyId> = boxes.iter().map(|&aabb| world.insert(aabb).unwrap()).collect();
+    for frame in 0..600 {
+        for _ in 0..movers {
+            let i = (unit() * count as f32) as usize;
+            for (x, step) in places[i].iter_mut().zip(&mut steps[i]) {
+                *x += *step;
+                *step = if x.abs() > side / 2.0 { -x.signum() * step.abs() } else { *step };
+            }
+            boxes[i] = bounds(places[i]);
+            world.set_bounds(ids[i], boxes[i]).unwrap();
+        }
+        world.cull().unwrap();
+        let wanted = culler.cull(&boxes).unwrap().len();
+        assert_eq!(world.pairs().len(), wanted, "frame {frame}");
+    }
+    assert!(world.rest_counters().queried > 500 * movers as u64 / 2);
 }

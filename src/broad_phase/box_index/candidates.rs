@@ -274,7 +274,10 @@ impl Candidates {
     fn take_list(&mut self, slot: u32) {
         let Self { index: BoxIndex { bodies, .. }, lists, found, differences, .. } = self;
         compare(lists.get(bodies[slot as usize].list), found, differences);
-        for &(other, is_near) in &*differences {
+        let gone =
+            differences.iter().filter(|(_, is_near)| !is_near).map(|&(other, _)| (other, false));
+        // Those that were near before, too: this one may have been in their lists in vain.
+        for (other, is_near) in gone.chain(found.iter().map(|&other| (other, true))) {
             let other = &mut bodies[other as usize];
             if other.is_listed {
                 lists.set(&mut other.list, slot, is_near);
