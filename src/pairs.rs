@@ -9,7 +9,7 @@ mod sort;
 
 pub(crate) use found::FoundPartners;
 pub(crate) use in_step::out_of_step;
-pub(crate) use merge::{Merge, Merged, compare};
+pub(crate) use merge::{Merge, Merged};
 pub(crate) use partners::{PartnerPairs, Partners};
 pub(crate) use runs::{Run, Runs};
 pub(crate) use sort::{PairSorter, key, pair_of, sort_few};

@@ -13,7 +13,7 @@ use super::movers::Movers;
 use super::pair_log::{PairLog, WorldPairs};
 use super::reported_pairs::ReportedPairs;
 use super::{BodyId, Events, Ids};
-use crate::pairs::{FoundPartners, PairList, Partners, compare};
+use crate::pairs::{FoundPartners, Merge, Merged, PairList, Partners};
 
 /// The number of bodies by which prefetching is ahead.
 const PREFETCH_DISTANCE: usize = 8;
@@ -206,6 +206,20 @@ impl PairsByBody {
             Event::Begun(_) => None,
             Event::Persisting(pair) | Event::Ended(pair) => Some(pair),
         }))
+    }
+}
+
+/// Lists the differences of two sorted lists: (n, false) if only `before` has n, (n, true) if only
+/// `now` has it.
+fn compare(before: &[u32], now: &[u32], differences: &mut Vec<(u32, bool)>) {
+    differences.clear();
+    if before != now {
+        let merged = Merge::new(before, now, Ord::cmp);
+        differences.extend(merged.filter_map(|merged| match merged {
+            Merged::First(&gone) => Some((gone, false)),
+            Merged::Second(&come) => Some((come, true)),
+            Merged::Both(..) => None,
+        }));
     }
 }
 

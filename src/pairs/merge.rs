@@ -52,17 +52,3 @@ where
         }
     }
 }
-
-/// Lists the differences of two sorted lists: (n, false) if only `before` has n, (n, true) if only
-/// `now` has it.
-pub(crate) fn compare(before: &[u32], now: &[u32], differences: &mut Vec<(u32, bool)>) {
-    differences.clear();
-    if before != now {
-        let merged = Merge::new(before, now, Ord::cmp);
-        differences.extend(merged.filter_map(|merged| match merged {
-            Merged::First(&gone) => Some((gone, false)),
-            Merged::Second(&come) => Some((come, true)),
-            Merged::Both(..) => None,
-        }));
-    }
-}

@@ -1,14 +1,17 @@
 //! Which boxes may meet which, while few of them move.
 //!
-//! A body that moves often has an enlarged box, which contains its own, and a list of candidates:
-//! all bodies whose enlarged boxes meet it. If a body has no enlarged box, its own counts. While a
-//! body moves within its enlarged box, its partners are among its candidates. One that leaves it
-//! gets another, and is searched for in an index of all these boxes. How much a box is enlarged
-//! follows from its last motion. Bodies that seldom move are searched for whenever they do.
+//! A body that moves often is listed: it has an enlarged box around its own, and a list of
+//! candidates, which are the bodies that meet the enlarged box with theirs, enlarged or not. While
+//! it moves within its enlarged box, it is compared with its candidates alone. When it leaves that,
+//! it gets another one, and is searched for in the index, which has these boxes. How much a box is
+//! enlarged follows from its last motion. A body that isn't listed is searched for whenever it
+//! moves.
 
-use super::{Body, BoxIndex, FIXED_TAG, Search, sort_each_once};
+use std::ops::Range;
+
+use super::{Body, BoxIndex, FIXED_TAG, Search, each_meeting, sort_each_once};
 use crate::bodies::{Aabb, Groups, PairRules};
-use crate::pairs::{FoundPartners, Runs, compare};
+use crate::pairs::{FoundPartners, Runs};
 use crate::simd::{TaggedBox, prefetch};
 
 /// Tag of a box that doesn't collide with all groups.
@@ -17,8 +20,7 @@ const GROUPED_TAG: u32 = 2;
 /// Tag of an enlarged box in the index.
 const ENLARGED_TAG: u32 = 4;
 
-/// An enlarged box is left after about this number of frames of equal motion, or of one in any
-/// direction.
+/// A box is enlarged by this many times its last motion ahead, and by this many to all sides.
 const FRAMES_AHEAD: f32 = 6.0;
 const FRAMES_ASIDE: f32 = 1.0;
 
@@ -26,9 +28,9 @@ const FRAMES_ASIDE: f32 = 1.0;
 /// many, or be left at once.
 const SIDE_PER_MOTION: f32 = 8.0;
 
-/// A body has moved often if fewer than this number of searches have passed since it moved before.
-/// Lists pay in frames in which half of the bodies have, because each is of use for several moves.
-/// In a world whose boxes are in the nearer caches, they pay for bodies that move less often too.
+/// A body moves often if fewer than this number of searches have passed since it moved before. If
+/// half of the changed bodies do, a list pays for each of them: it serves for several moves. In a
+/// world that fits into the nearer caches, it pays for bodies that move less often, too.
 const MOST_REST: u32 = 4;
 const MOST_REST_IN_CACHE: u32 = 32;
 
@@ -54,31 +56,30 @@ pub(crate) struct IndexedBox {
     pub aabb: Aabb,
 }
 
-/// The boxes of a world, and the candidates of those that have moved.
+/// The boxes of a world, and the candidates of its listed bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidates {
-    /// The enlarged boxes, and those of bodies that have none.
+    /// The boxes of all bodies, enlarged if they are listed.
     index: BoxIndex,
-    /// The enlarged box of each slot that has one.
+    /// The enlarged box of each slot whose body is listed: the index has it in three cache lines.
     enlarged: Vec<Aabb>,
-    /// All candidates are in a body's list. There may be others in it, that are no more.
+    /// The lists have all candidates, and may have others that were candidates.
     lists: Runs<u32, 4>,
-    /// The number of this search; those of bodies are lower, unless they have moved before it.
+    /// The number of this search; those of bodies are at most this.
     number: u32,
-    /// Bodies of this search that have moved often, and whether they get lists.
+    /// Changed bodies of this search that move often, and whether lists pay for such bodies, as the
+    /// search before has shown.
     often: usize,
     lists_pay: bool,
-    /// The boxes in the index of bodies that get a list, and of the others that are searched for.
-    listed: Vec<TaggedBox>,
-    unlisted: Vec<TaggedBox>,
+    /// The boxes in the index of the bodies that are searched for.
+    seekers: Vec<TaggedBox>,
     search: Search,
-    /// What was found for one body, or for all that have no list.
-    found: Vec<u32>,
-    /// The end of each one's part.
+    /// The partners of all seekers that aren't listed, and the end of each one's part.
+    partners: Vec<u32>,
     ends: Vec<usize>,
-    differences: Vec<(u32, bool)>,
-    /// Bodies with lists, and those that come into them.
-    gained: Vec<[u32; 2]>,
+    /// A body's new list and its former one.
+    list: Vec<u32>,
+    former: Vec<u32>,
 }
 
 impl Candidates {
@@ -91,13 +92,12 @@ impl Candidates {
             number: MOST_REST_IN_CACHE,
             often: 0,
             lists_pay: false,
-            listed: Vec::new(),
-            unlisted: Vec::new(),
+            seekers: Vec::new(),
             search: Search::default(),
-            found: Vec::new(),
+            partners: Vec::new(),
             ends: Vec::new(),
-            differences: Vec::new(),
-            gained: Vec::new(),
+            list: Vec::new(),
+            former: Vec::new(),
         }
     }
 
@@ -117,8 +117,7 @@ impl Candidates {
         found: &mut FoundPartners,
         [most_work, most]: [usize; 2],
     ) -> Option<usize> {
-        self.listed.clear();
-        self.unlisted.clear();
+        self.seekers.clear();
         self.number = self.number.checked_add(1)?; // then all pairs are found once
         for (number, indexed) in changed.iter().enumerate() {
             let ahead = [3, 2, 1].map(|steps| changed.get(number + steps * PREFETCH_DISTANCE));
@@ -127,18 +126,18 @@ impl Candidates {
         }
         self.lists_pay = 2 * std::mem::take(&mut self.often) >= changed.len();
         self.index.compact();
-        let mut work = self.list_candidates(most_work)?;
-        work += self.find_unlisted(rules, most_work.checked_sub(work)?)?;
+        let mut work = self.search(rules, most_work)?;
+        let has_listed = self.ends.len() < changed.len();
         let (mut ends, mut first) = (self.ends.iter(), 0);
         for (number, indexed) in changed.iter().enumerate() {
-            if self.unlisted.len() < changed.len() {
+            if has_listed {
                 self.prefetch([2, 1].map(|steps| changed.get(number + steps * PREFETCH_DISTANCE)));
             }
             if indexed.is_present {
                 if self.index.bodies[indexed.slot as usize].is_listed {
                     work += self.list_partners(indexed.slot, rules, &mut found.partners);
                 } else if let Some(&end) = ends.next() {
-                    let own = &self.found[std::mem::replace(&mut first, end)..end];
+                    let own = &self.partners[std::mem::replace(&mut first, end)..end];
                     found.partners.extend_from_slice(own);
                 }
             }
@@ -151,7 +150,7 @@ impl Candidates {
         Some(work)
     }
 
-    /// Moves, inserts or removes a body, and notes whether it must be searched for.
+    /// Moves, inserts or removes a body, and lists it among the seekers if it must be searched for.
     #[inline(always)]
     fn put(&mut self, indexed: &IndexedBox) {
         let slot = indexed.slot;
@@ -172,57 +171,56 @@ impl Candidates {
         {
             return;
         }
-        let is_to_list = self.lists_pay && rest < most_rest;
-        let enlarged = is_to_list.then(|| enlarge(&indexed.aabb, &former.aabb())).flatten();
+        let pays = self.lists_pay && rest < most_rest;
+        let enlarged = pays.then(|| enlarge(&indexed.aabb, &former.aabb())).flatten();
         body.is_listed = enlarged.is_some();
-        let Some(enlarged) = enlarged else {
-            if !body.list.is_empty() {
-                self.lists.replace(&mut body.list, &[]);
+        let mut seeker = tagged;
+        if let Some(enlarged) = enlarged {
+            if self.enlarged.len() <= slot as usize {
+                self.enlarged.resize(self.index.bodies.len(), Aabb::default());
             }
-            self.index.put(&tagged);
-            return self.unlisted.push(tagged);
-        };
-        if self.enlarged.len() <= slot as usize {
-            self.enlarged.resize(self.index.bodies.len(), Aabb::default());
+            self.enlarged[slot as usize] = enlarged;
+            let Aabb { min, max } = enlarged;
+            seeker = TaggedBox { min, slot, max, tags: tagged.tags | ENLARGED_TAG };
+        } else if !body.list.is_empty() {
+            self.lists.replace(&mut body.list, &[]);
         }
-        self.enlarged[slot as usize] = enlarged;
-        let Aabb { min, max } = enlarged;
-        let tagged = TaggedBox { min, slot, max, tags: tagged.tags | ENLARGED_TAG };
-        self.index.put(&tagged);
-        self.listed.push(tagged);
+        self.index.put(&seeker);
+        self.seekers.push(seeker);
     }
 
     /// Removes a body, if it is there.
     fn remove(&mut self, slot: u32) {
         if self.index.bodies.get(slot as usize).is_some_and(|body| body.is_present) {
             self.index.remove(slot);
-            self.found.clear();
+            self.list.clear();
             self.take_list(slot);
             self.index.bodies[slot as usize] = Body::NONE;
         }
     }
 
-    /// Searches for bodies that get a list.
-    fn list_candidates(&mut self, most: usize) -> Option<usize> {
-        let listed = std::mem::take(&mut self.listed);
+    /// Searches for the seekers: finds the candidates of those that are listed, and the partners of
+    /// the others. Returns the number of boxes and cells read, or `None` if there are more than
+    /// `most`, or too many candidates.
+    fn search(&mut self, rules: PairRules<'_>, most: usize) -> Option<usize> {
+        self.partners.clear();
+        self.ends.clear();
+        let seekers = std::mem::take(&mut self.seekers);
         let mut work = 0;
-        for batch in listed.chunks(SEEKERS_PER_BATCH) {
+        for batch in seekers.chunks(SEEKERS_PER_BATCH) {
             work += self.index.search(batch, &mut self.search, most - work)?;
             let mut first = 0;
             for (number, seeker) in batch.iter().enumerate() {
-                let Self { index, search: Search { quads, ends, hits, .. }, found, .. } = self;
-                let own = std::mem::replace(&mut first, ends[number])..ends[number];
-                found.clear();
-                index.each_meeting(seeker, &quads[own], hits, |other, _| {
-                    if other != seeker.slot {
-                        found.push(other);
-                    }
-                });
-                sort_each_once(found, 0);
-                self.take_list(seeker.slot);
+                let end = self.search.ends[number];
+                let quads = std::mem::replace(&mut first, end)..end;
+                if seeker.tags & ENLARGED_TAG != 0 {
+                    self.find_candidates(seeker, quads);
+                } else {
+                    self.find_partners(seeker, quads, rules);
+                }
             }
         }
-        self.listed = listed;
+        self.seekers = seekers;
         if self.lists.taken() > CANDIDATES_PER_BODY * self.len() {
             return None;
         }
@@ -232,58 +230,57 @@ impl Candidates {
         Some(work)
     }
 
-    /// Finds the partners of bodies that get no list, and notes these in those of others.
-    fn find_unlisted(&mut self, rules: PairRules<'_>, most: usize) -> Option<usize> {
-        let Self { index, search, found, ends: all_ends, gained, .. } = self;
-        found.clear();
-        all_ends.clear();
-        gained.clear();
-        let mut work = 0;
-        for batch in self.unlisted.chunks(SEEKERS_PER_BATCH) {
-            work += index.search(batch, search, most - work)?;
-            let Search { quads, ends, hits, .. } = &mut *search;
-            let mut first = 0;
-            for (seeker, &end) in batch.iter().zip(&*ends) {
-                let start = found.len();
-                let own = &quads[std::mem::replace(&mut first, end)..end];
-                index.each_meeting(seeker, own, hits, |other, tags| {
-                    let is_enlarged = tags & ENLARGED_TAG != 0;
-                    if is_enlarged {
-                        gained.push([other, seeker.slot]);
-                    }
-                    let tagged = &index.bodies[other as usize].tagged;
-                    if other != seeker.slot
-                        && (!is_enlarged || tagged.meets(seeker))
-                        && may_meet(seeker, [other, tags], rules)
-                    {
-                        found.push(other);
-                    }
-                });
-                sort_each_once(found, start);
-                all_ends.push(found.len());
+    /// Gives a listed body its candidates, which are in these of the search's quads.
+    fn find_candidates(&mut self, seeker: &TaggedBox, quads: Range<usize>) {
+        let Self { index, search, list, .. } = self;
+        list.clear();
+        each_meeting(&index.quads, seeker, &search.quads[quads], &mut search.hits, |other, _| {
+            if other != seeker.slot {
+                list.push(other);
             }
-        }
-        for &[other, slot] in &self.gained {
-            self.lists.set(&mut self.index.bodies[other as usize].list, slot, true);
-        }
-        Some(work)
+        });
+        sort_each_once(list, 0);
+        self.take_list(seeker.slot);
     }
 
-    /// Gives a slot the list that was found, and notes the slot in those of the others that have
-    /// one.
+    /// Finds the partners of a body that isn't listed, which are in these of the search's quads,
+    /// and adds it to the candidates of listed ones.
+    fn find_partners(&mut self, seeker: &TaggedBox, quads: Range<usize>, rules: PairRules<'_>) {
+        let Self { index, search, lists, partners, ends, .. } = self;
+        let BoxIndex { quads: all, bodies, .. } = index;
+        let start = partners.len();
+        each_meeting(all, seeker, &search.quads[quads], &mut search.hits, |slot, tags| {
+            let mut meets = slot != seeker.slot;
+            if tags & ENLARGED_TAG != 0 {
+                let other = &mut bodies[slot as usize];
+                lists.set(&mut other.list, seeker.slot, true);
+                meets = other.tagged.meets(seeker);
+            }
+            if meets && may_meet(seeker, [slot, tags], rules) {
+                partners.push(slot);
+            }
+        });
+        sort_each_once(partners, start);
+        ends.push(partners.len());
+    }
+
+    /// Gives a slot its new list, and adds the slot to those of its candidates or removes it from
+    /// those of former ones.
     fn take_list(&mut self, slot: u32) {
-        let Self { index: BoxIndex { bodies, .. }, lists, found, differences, .. } = self;
-        compare(lists.get(bodies[slot as usize].list), found, differences);
-        let gone =
-            differences.iter().filter(|(_, is_near)| !is_near).map(|&(other, _)| (other, false));
-        // Those that were near before, too: this one may have been in their lists in vain.
-        for (other, is_near) in gone.chain(found.iter().map(|&other| (other, true))) {
+        let Self { index: BoxIndex { bodies, .. }, lists, list, former, .. } = self;
+        let run = &mut bodies[slot as usize].list;
+        former.clear();
+        former.extend_from_slice(lists.get(*run));
+        lists.replace(run, list);
+        let gone = former.iter().filter(|other| list.binary_search(other).is_err());
+        // Candidates that have stayed may not have this one: a list may have former candidates.
+        let all = gone.map(|other| (other, false)).chain(list.iter().map(|other| (other, true)));
+        for (&other, is_near) in all {
             let other = &mut bodies[other as usize];
             if other.is_listed {
                 lists.set(&mut other.list, slot, is_near);
             }
         }
-        lists.replace(&mut bodies[slot as usize].list, found);
     }
 
     /// Prefetches what [`Self::list_partners`] will read of later bodies.
@@ -300,7 +297,8 @@ impl Candidates {
         }
     }
 
-    /// Appends the candidates of a body that are its partners. Returns the number of candidates.
+    /// Appends those candidates of a listed body that are its partners. Returns the number of its
+    /// candidates.
     #[inline(always)]
     fn list_partners(&self, slot: u32, rules: PairRules<'_>, partners: &mut Vec<u32>) -> usize {
         let bodies = &self.index.bodies;

@@ -42,7 +42,7 @@ struct Cell {
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Body {
-    /// The box as it is; that in the index may be larger.
+    /// The box as it is; that in the cells may be larger.
     tagged: TaggedBox,
     /// The position of its cell in the table.
     cell: u32,
@@ -51,7 +51,7 @@ struct Body {
     level: u16,
     /// Whether the slot has a box in the index.
     is_present: bool,
-    /// Whether it has an enlarged box and a list that is kept.
+    /// Whether it has an enlarged box and a list.
     is_listed: bool,
     list: Run,
     /// The last search before which it moved or came.
@@ -337,34 +337,34 @@ impl BoxIndex {
         }
         work
     }
+}
 
-    /// Calls `take` with the slot and the tags of each box in these quads that meets this one: some
-    /// twice, and the one itself.
-    #[inline(always)]
-    fn each_meeting(
-        &self,
-        seeker: &TaggedBox,
-        quads: &[u32],
-        hits: &mut Vec<(u32, u32)>,
-        mut take: impl FnMut(u32, u32),
-    ) {
-        if hits.len() < quads.len() {
-            hits.resize(2 * quads.len(), (0, 0));
-        }
-        // Without branches: which boxes meet can't be foreseen.
-        let (seeker, mut count) = (SeekerQuad::of(seeker), 0);
-        for &number in quads {
-            let lanes = self.quads.entry(number as usize).meeting(&seeker);
-            hits[count] = (number, lanes);
-            count += usize::from(lanes != 0);
-        }
-        for &(number, mut lanes) in &hits[..count] {
-            let quad = self.quads.entry(number as usize);
-            while lanes != 0 {
-                let lane = lanes.trailing_zeros() as usize % LANES;
-                lanes &= lanes - 1;
-                take(quad.slots[lane], quad.tags[lane]);
-            }
+/// Calls `take` with the slot and the tags of each box in the quads of these numbers that meets the
+/// seeker's. It may be called twice for a box, and is called for the seeker's own.
+#[inline(always)]
+fn each_meeting(
+    quads: &Runs<BoxQuad, 1>,
+    seeker: &TaggedBox,
+    numbers: &[u32],
+    hits: &mut Vec<(u32, u32)>,
+    mut take: impl FnMut(u32, u32),
+) {
+    if hits.len() < numbers.len() {
+        hits.resize(2 * numbers.len(), (0, 0));
+    }
+    // Without branches: which boxes meet can't be foreseen.
+    let (seeker, mut count) = (SeekerQuad::of(seeker), 0);
+    for &number in numbers {
+        let lanes = quads.entry(number as usize).meeting(&seeker);
+        hits[count] = (number, lanes);
+        count += usize::from(lanes != 0);
+    }
+    for &(number, mut lanes) in &hits[..count] {
+        let quad = quads.entry(number as usize);
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize % LANES;
+            lanes &= lanes - 1;
+            take(quad.slots[lane], quad.tags[lane]);
         }
     }
 }

@@ -260,7 +260,7 @@ fn groups(below: &mut dyn FnMut(u32) -> u32) -> Groups {
 
 /// Draws a history with a change per frame, of these kinds in turn, and often a second one: so few
 /// that a world searches for each changed body. Now and then there are many. In the larger ones two
-/// bodies near each other drift in each frame, as worlds expect them to go on. `new` draws a body
+/// bodies near each other drift in each frame, so that worlds list them. `new` draws a body
 /// next to others, `moved` copies a pose or a part of it (1, 2) or lets it drift, and `own` makes a
 /// change that only bodies of this kind have.
 fn draw<B: Properties>(
@@ -276,9 +276,8 @@ fn draw<B: Properties>(
         let body = new(&drawn.present(), below);
         drawn.bodies.push(Some(body));
     }
-    let mut drifting = Vec::new();
-    if count == FIRST[1] {
-        drifting.extend([0, 1]);
+    let drifting: &[usize] = if count == FIRST[1] { &[0, 1] } else { &[] };
+    if !drifting.is_empty() {
         drawn.bodies[1] = drawn.bodies[0].map(|body| new(&[body], below));
     }
     let first = drawn.present();
@@ -294,7 +293,7 @@ fn draw<B: Properties>(
             };
             changes.extend(drawn.change(kind, &new, &moved, &own, below).map(|one| (kind, one)));
         }
-        for &number in &drifting {
+        for &number in drifting {
             if let Some(body) = drawn.bodies[number] {
                 let body = moved(&body, &body, DRIFT, below);
                 drawn.bodies[number] = Some(body);
