@@ -1,6 +1,10 @@
-//! Compiles the shims of the engines that are C++ libraries of the system.
+//! Compiles the shims of the engines that are C++ libraries of the system, and names the profile.
 
 fn main() {
+    // …/PROFILE/build/PACKAGE/out. In other profiles cargo doesn't optimise the engines.
+    let out = std::path::PathBuf::from(std::env::var_os("OUT_DIR").unwrap_or_default());
+    let profile = out.ancestors().nth(3).and_then(|folder| folder.file_name()).unwrap_or_default();
+    println!("cargo:rustc-env=SDOP_PROFILE={}", profile.display());
     println!("cargo:rerun-if-changed=native");
     #[cfg(feature = "debian")]
     compile_shims();

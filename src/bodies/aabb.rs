@@ -2,7 +2,7 @@
 //! [`BoxWorld`](crate::BoxWorld).
 
 use super::contract::{ContractError, refuse};
-use crate::rounding::{ceil_f32, floor_f32};
+use crate::rounding::{ceil_f32, down, floor_f32, up};
 use crate::simd::{boxes_of, in_default_mode};
 
 pub use crate::simd::Aabb;
@@ -28,6 +28,22 @@ impl Aabb {
                 min: [0, 1, 2].map(|i| if is_valid(i) { down(min[i]) } else { up(min[i]) }),
                 max: [0, 1, 2].map(|i| if is_valid(i) { up(max[i]) } else { down(max[i]) }),
             }
+        })
+    }
+
+    /// This box grown on every side by a margin, a length ≥ 0, and rounded outward: boxes that are
+    /// on each axis at most the sum of their margins apart meet when each is grown by its own.
+    /// Without a margin it is the same; an invalid box or margin gives an invalid box.
+    #[must_use]
+    pub fn grown(self, margin: f32) -> Self {
+        let is_valid = |axis: usize| margin >= 0.0 && self.min[axis] <= self.max[axis];
+        if margin == 0.0 || in_default_mode(|| !(0..3).all(is_valid)) {
+            return if margin >= 0.0 { self } else { Self::new([f32::NAN; 3], [f32::NAN; 3]) };
+        }
+        let margin = f64::from(margin);
+        in_default_mode(|| Self {
+            min: self.min.map(|x| down(f64::from(x) - margin)),
+            max: self.max.map(|x| up(f64::from(x) + margin)),
         })
     }
 
@@ -102,9 +118,31 @@ mod tests {
         }
     }
 
-    /// Rounding mends no invalid box.
+    /// Grown boxes contain what they should, however small the margin; without one nothing changes.
+    #[test]
+    fn grown_boxes_contain_their_margin() {
+        let given = Aabb::new([-1.5, 0.0, 7.0e30], [1.5, 0.0, 7.5e30]);
+        assert_eq!(given.grown(0.0), given);
+        for margin in [f32::from_bits(1), 1.0e-20, 0.1, 3.0e38] {
+            let grown = given.grown(margin);
+            for axis in 0..3 {
+                let [lo, hi] = [given.min[axis], given.max[axis]].map(f64::from);
+                assert!(f64::from(grown.min[axis]) < lo && hi < f64::from(grown.max[axis]));
+                assert!(f64::from(grown.min[axis]) <= lo - f64::from(margin), "{margin:e}");
+            }
+        }
+    }
+
+    /// Rounding mends no invalid box, and neither does a margin.
     #[test]
     fn invalid_boxes_stay_invalid() {
+        let unit = Aabb::new([0.0; 3], [1.0; 3]);
+        let inverted = Aabb::new([2.0, 0.0, 0.0], [1.0; 3]);
+        for invalid in
+            [unit.grown(-1.0), unit.grown(f32::NAN), inverted.grown(3.0), unit.grown(f32::INFINITY)]
+        {
+            assert!(invalid.check(0).is_err(), "{invalid:?}");
+        }
         let above = 1.0 + exp2(-40);
         for (lo, hi) in [(above, 1.0), (-1.0, -above), (f64::NAN, 1.0), (0.0, 1.0e39), (0.2, 0.1)] {
             let outward = Aabb::outward([0.0, lo, 0.0], [1.0, hi, 1.0]);

@@ -126,6 +126,9 @@ struct QueriesArgs {
 
 fn main() -> miette::Result<()> {
     let cli = Cli::parse();
+    if !matches!(cli.command, Command::Answer(_)) {
+        is_fair(env!("SDOP_PROFILE"))?;
+    }
     threads::claim_caller()?;
     let (common, cases, name) = match &cli.command {
         Command::Answer(args) => return answer::run(args),
@@ -152,6 +155,16 @@ fn main() -> miette::Result<()> {
     }
     print!("{}", table.page());
     Ok(())
+}
+
+/// Whether cargo has optimised the engines, too. The workspace's other profiles optimise what works
+/// in the program alone.
+fn is_fair(profile: &str) -> miette::Result<()> {
+    if profile == "optimised" {
+        return Ok(());
+    }
+    let help = "cargo run --profile optimised -p sdop-field -- quick";
+    Err(miette::miette!(help = help, "the profile `{profile}` leaves the engines unoptimised"))
 }
 
 fn boxes(args: &BoxesArgs) -> Vec<Case> {

@@ -239,7 +239,7 @@ fn command() -> String {
             [] => String::new(),
             some => format!(" --features {}", some.join(",")),
         };
-        format!("cargo run --release -p sdop-field{features} -- {}", arguments.join(" "))
+        format!("cargo run --profile optimised -p sdop-field{features} -- {}", arguments.join(" "))
     })
 }
 

@@ -1,4 +1,4 @@
-//! Printing a verdict: as a table for people, as JSON, CSV or JUnit's XML for programs.
+//! Printing a verdict: as a table for people, as JSON, CSV, JUnit's XML or a badge for programs.
 
 use clap::ValueEnum;
 use sdop_judge::report::junit;
@@ -20,6 +20,8 @@ pub enum ReportFormat {
     Csv,
     /// JUnit's XML.
     Junit,
+    /// A badge, as the endpoint of shields.io reads it.
+    Badge,
 }
 
 impl From<Format> for ReportFormat {
@@ -70,8 +72,25 @@ pub fn emit(format: ReportFormat, verdict: &Verdict) -> miette::Result<()> {
             };
             output::emit(Format::Json, &whole, |_| String::new())
         }
+        ReportFormat::Badge => print(&badge(verdict)),
         ReportFormat::Table => print(&format!("{}{verdict}", table(verdict))),
     }
+}
+
+/// The first line of the summary as a badge: its claim is the label.
+fn badge(verdict: &Verdict) -> String {
+    let color = match verdict.conclusion() {
+        Conclusion::Pass => "brightgreen",
+        Conclusion::Incomplete => "yellow",
+        Conclusion::NotPassed => "red",
+    };
+    let summary = verdict.to_string();
+    let (label, mut message) = summary.split_once(": ").unwrap_or_default();
+    message = message.lines().next().unwrap_or_default();
+    let known = verdict.cases.iter().filter(|case| case.known).count();
+    let known = if known > 0 { format!(", {known} known to fail") } else { String::new() };
+    serde_json::json!({ "schemaVersion": 1, "label": format!("sdop, {label}"), "message": format!("{message}{known}"), "color": color })
+        .to_string()
 }
 
 /// The groups that did not simply pass, failed ones first; one line counts the others.

@@ -288,7 +288,14 @@ fn command(step: &ExperimentStep, out: &Path) -> miette::Result<Command> {
         "field" => {
             let mut cargo = Command::new("cargo");
             // Engines in C++ are built as their packages are.
-            cargo.env("CXX", "g++").args(["run", "--release", "--quiet", "-p", "sdop-field"]);
+            cargo.env("CXX", "g++").args([
+                "run",
+                "--profile",
+                "optimised",
+                "--quiet",
+                "-p",
+                "sdop-field",
+            ]);
             cargo.args(["--features", "physx,debian,box3d", "--"]).args(&step.arguments);
             cargo.arg("--out").arg(out);
             cargo

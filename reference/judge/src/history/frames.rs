@@ -13,7 +13,6 @@ use sdop::boxes::{BoxBody, BoxWorld};
 use sdop::compound::{Compound, Part, PartCuller};
 use sdop::culler::CullerBuilder;
 use sdop::periodic::{PeriodicBox, PeriodicBoxes};
-use sdop::rounding::{down, up};
 use sdop::volume::Shape;
 use sdop::world::PeriodicWorld;
 use sdop::world::{Body, World};
@@ -49,14 +48,7 @@ fn groups(frame: &Frame, i: usize) -> Groups {
 fn box_body(frame: &Frame, i: usize) -> BoxBody {
     let margin = frame.margins.as_ref().map_or(0.0, |margins| margins[i]);
     let [lo, hi] = [0, 3].map(|corner| [0, 1, 2].map(|axis| frame.boxes[i][corner + axis]));
-    let bounds = match margin {
-        0.0 => Aabb::new(lo, hi),
-        _ => {
-            let margin = f64::from(margin);
-            let lo = lo.map(|x| down(f64::from(x) - margin));
-            Aabb::new(lo, hi.map(|x| up(f64::from(x) + margin)))
-        }
-    };
+    let bounds = Aabb::new(lo, hi).grown(margin);
     BoxBody { bounds, motion: frame.motion(i), groups: groups(frame, i) }
 }
 
