@@ -7,13 +7,14 @@ use std::sync::Arc;
 use miette::{IntoDiagnostic as _, WrapErr as _, miette};
 use sdop_bench::measure::conditions::Conditions;
 use sdop_bench::report::{CodeVersion, Manifest, Quantities, Store, pages};
+use serde::Deserialize as _;
 
 use super::files::write;
 use super::output::{print, rows};
 use super::{Outcome, reproduce, tradeoff};
 
 /// Pages that people write, with blocks whose numbers come from records.
-const PAGES_WITH_BLOCKS: [&str; 11] = [
+const PAGES_WITH_BLOCKS: [&str; 16] = [
     "README.md",
     "paper/results.md",
     "benches/adapters/README.md",
@@ -23,6 +24,11 @@ const PAGES_WITH_BLOCKS: [&str; 11] = [
     "paper/machines.md",
     "paper/many-ranks.md",
     "paper/proofs/README.md",
+    "paper/results/engines.md",
+    "paper/results/formula.md",
+    "paper/results/kernels.md",
+    "paper/summary.md",
+    "paper/tradeoff.md",
     "python/bench/README.md",
     "tests/README.md",
 ];
@@ -46,20 +52,19 @@ const MACROS: &str = "paper/quantities.jinja";
 /// What a page says of a record whose times are disturbed, and of its machine.
 const LOADED: &str = "did other work";
 
-/// One template for each block that a page may carry, named after it; below `pages`, one for each
-/// whole page.
+/// Templates of blocks, and below `pages` those of whole pages.
 const TEMPLATES: &str = "paper/templates";
 
 /// Render the numbers in README and the other pages from data/record
 ///
-/// A template paper/templates/pages/PAGE gives a whole page. Other pages have blocks between <!--
-/// BEGIN NAME --> and <!-- END NAME -->, from the template paper/templates/NAME.md. Templates read
-/// records with csv("EXPERIMENT/FILE"), md, json, text, record and records, select rows with where
-/// and one, and round with fixed, sig, thousands and percent. The digests of all records are
-/// checked first, so that a digit changed by hand is found in pages and in records. A number must
-/// look the same on every page. If a record is older than the code that it measures, pages that
-/// quote it must name its commit. data/record/quoted.toml names the machine whose records are
-/// quoted.
+/// Pages have blocks between <!-- BEGIN NAME --> and <!-- END NAME -->, from the template
+/// paper/templates/NAME.md. The block NAME/PART is what that template has after the line <!-- PART
+/// -->. A template paper/templates/pages/PAGE gives a whole page. Templates read records with
+/// csv("EXPERIMENT/FILE"), md, json, text, record and records, select rows with where and one, and
+/// round with fixed, sig, thousands and percent. The digests of all records are checked first, so
+/// that a digit changed by hand is found in pages and in records. A number must look the same on
+/// every page. If a record is older than the code that it measures, pages that quote it must name
+/// its commit. data/record/quoted.toml names the machine whose records are quoted.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples: sdop report\n          sdop report --check\n          sdop report --quantities"
@@ -272,21 +277,14 @@ fn unnamed_age(page: &str, text: &str, store: &Store, now: Option<&CodeVersion>)
 
 /// Records used by a page whose machine did other work, where the page doesn't say so.
 fn unnamed_load(page: &str, text: &str, store: &Store) -> Vec<String> {
-    if text.split_whitespace().collect::<Vec<_>>().join(" ").contains(LOADED) {
-        return Vec::new();
-    }
+    let says_so = text.split_whitespace().collect::<Vec<_>>().join(" ").contains(LOADED);
     let is_disturbed = |(name, manifest): &(String, Manifest)| {
         let files = manifest.files.keys().filter(|file| file.ends_with(".json"));
         let results = files.filter_map(|file| store.json(&format!("{name}/{file}")).ok());
-        let mut conditions = results.filter_map(|result| {
-            serde_json::from_value::<Conditions>(result["conditions"].clone()).ok()
-        });
-        conditions.any(|conditions| conditions.disturbed())
+        let mut found = results.filter_map(|of| Conditions::deserialize(&of["conditions"]).ok());
+        !says_so && found.any(|conditions| conditions.disturbed())
     };
     let disturbed = store.used().into_iter().filter(is_disturbed);
-    disturbed
-        .map(|(name, _)| {
-            format!("{page}: the machine of {name} {LOADED}: say so, or measure again")
-        })
-        .collect()
+    let say = |name| format!("{page}: the machine of {name} {LOADED}: say so, or measure again");
+    disturbed.map(|(name, _)| say(name)).collect()
 }

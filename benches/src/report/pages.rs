@@ -1,18 +1,16 @@
 //! Pages whose numbers come from records.
 //!
-//! A page that is mostly tables is rendered from a template below `paper/templates/pages/`:
-//! `pages/paper/summary.md` becomes `paper/summary.md`. A page that people write has rendered
-//! blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a separate line, from the
-//! template `paper/templates/NAME.md`. Templates are in Jinja's language. The macros that they
-//! share are in one file, and expressions call them as `q`. Paragraphs are wrapped
-//! ([`super::fill`]).
+//! A page has rendered blocks between `<!-- BEGIN NAME -->` and `<!-- END NAME -->`, each on a
+//! separate line, from the template `paper/templates/NAME.md`. The block `NAME/PART` is what that
+//! template gives after the line `<!-- PART -->`. Paragraphs are wrapped ([`super::fill`]). The
+//! report and a figure are rendered as a whole: `paper/templates/pages/FILE` becomes `FILE`.
+//! Templates are in Jinja's language; they call the macros of a common file as `q`.
 //!
 //! | function or filter | gives |
 //! |---|---|
 //! | `csv("experiment/file.csv")` | rows, objects of cells; a column `a.b` is `row.a.b` |
 //! | `md("experiment/file.md", n)` | the same for the n-th table of a Markdown file, counted from 0 |
 //! | `json("experiment/file.json")`, `text(…)` | the value; the file as it is |
-//! | `is_recorded("experiment/file.csv")` | whether the file exists; a part of a page may be omitted until its record exists |
 //! | `record("experiment")`, `records(…)` | the manifest, with `id` and `place`; the manifests of all machines |
 //! | `rows \| where(column=value, …)`, `rows \| one(column=value, …)` | the rows with these cells; the only one, or an error |
 //! | `x \| fixed(2)`, `x \| sig(3)`, `n \| thousands`, `x \| percent(1)` | digits after the point; digits that count; 12,345; 12.3 |
@@ -24,7 +22,6 @@
 //! `machine/experiment` that of any machine.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use miette::miette;
@@ -67,11 +64,8 @@ fn flaw(page: &str, line: usize, problem: &str) -> miette::Report {
 /// An expression that has no value, a record that was changed.
 pub fn whole(page: &str, template: &str, sources: &PageSources) -> miette::Result<String> {
     let environment = environment(page, sources)?;
-    let text = evaluate(&environment, template).map_err(|error| {
-        flaw(&format!("{WHOLE}/{page}"), error.line().unwrap_or(0), &said(&error))
-    })?;
-    let is_markdown = Path::new(page).extension().is_some_and(|e| e == "md");
-    Ok(if is_markdown { filled(&text) } else { text })
+    evaluate(&environment, page, template)
+        .map_err(|error| flaw(&format!("{WHOLE}/{page}"), error.line().unwrap_or(0), &said(&error)))
 }
 
 /// A page that people write, with its blocks as its records have them. Nothing outside of blocks
@@ -82,6 +76,7 @@ pub fn whole(page: &str, template: &str, sources: &PageSources) -> miette::Resul
 /// changed.
 pub fn blocks(page: &str, text: &str, sources: &PageSources) -> miette::Result<String> {
     let environment = environment(page, sources)?;
+    let mut rendered = BTreeMap::new();
     let mut out = String::with_capacity(text.len());
     let mut lines = text.split_inclusive('\n').enumerate();
     while let Some((index, line)) = lines.next() {
@@ -90,11 +85,15 @@ pub fn blocks(page: &str, text: &str, sources: &PageSources) -> miette::Result<S
             continue;
         };
         let failed = |problem: String| flaw(page, index + 1, &problem);
-        let template = sources
-            .templates
-            .get(name)
-            .ok_or_else(|| failed(format!("no template `paper/templates/{name}.md`")))?;
-        let value = evaluate(&environment, template).map_err(|error| failed(said(&error)))?;
+        let (file, part) = name.rsplit_once('/').unwrap_or((name, ""));
+        if !rendered.contains_key(file) {
+            let none = || failed(format!("no template `paper/templates/{file}.md`"));
+            let template = sources.templates.get(file).ok_or_else(none)?;
+            let value = evaluate(&environment, file, template);
+            rendered.insert(file, value.map_err(|error| failed(said(&error)))?);
+        }
+        let value = part_of(&rendered[file], part)
+            .ok_or_else(|| failed(format!("no line `<!-- {part} -->` in its template")))?;
         out.push_str(&filled(&format!("{}\n", value.trim_matches('\n'))));
         let (_, end) = lines
             .find(|(_, line)| marked(line, "END") == Some(name) || marked(line, "BEGIN").is_some())
@@ -105,6 +104,15 @@ pub fn blocks(page: &str, text: &str, sources: &PageSources) -> miette::Result<S
     Ok(out)
 }
 
+/// What a rendered template has after the line of this part, up to the next part.
+fn part_of<'t>(rendered: &'t str, part: &str) -> Option<&'t str> {
+    let after = match part {
+        "" => rendered,
+        _ => rendered.split_once(&format!("<!-- {part} -->\n"))?.1,
+    };
+    after.split("<!-- ").next()
+}
+
 /// The name in a line that is `<!-- WORD NAME -->`.
 fn marked<'l>(line: &'l str, word: &str) -> Option<&'l str> {
     let inside = line.trim().strip_prefix("<!-- ")?.strip_suffix(" -->")?;
@@ -112,10 +120,10 @@ fn marked<'l>(line: &'l str, word: &str) -> Option<&'l str> {
 }
 
 /// What a template gives, with the shared macros as `q`.
-fn evaluate(environment: &Environment<'_>, template: &str) -> Result<String, Error> {
+fn evaluate(env: &Environment<'_>, name: &str, template: &str) -> Result<String, Error> {
     // The import is not on a separate line, so that errors have the template's line numbers.
     const IMPORT: &str = "{% import 'macros' as q %}{{ '' }}";
-    environment.render_str(&format!("{IMPORT}{template}"), context! {})
+    env.render_named_str(name, &format!("{IMPORT}{template}"), context! {})
 }
 
 /// An error with its causes.
@@ -197,8 +205,6 @@ fn add_readers(environment: &mut Environment<'_>, store: &Arc<Store>) {
     });
     let from = store.clone();
     environment.add_function("text", move |path: &str| from.text(path).map_err(lost));
-    let from = store.clone();
-    environment.add_function("is_recorded", move |path: &str| from.is_recorded(path));
     let from = store.clone();
     environment.add_function("record", move |name: &str| described(&from, name));
     let from = store.clone();

@@ -80,12 +80,6 @@ impl Store {
         names
     }
 
-    /// Whether a file of a record is there.
-    #[must_use]
-    pub fn is_recorded(&self, path: &str) -> bool {
-        self.root.join(self.place(path)).is_file()
-    }
-
     /// A record's manifest, its digests checked.
     ///
     /// # Errors

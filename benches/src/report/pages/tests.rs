@@ -26,9 +26,10 @@ fn sources() -> (tempfile::TempDir, PageSources) {
 fn templates_give_pages() {
     let (_root, sources) = sources();
     let template = "a 1\n{% set t = csv(\"box/kernels/t.csv\") %}\n\
-                    It is {{ (t | one(tier=\"avx2\")).us.mean | fixed(1) }} µs, {{ q.us(t[0]) }}\n";
-    let page = whole("page.md", template, &sources).unwrap();
-    assert_eq!(page, "a 1 It is 62.1 µs, 300.9 µs\n");
+                    It is {{ (t | one(tier=\"avx2\")).us.mean | fixed(1) }} µs, {{ q.us(t[0]) }}\n\
+                    {% for row in t %}\n| {{ row.tier }} | {{ row.us.mean | sig(3) }} |\n{% endfor %}\n";
+    let page = whole("page.typ", template, &sources).unwrap();
+    assert_eq!(page, "a 1\nIt is 62.1 µs, 300.9 µs\n| scalar | 301 |\n| avx2 | 62.1 |\n");
     assert_eq!(sources.store.used().len(), 1);
 }
 
@@ -45,15 +46,6 @@ fn two_roundings_are_detected() {
 }
 
 #[test]
-fn templates_make_tables() {
-    let (_root, sources) = sources();
-    let template = "{% for row in csv(\"box/kernels/t.csv\") %}\n\
-                    | {{ row.tier }} | {{ row.us.mean | sig(3) }} |\n{% endfor %}\n";
-    let page = whole("page.typ", template, &sources).unwrap();
-    assert_eq!(page, "| scalar | 301 |\n| avx2 | 62.1 |\n");
-}
-
-#[test]
 fn blocks_are_rendered_from_templates() {
     let (_root, sources) = sources();
     let page = |between: &str| format!("a\n<!-- BEGIN times -->\n{between}<!-- END times -->\nb\n");
@@ -63,6 +55,8 @@ fn blocks_are_rendered_from_templates() {
     }
     for (text, problem) in [
         ("x\n<!-- BEGIN nothing -->\n<!-- END nothing -->", "no template"),
+        ("x\n<!-- BEGIN nothing/us -->\n", "no template `paper/templates/nothing.md`"),
+        ("x\n<!-- BEGIN times/us -->\n", "no line `<!-- us -->`"),
         ("x\n<!-- BEGIN times -->\n", "without `END times`"),
         (
             "x\n<!-- BEGIN times -->\n<!-- BEGIN times -->\n<!-- END times -->",
@@ -72,6 +66,21 @@ fn blocks_are_rendered_from_templates() {
         let error = blocks("page.md", text, &sources).unwrap_err().to_string();
         assert!(error.starts_with("page.md:2: ") && error.contains(problem), "{error}");
     }
+}
+
+/// The parts of a template share what is set above them.
+#[test]
+fn parts_of_a_template_are_separate_blocks() {
+    let (_root, mut sources) = sources();
+    let template =
+        format!("{{% set k = 18 %}}\n<!-- k -->\nk = {{{{ k }}}}\n\n<!-- us -->\n{TIMES}");
+    sources.templates.insert("far/times".to_owned(), template);
+    let block = |part: &str, text: &str| {
+        format!("a\n<!-- BEGIN far/times/{part} -->\n{text}<!-- END far/times/{part} -->\n")
+    };
+    let page = |k: &str, us: &str| block("us", us) + &block("k", k);
+    let rendered = blocks("page.md", &page("", "- 1 µs\n"), &sources).unwrap();
+    assert_eq!(rendered, page("k = 18\n", "- 300.9 µs\n- 62.1 µs\n"));
 }
 
 #[test]
