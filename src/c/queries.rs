@@ -1,7 +1,7 @@
 //! Queries about the bodies of a world: those that may touch a volume or meet a segment.
 
-use super::border::{Buffer, Out, SdopStatus, answer, call, free, handle, list, make, shared};
-use super::box_world::SdopBoxWorld;
+use super::border::border;
+use super::boxes::SdopBoxWorld;
 use super::world::SdopWorld;
 use crate::living::BodyId;
 use crate::query::{Line, LineHit, QueryIndex, QueryVolume};
@@ -44,128 +44,56 @@ impl From<LineHit> for SdopHit {
     }
 }
 
+border! {
+index: SdopQueryIndex;
+
 /// Makes an index without bodies.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_query_index_new(out: *mut *mut SdopQueryIndex) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    make(unsafe { Out::new(out) }, || Ok(SdopQueryIndex(QueryIndex::new())))
-}
-
+fn sdop_query_index_new() -> new SdopQueryIndex { SdopQueryIndex(QueryIndex::new()) }
 /// Frees an index; null is fine.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_query_index_free(index: *mut SdopQueryIndex) {
-    // SAFETY: the caller's promise.
-    unsafe { free(index) }
-}
-
+free sdop_query_index_free;
 /// Brings the index up to date with a world: queries then see its bodies as they are now. A body
 /// that has not changed since the last update costs one comparison. No cull is needed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_query_index_update(
-    index: *mut SdopQueryIndex,
-    world: *const SdopWorld,
-) -> SdopStatus {
-    call(|| {
-        // SAFETY: the caller's promise.
-        let (it, world) = unsafe { (handle(index, "index")?, shared(world, "world")?) };
-        it.0.update(&world.0);
-        Ok(())
-    })
-}
-
+fn sdop_query_index_update(*mut index, *const world: SdopWorld) { index.0.update(&world.0); }
 /// `sdop_query_index_update` for a world of boxes.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_query_index_update_boxes(
-    index: *mut SdopQueryIndex,
-    world: *const SdopBoxWorld,
-) -> SdopStatus {
-    call(|| {
-        // SAFETY: the caller's promise.
-        let (it, world) = unsafe { (handle(index, "index")?, shared(world, "world")?) };
-        it.0.update(&world.0);
-        Ok(())
-    })
+fn sdop_query_index_update_boxes(*mut index, *const world: SdopBoxWorld) {
+    index.0.update(&world.0);
 }
 
 /// Writes the ids of the bodies that may touch a box on the world's axes into `buffer`, sorted by
 /// slots. No body that has a point in common with it is missed. If they don't fit, `count` says how
 /// many there are.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_query_index_touching_box(
-    index: *const SdopQueryIndex,
-    min: *const [f64; 3],
-    max: *const [f64; 3],
-    buffer: *mut u64,
-    capacity: usize,
-    count: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
-        // SAFETY: the caller's promise.
-        let (it, min, max) =
-            unsafe { (shared(index, "index")?, *shared(min, "min")?, *shared(max, "max")?) };
-        let found = it.0.touching(&QueryVolume::Box { min, max })?;
-        Ok(found.into_iter().map(BodyId::to_bits))
-    })
+fn sdop_query_index_touching_box(
+    *const index,
+    *const min: [f64; 3],
+    *const max: [f64; 3],
+) -> [u64] {
+    let found = index.0.touching(&QueryVolume::Box { min: *min, max: *max })?;
+    found.into_iter().map(BodyId::to_bits)
 }
 
 /// `sdop_query_index_touching_box` for a ball, or a point if the radius is 0.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_query_index_touching_ball(
-    index: *const SdopQueryIndex,
-    centre: *const [f64; 3],
-    radius: f64,
-    buffer: *mut u64,
-    capacity: usize,
-    count: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
-        // SAFETY: the caller's promise.
-        let (it, centre) = unsafe { (shared(index, "index")?, *shared(centre, "centre")?) };
-        let found = it.0.touching(&QueryVolume::Ball { centre, radius })?;
-        Ok(found.into_iter().map(BodyId::to_bits))
-    })
+fn sdop_query_index_touching_ball(*const index, *const centre: [f64; 3], radius: f64) -> [u64] {
+    let found = index.0.touching(&QueryVolume::Ball { centre: *centre, radius })?;
+    found.into_iter().map(BodyId::to_bits)
 }
 
 /// Finds the body whose volume a segment may meet first: no other is met at a smaller s. `found`
 /// gets whether there is such a body, and `hit`, unless it is null, gets it.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_query_index_first(
-    index: *const SdopQueryIndex,
-    segment: *const SdopSegment,
-    hit: *mut SdopHit,
-    found: *mut bool,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    let (hit, found) = unsafe { (Out::new(hit), Out::new(found)) };
-    answer(found, "found", || {
-        // SAFETY: the caller's promise.
-        let (it, segment) = unsafe { (shared(index, "index")?, *shared(segment, "segment")?) };
-        let first = it.0.first(&segment.into())?;
-        if let (Some(first), Ok(hit)) = (first, hit.checked("hit")) {
-            // SAFETY: not null, so it may be written, by the caller's promise.
-            unsafe { hit.write(first.into()) };
-        }
-        Ok(first.is_some())
-    })
+fn sdop_query_index_first(
+    *const index,
+    *const segment: SdopSegment,
+    ?mut hit: SdopHit,
+) -> *mut found: bool {
+    let first = index.0.first(&Line::from(*segment))?;
+    if let (Some(first), Some(hit)) = (first, hit) {
+        hit.write(first.into());
+    }
+    first.is_some()
 }
 
 /// Writes all bodies that a segment may meet into `buffer`, sorted by s. If they don't fit, `count`
 /// says how many there are.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_query_index_along(
-    index: *const SdopQueryIndex,
-    segment: *const SdopSegment,
-    buffer: *mut SdopHit,
-    capacity: usize,
-    count: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
-        // SAFETY: the caller's promise.
-        let (it, segment) = unsafe { (shared(index, "index")?, *shared(segment, "segment")?) };
-        let hits = it.0.along(&segment.into())?;
-        Ok(hits.into_iter().map(SdopHit::from))
-    })
+fn sdop_query_index_along(*const index, *const segment: SdopSegment) -> [SdopHit] {
+    index.0.along(&Line::from(*segment))?
+}
 }
