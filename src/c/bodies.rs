@@ -2,10 +2,10 @@
 
 use std::ffi::c_char;
 
-use super::border::{Refusal, SdopPair, border, column, optional, required, text};
+use super::border::{Refusal, SdopPair, SdopTakePairs, border, column, optional, required, text};
 use crate::bodies::{Bodies, Groups};
 use crate::culler::{Culler, CullerBuilder};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{self, ReadOptions, TriangleMesh};
 use crate::settings::{Axes, DirectionSet, Finder, Strategy};
 use crate::volume::{Origin, Shape, ShapeSpec};
 
@@ -61,8 +61,25 @@ fn sdop_shape_new(
     SdopShape(Shape::build(&TriangleMesh::from_f64(vertices, triangles)?, &self::spec(spec)?)?)
 }
 
+/// Makes a shape of the mesh in a file: OBJ, STL, PLY, OFF or `.tri`. `spec` may be null.
+fn sdop_shape_load(?text path = "", ?const spec: SdopShapeSpec) -> new SdopShape {
+    let mesh = mesh::read(path, &ReadOptions::default())?;
+    SdopShape(Shape::build(&mesh, &self::spec(spec)?)?)
+}
+
 /// Frees a shape; null is fine. Cullers and worlds keep copies.
 free sdop_shape_free;
+/// The margin that a body needs for a whole step of `seconds`, if its origin is at most as fast as
+/// `linear` and it turns at most as fast as `angular`, in radians per second. Two bodies with such
+/// margins that meet at any time of the step are a pair at its start.
+fn sdop_shape_swept_margin(
+    *const shape,
+    *const linear: [f32; 3],
+    *const angular: [f32; 3],
+    seconds: f32,
+) -> *mut margin: f32 {
+    shape.0.swept_margin(*linear, *angular, seconds)
+}
 }
 
 /// How bodies are culled. All zeros is the default.
@@ -196,4 +213,15 @@ fn sdop_culler_cull_up_to(
 /// Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there
 /// are.
 fn sdop_culler_pairs(*mut culler) -> [SdopPair] { culler.culler.pairs().iter() }
+/// Culls as `sdop_culler_cull` does and passes the pairs to `take`, about 65,000 at a time, so that
+/// memory doesn't grow with their number. With several threads, `take` is called from any of them,
+/// one call at a time.
+fn sdop_culler_cull_each(
+    *mut culler,
+    [*const rotation: [f32; 4], *const translation: [f32; 3]; = culler.bodies.len()],
+    |take: SdopTakePairs|,
+) {
+    culler.pose(rotation, translation);
+    culler.culler.cull_in_portions(&culler.bodies, move |pairs| take.all(pairs.iter()))?;
+}
 }

@@ -13,6 +13,7 @@ use crate::living::{BodyId, Event, SnapshotError, WorldError};
 use crate::mesh::MeshError;
 use crate::periodic::PeriodicError;
 use crate::query::QueryError;
+use crate::threads::ThreadsError;
 use crate::volume::VolumeError;
 
 /// How a call ended.
@@ -101,6 +102,9 @@ impl From<Event> for SdopEvent {
 /// return normally.
 pub type SdopTakePairs = Option<unsafe extern "C" fn(*mut c_void, *const SdopPair, usize)>;
 
+/// As `SdopTakePairs`, of a world.
+pub type SdopTakeIdPairs = Option<unsafe extern "C" fn(*mut c_void, *const SdopIdPair, usize)>;
+
 /// Receives an event, after the pointer that was passed along. Must return normally.
 pub type SdopTakeEvent = Option<unsafe extern "C" fn(*mut c_void, SdopEvent)>;
 
@@ -137,7 +141,7 @@ macro_rules! refusals {
 }
 refusals! {
     UnknownChoice, CompoundError, ContractError, CullError, MeshError, PeriodicError, QueryError,
-    VolumeError, WorldError, SnapshotError
+    VolumeError, WorldError, SnapshotError, ThreadsError
 }
 
 /// Converts the bodies of C, which say how they move in two fields, and those of Rust.

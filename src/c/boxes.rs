@@ -1,10 +1,10 @@
 //! Boxes: long-lived worlds, and a culler that gets all boxes anew in each frame.
 
 use super::border::{
-    Refusal, SdopIdPair, SdopPair, SdopStatus, SdopTakeEvent, SdopTakePairs, bodies, border, call,
-    check_list, column, read_back, saved, write_all,
+    Refusal, SdopIdPair, SdopPair, SdopStatus, SdopTakeEvent, SdopTakeIdPairs, SdopTakePairs,
+    bodies, border, call, check_list, column, read_back, saved, write_all,
 };
-use crate::bodies::{Aabb, Groups};
+use crate::bodies::{Aabb, Groups, Motion};
 use crate::boxes::{BoxBody, BoxCuller, BoxCullerBuilder, BoxWorld};
 use crate::living::BodyId;
 use crate::pairs::PairList;
@@ -51,6 +51,14 @@ fn sdop_box_world_insert(*mut world, *const body: SdopBoxBody) -> *mut id: u64 {
     world.0.insert(*body)?.to_bits()
 }
 
+/// Reads a box.
+fn sdop_box_world_body(*const world, #id) -> *mut body: SdopBoxBody { world.0.body(id)?.into() }
+/// Copies the ids of all boxes into `buffer`, sorted by slots. If they don't fit, `count` says how
+/// many there are.
+fn sdop_box_world_ids(*const world) -> [u64] {
+    world.0.ids().map(BodyId::to_bits).collect::<Vec<_>>()
+}
+
 /// Removes a box.
 fn sdop_box_world_remove(*mut world, #id) { world.0.remove(id)?; }
 /// Changes a box in any of its properties.
@@ -59,6 +67,11 @@ fn sdop_box_world_set(*mut world, #id, *const body: SdopBoxBody) { world.0.set(i
 fn sdop_box_world_set_bounds(*mut world, [*const ids: u64, *const boxes: Aabb; count]) {
     let ids: Vec<_> = ids.iter().copied().map(BodyId::from_bits).collect();
     world.0.set_many(&ids, boxes)?;
+}
+
+/// Puts a box to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
+fn sdop_box_world_set_motion(*mut world, #id, fixed: bool, resting: bool) {
+    world.0.set_motion(id, Motion::of(!fixed, resting))?;
 }
 
 /// Never reports the pair of two boxes again until it is included or one of them is removed.
@@ -76,6 +89,13 @@ fn sdop_box_world_cull_up_to(*mut world, limit: usize) -> *mut pairs: usize {
 /// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 /// says how many there are.
 fn sdop_box_world_pairs(*mut world) -> [SdopIdPair] { world.0.pairs() }
+/// Culls as `sdop_box_world_cull` does and passes the pairs to `take`, not sorted, about 65,000 at
+/// a time: the world keeps none. With several threads, `take` is called from any of them, one call
+/// at a time.
+fn sdop_box_world_cull_each(*mut world, |take: SdopTakeIdPairs|) {
+    world.0.cull_in_portions(move |pairs| take.all(pairs.iter()))?;
+}
+
 /// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 /// function.
 fn sdop_box_world_events(*mut world, |take: SdopTakeEvent|) { take.each(world.0.events().iter()); }

@@ -24,7 +24,8 @@ use std::ffi::c_char;
 
 pub use bodies::*;
 pub use border::{
-    SdopEvent, SdopEventKind, SdopIdPair, SdopPair, SdopStatus, SdopTakeEvent, SdopTakePairs,
+    SdopEvent, SdopEventKind, SdopIdPair, SdopPair, SdopStatus, SdopTakeEvent, SdopTakeIdPairs,
+    SdopTakePairs,
 };
 pub use boxes::*;
 pub use compounds::*;

@@ -121,6 +121,17 @@ fn sdop_periodic_boxes_insert(*mut world, *const body: SdopPeriodicBox) -> *mut 
     world.0.insert(*body)?.to_bits()
 }
 
+/// Reads a box, as it was inserted or set.
+fn sdop_periodic_boxes_body(*const world, #id) -> *mut body: SdopPeriodicBox {
+    world.0.body(id)?.into()
+}
+
+/// Copies the ids of all boxes into `buffer`, sorted by slots. If they don't fit, `count` says how
+/// many there are.
+fn sdop_periodic_boxes_ids(*const world) -> [u64] {
+    world.0.ids().map(BodyId::to_bits).collect::<Vec<_>>()
+}
+
 /// Removes a box.
 fn sdop_periodic_boxes_remove(*mut world, #id) { world.0.remove(id)?; }
 /// Moves boxes, or changes them in any of their properties: columns of ids and boxes. If one is
@@ -187,6 +198,14 @@ fn sdop_periodic_world_set_periods(*mut world, *const periods: [f64; 3]) {
 /// Adds a body; `id` gets its id, which stays until the body is removed.
 fn sdop_periodic_world_insert(*mut world, *const body: SdopBody) -> *mut id: u64 {
     world.0.insert(*body)?.to_bits()
+}
+
+/// Reads a body, as it was inserted or set.
+fn sdop_periodic_world_body(*const world, #id) -> *mut body: SdopBody { world.0.body(id)?.into() }
+/// Copies the ids of all bodies into `buffer`, sorted by slots. If they don't fit, `count` says how
+/// many there are.
+fn sdop_periodic_world_ids(*const world) -> [u64] {
+    world.0.ids().map(BodyId::to_bits).collect::<Vec<_>>()
 }
 
 /// Removes a body.

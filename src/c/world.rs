@@ -1,8 +1,8 @@
 //! Long-lived worlds of meshes.
 
 use super::bodies::{SdopOptions, SdopShape, builder, copies};
-use super::border::{SdopIdPair, SdopTakeEvent, bodies, border, read_back, saved};
-use crate::bodies::Groups;
+use super::border::{SdopIdPair, SdopTakeEvent, SdopTakeIdPairs, bodies, border, read_back, saved};
+use crate::bodies::{Groups, Motion};
 use crate::world::{Body, BodyId, World};
 
 /// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
@@ -73,9 +73,22 @@ fn sdop_world_add_shape(*mut world, *const shape: SdopShape) -> *mut number: u32
 
 /// Removes a shape that no body has.
 fn sdop_world_remove_shape(*mut world, shape: u32) { world.0.remove_shape(shape)?; }
+/// Replaces a shape by another: its bodies have the new shape from the next cull on.
+fn sdop_world_replace_shape(*mut world, number: u32, *const shape: SdopShape) {
+    world.0.replace_shape(number, &shape.0)?;
+}
+
 /// Adds a body; `id` gets its id, which stays until the body is removed.
 fn sdop_world_insert(*mut world, *const body: SdopBody) -> *mut id: u64 {
     world.0.insert(*body)?.to_bits()
+}
+
+/// Reads a body.
+fn sdop_world_body(*const world, #id) -> *mut body: SdopBody { world.0.body(id)?.into() }
+/// Copies the ids of all bodies into `buffer`, sorted by slots. If they don't fit, `count` says how
+/// many there are.
+fn sdop_world_ids(*const world) -> [u64] {
+    world.0.ids().map(BodyId::to_bits).collect::<Vec<_>>()
 }
 
 /// Removes a body.
@@ -104,6 +117,16 @@ fn sdop_world_set_poses_f64(
     }
 }
 
+/// Puts a body to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
+fn sdop_world_set_motion(*mut world, #id, fixed: bool, resting: bool) {
+    world.0.set_motion(id, Motion::of(!fixed, resting))?;
+}
+
+/// Sets the bodies of interest, for the strategies that use them.
+fn sdop_world_set_interest(*mut world, [*const ids: u64; count]) {
+    world.0.set_interest(&ids.iter().copied().map(BodyId::from_bits).collect::<Vec<_>>())?;
+}
+
 /// Never reports the pair of two bodies again, such as two links that share a joint, until it is
 /// included or one of them is removed.
 fn sdop_world_exclude(*mut world, #a, #b) { world.0.exclude(a, b)?; }
@@ -121,6 +144,13 @@ fn sdop_world_cull_up_to(*mut world, limit: usize) -> *mut pairs: usize {
 /// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 /// says how many there are.
 fn sdop_world_pairs(*mut world) -> [SdopIdPair] { world.0.pairs() }
+/// Culls as `sdop_world_cull` does and passes the pairs to `take`, not sorted, about 65,000 at a
+/// time: the world keeps none. With several threads, `take` is called from any of them, one call at
+/// a time.
+fn sdop_world_cull_each(*mut world, |take: SdopTakeIdPairs|) {
+    world.0.cull_in_portions(move |pairs| take.all(pairs.iter()))?;
+}
+
 /// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 /// function.
 fn sdop_world_events(*mut world, |take: SdopTakeEvent|) { take.each(world.0.events().iter()); }
