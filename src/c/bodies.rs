@@ -2,13 +2,10 @@
 
 use std::ffi::c_char;
 
-use super::border::{
-    Buffer, Out, Refusal, SdopPair, SdopStatus, answer, column, free, handle, list, make, optional,
-    pairs, shared, text,
-};
+use super::border::{Refusal, SdopPair, SdopTakePairs, border, column, optional, required, text};
 use crate::bodies::{Bodies, Groups};
 use crate::culler::{Culler, CullerBuilder};
-use crate::mesh::TriangleMesh;
+use crate::mesh::{self, ReadOptions, TriangleMesh};
 use crate::settings::{Axes, DirectionSet, Finder, Strategy};
 use crate::volume::{Origin, Shape, ShapeSpec};
 
@@ -32,57 +29,57 @@ pub struct SdopShapeSpec {
     pub on_model_axes: bool,
 }
 
+/// The directions of or-DOPs with so many faces, or 0 for the default.
+pub(super) fn directions(k: u32) -> Result<DirectionSet, Refusal> {
+    Ok(if k == 0 { ShapeSpec::default().directions } else { k.to_string().parse()? })
+}
+
 /// The specification that C gives.
-///
-/// # Safety
-/// The pointer is null or to a specification.
-unsafe fn spec(given: *const SdopShapeSpec) -> Result<ShapeSpec, Refusal> {
-    // SAFETY: the caller's promise.
-    let Some(given) = (unsafe { given.as_ref() }) else {
+fn spec(given: Option<&SdopShapeSpec>) -> Result<ShapeSpec, Refusal> {
+    let Some(given) = given else {
         return Ok(ShapeSpec::default());
-    };
-    let directions: DirectionSet = match given.k {
-        0 => ShapeSpec::default().directions,
-        k => k.to_string().parse()?,
     };
     Ok(ShapeSpec {
         origin: if given.about_ball { Origin::Ball } else { Origin::File },
         radius: (given.radius != 0.0).then_some(given.radius),
-        directions,
+        directions: directions(given.k)?,
         axes: if given.on_model_axes { Axes::Model } else { Axes::Principal },
     })
 }
 
+border! {
+shape: SdopShape;
+
 /// Makes a shape of vertices in the mesh's own frame, to whose origin poses refer, and vertex
 /// indices of triangles. Its volumes are grown by what rounding the vertices to float moves. `spec`
 /// may be null.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_shape_new(
-    vertices: *const [f64; 3],
-    vertex_count: usize,
-    triangles: *const [u32; 3],
-    triangle_count: usize,
-    spec: *const SdopShapeSpec,
-    out: *mut *mut SdopShape,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    make(unsafe { Out::new(out) }, || {
-        // SAFETY: the caller's promise.
-        let vertices = unsafe { column(vertices, vertex_count, "vertices") }?;
-        // SAFETY: the caller's promise.
-        let triangles = unsafe { column(triangles, triangle_count, "triangles") }?;
-        let mesh = TriangleMesh::from_f64(vertices, triangles)?;
-        // SAFETY: the caller's promise.
-        let shape = Shape::build(&mesh, &unsafe { self::spec(spec) }?)?;
-        Ok(SdopShape(shape))
-    })
+fn sdop_shape_new(
+    [*const vertices: [f64; 3]; vertex_count],
+    [*const triangles: [u32; 3]; triangle_count],
+    ?const spec: SdopShapeSpec,
+) -> new SdopShape {
+    SdopShape(Shape::build(&TriangleMesh::from_f64(vertices, triangles)?, &self::spec(spec)?)?)
+}
+
+/// Makes a shape of the mesh in a file: OBJ, STL, PLY, OFF or `.tri`. `spec` may be null.
+fn sdop_shape_load(?text path = "", ?const spec: SdopShapeSpec) -> new SdopShape {
+    let mesh = mesh::read(path, &ReadOptions::default())?;
+    SdopShape(Shape::build(&mesh, &self::spec(spec)?)?)
 }
 
 /// Frees a shape; null is fine. Cullers and worlds keep copies.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_shape_free(shape: *mut SdopShape) {
-    // SAFETY: the caller's promise.
-    unsafe { free(shape) }
+free sdop_shape_free;
+/// The margin that a body needs for a whole step of `seconds`, if its origin is at most as fast as
+/// `linear` and it turns at most as fast as `angular`, in radians per second. Two bodies with such
+/// margins that meet at any time of the step are a pair at its start.
+fn sdop_shape_swept_margin(
+    *const shape,
+    *const linear: [f32; 3],
+    *const angular: [f32; 3],
+    seconds: f32,
+) -> *mut margin: f32 {
+    shape.0.swept_margin(*linear, *angular, seconds)
+}
 }
 
 /// How bodies are culled. All zeros is the default.
@@ -100,32 +97,21 @@ pub struct SdopOptions {
 /// How a culler is made of what C gives.
 ///
 /// # Safety
-/// The pointer is null or to options, whose texts are null or end with a zero.
-pub(super) unsafe fn builder(options: *const SdopOptions) -> Result<CullerBuilder, Refusal> {
-    // SAFETY: the caller's promise.
-    let Some(options) = (unsafe { options.as_ref() }) else {
+/// Texts are null or end with a zero.
+pub(super) unsafe fn builder(given: Option<&SdopOptions>) -> Result<CullerBuilder, Refusal> {
+    let Some(given) = given else {
         return Ok(Culler::builder());
     };
     // SAFETY: the caller's promise.
-    let strategy: Strategy = unsafe { text(options.strategy, "s-dop-sequential") }?.parse()?;
-    // SAFETY: the caller's promise.
-    let finder: Finder = unsafe { text(options.finder, "auto") }?.parse()?;
-    let builder = Culler::builder().strategy(strategy).finder(finder);
-    Ok(builder.threads(options.threads))
+    let (strategy, finder) = unsafe { (text(given.strategy)?, text(given.finder)?) };
+    let strategy: Strategy = strategy.unwrap_or("s-dop-sequential").parse()?;
+    let finder: Finder = finder.unwrap_or("auto").parse()?;
+    Ok(Culler::builder().strategy(strategy).finder(finder).threads(given.threads))
 }
 
 /// Copies of the shapes to which a column of handles refers.
-///
-/// # Safety
-/// The column has the stated number of entries, each a shape or null.
-pub(super) unsafe fn shapes(
-    first: *const *const SdopShape,
-    count: usize,
-) -> Result<Vec<Shape>, Refusal> {
-    // SAFETY: the caller's promise.
-    let handles = unsafe { column(first, count, "shapes") }?;
-    // SAFETY: the caller's promise.
-    let copy = |shape: &*const SdopShape| Ok(unsafe { shared(*shape, "shape") }?.0.clone());
+pub(super) fn copies(handles: &[Option<&SdopShape>]) -> Result<Vec<Shape>, Refusal> {
+    let copy = |shape: &Option<&SdopShape>| Ok(required(*shape, "shape")?.0.clone());
     handles.iter().map(copy).collect()
 }
 
@@ -155,114 +141,87 @@ pub struct SdopBodies {
     pub groups: *const Groups,
 }
 
+impl SdopBodies {
+    /// Copies of the columns.
+    ///
+    /// # Safety
+    /// They have `count` entries, or are null.
+    unsafe fn copied(&self) -> Result<(Bodies, Option<Vec<Groups>>), Refusal> {
+        let n = self.count;
+        // SAFETY: the caller's promise.
+        unsafe {
+            let dynamic = optional(self.dynamic, n);
+            let bodies = Bodies {
+                shape: column(self.shape, n, "shape")?.to_vec(),
+                dynamic: dynamic.map_or_else(|| vec![true; n], <[bool]>::to_vec),
+                rotation: column(self.rotation, n, "rotation")?.to_vec(),
+                translation: column(self.translation, n, "translation")?.to_vec(),
+            };
+            Ok((bodies, optional(self.groups, n).map(<[Groups]>::to_vec)))
+        }
+    }
+}
+
+impl SdopCuller {
+    /// Puts all bodies at new poses.
+    fn pose(&mut self, rotation: &[[f32; 4]], translation: &[[f32; 3]]) {
+        self.bodies.rotation.copy_from_slice(rotation);
+        self.bodies.translation.copy_from_slice(translation);
+    }
+}
+
+border! {
+culler: SdopCuller;
+
 /// Makes the culler of these bodies. `options` may be null.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_culler_new(
-    shapes: *const *const SdopShape,
-    shape_count: usize,
-    bodies: *const SdopBodies,
-    options: *const SdopOptions,
-    out: *mut *mut SdopCuller,
-) -> SdopStatus {
+fn sdop_culler_new(
+    [*const shapes: Option<&SdopShape>; shape_count],
+    *const bodies: SdopBodies,
+    ?const options: SdopOptions,
+) -> new SdopCuller {
     // SAFETY: the caller's promise.
-    make(unsafe { Out::new(out) }, || {
-        // SAFETY: the caller's promise.
-        let (shapes, given) =
-            unsafe { (self::shapes(shapes, shape_count)?, shared(bodies, "bodies")?) };
-        let n = given.count;
-        // SAFETY: the caller's promise.
-        let bodies = unsafe {
-            Bodies {
-                shape: column(given.shape, n, "shape")?.to_vec(),
-                dynamic: optional(given.dynamic, n).map_or_else(|| vec![true; n], <[bool]>::to_vec),
-                rotation: column(given.rotation, n, "rotation")?.to_vec(),
-                translation: column(given.translation, n, "translation")?.to_vec(),
-            }
-        };
-        // SAFETY: the caller's promise.
-        let (builder, groups) = unsafe { (builder(options)?, optional(given.groups, n)) };
-        let mut culler = builder.build(&shapes, &bodies)?;
-        culler.set_groups(groups.map(<[Groups]>::to_vec))?;
-        Ok(SdopCuller { culler, bodies })
-    })
+    let ((bodies, groups), builder) = unsafe { (bodies.copied()?, builder(options)?) };
+    let mut culler = builder.build(&copies(shapes)?, &bodies)?;
+    culler.set_groups(groups)?;
+    SdopCuller { culler, bodies }
 }
 
 /// Frees a culler; null is fine.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_culler_free(culler: *mut SdopCuller) {
-    // SAFETY: the caller's promise.
-    unsafe { free(culler) }
-}
-
+free sdop_culler_free;
 /// Finds the pairs that might touch at these poses, one of each column for each body. Static bodies
 /// that have moved are found where they are now; such a frame takes about twice as long. `pairs`
 /// gets their number; read them with `sdop_culler_pairs`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_culler_cull(
-    culler: *mut SdopCuller,
-    rotation: *const [f32; 4],
-    translation: *const [f32; 3],
-    pairs: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    unsafe { cull(culler, rotation, translation, None, pairs) }
+fn sdop_culler_cull(
+    *mut culler,
+    [*const rotation: [f32; 4], *const translation: [f32; 3]; = culler.bodies.len()],
+) -> *mut pairs: usize {
+    culler.pose(rotation, translation);
+    culler.culler.cull(&culler.bodies)?.len()
 }
 
 /// `sdop_culler_cull`, if there are at most `limit` pairs; more are an error that has their number,
 /// and memory for them is never allocated.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_culler_cull_up_to(
-    culler: *mut SdopCuller,
-    rotation: *const [f32; 4],
-    translation: *const [f32; 3],
+fn sdop_culler_cull_up_to(
+    *mut culler,
+    [*const rotation: [f32; 4], *const translation: [f32; 3]; = culler.bodies.len()],
     limit: usize,
-    pairs: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    unsafe { cull(culler, rotation, translation, Some(limit), pairs) }
-}
-
-/// Culls at poses, up to a number of pairs if there is a limit.
-///
-/// # Safety
-/// As `sdop_culler_cull`.
-unsafe fn cull(
-    culler: *mut SdopCuller,
-    rotation: *const [f32; 4],
-    translation: *const [f32; 3],
-    limit: Option<usize>,
-    pairs: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(pairs) }, "pairs", || {
-        // SAFETY: the caller's promise.
-        let it = unsafe { handle(culler, "culler") }?;
-        let n = it.bodies.len();
-        // SAFETY: the caller's promise.
-        let (rotation, translation) =
-            unsafe { (column(rotation, n, "rotation")?, column(translation, n, "translation")?) };
-        it.bodies.rotation.copy_from_slice(rotation);
-        it.bodies.translation.copy_from_slice(translation);
-        Ok(match limit {
-            Some(limit) => it.culler.cull_up_to(&it.bodies, limit)?.len(),
-            None => it.culler.cull(&it.bodies)?.len(),
-        })
-    })
+) -> *mut pairs: usize {
+    culler.pose(rotation, translation);
+    culler.culler.cull_up_to(&culler.bodies, limit)?.len()
 }
 
 /// Copies the pairs of the last frame into `buffer`. If they don't fit, `count` says how many there
 /// are.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_culler_pairs(
-    culler: *mut SdopCuller,
-    buffer: *mut SdopPair,
-    capacity: usize,
-    count: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
-        // SAFETY: the caller's promise.
-        let it = unsafe { handle(culler, "culler") }?;
-        Ok(pairs(it.culler.pairs()))
-    })
+fn sdop_culler_pairs(*mut culler) -> [SdopPair] { culler.culler.pairs().iter() }
+/// Culls as `sdop_culler_cull` does and passes the pairs to `take`, about 65,000 at a time, so that
+/// memory doesn't grow with their number. With several threads, `take` is called from any of them,
+/// one call at a time.
+fn sdop_culler_cull_each(
+    *mut culler,
+    [*const rotation: [f32; 4], *const translation: [f32; 3]; = culler.bodies.len()],
+    |take: SdopTakePairs|,
+) {
+    culler.pose(rotation, translation);
+    culler.culler.cull_in_portions(&culler.bodies, move |pairs| take.all(pairs.iter()))?;
+}
 }

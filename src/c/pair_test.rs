@@ -2,65 +2,32 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use super::bodies::SdopShape;
-use super::border::{Out, SdopStatus, answer, free, handle, make, shared};
-use crate::settings::DirectionSet;
+use super::bodies::{SdopShape, directions};
+use super::border::border;
 use crate::world::PairTest;
 
 /// The or-DOPs of shapes, as they are and grown by margins, for tests of single pairs.
 #[derive(Debug)]
 pub struct SdopPairTest(PairTest);
 
+border! {
+test: SdopPairTest;
+
 /// Makes a test without shapes, of or-DOPs with `k` faces: 6, 14, 18 or 26; 0 is 18.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_pair_test_new(k: u32, out: *mut *mut SdopPairTest) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    make(unsafe { Out::new(out) }, || {
-        let directions = match k {
-            0 => DirectionSet::K18,
-            k => k.to_string().parse()?,
-        };
-        Ok(SdopPairTest(PairTest::new(directions)))
-    })
-}
-
+fn sdop_pair_test_new(k: u32) -> new SdopPairTest { SdopPairTest(PairTest::new(directions(k)?)) }
 /// Frees a test; null is fine.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_pair_test_free(test: *mut SdopPairTest) {
-    // SAFETY: the caller's promise.
-    unsafe { free(test) }
-}
-
+free sdop_pair_test_free;
 /// Adds a shape, which the test copies. `number` gets its number: 0 for the first, and one more for
 /// each shape that is added or grown.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_pair_test_add(
-    test: *mut SdopPairTest,
-    shape: *const SdopShape,
-    number: *mut u32,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(number) }, "number", || {
-        // SAFETY: the caller's promise.
-        let (test, shape) = unsafe { (handle(test, "test")?, shared(shape, "shape")?) };
-        Ok(test.0.add(&shape.0)?)
-    })
+fn sdop_pair_test_add(*mut test, *const shape: SdopShape) -> *mut number: u32 {
+    test.0.add(&shape.0)?
 }
 
 /// Adds a shape of the test grown by `margin`, a length. `number` gets the number of the grown
 /// shape.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_pair_test_grow(
-    test: *mut SdopPairTest,
-    shape: u32,
-    margin: f32,
-    number: *mut u32,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(number) }, "number", || {
-        // SAFETY: the caller's promise.
-        Ok(unsafe { handle(test, "test") }?.0.grown(shape, margin)?)
-    })
+fn sdop_pair_test_grow(*mut test, shape: u32, margin: f32) -> *mut number: u32 {
+    test.0.grown(shape, margin)?
+}
 }
 
 /// Whether two shapes may touch, the second posed in the frame of the first by a quaternion x, y,

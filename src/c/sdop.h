@@ -143,6 +143,10 @@ typedef struct {
   uint32_t second;
 } SdopPair;
 
+// Receives some of a frame's pairs and their number, after the pointer that was passed along. Must
+// return normally.
+typedef void (*SdopTakePairs)(void*, const SdopPair*, size_t);
+
 // A closed, world-aligned box: boxes that touch meet. Its ends are finite, and each lower end is
 // at most the upper one; sides may have no length.
 typedef struct {
@@ -172,6 +176,9 @@ typedef struct {
   uint64_t second;
 } SdopIdPair;
 
+// As `SdopTakePairs`, of a world.
+typedef void (*SdopTakeIdPairs)(void*, const SdopIdPair*, size_t);
+
 // A pair and how it has changed.
 typedef struct {
   // How it has changed.
@@ -182,10 +189,6 @@ typedef struct {
 
 // Receives an event, after the pointer that was passed along. Must return normally.
 typedef void (*SdopTakeEvent)(void*, SdopEvent);
-
-// Receives some of a frame's pairs and their number, after the pointer that was passed along. Must
-// return normally.
-typedef void (*SdopTakePairs)(void*, const SdopPair*, size_t);
 
 // A shape in the frame of a body.
 typedef struct {
@@ -304,8 +307,20 @@ SdopStatus sdop_shape_new(const double (*vertices)[3],
                           const SdopShapeSpec *spec,
                           SdopShape **out);
 
+// Makes a shape of the mesh in a file: OBJ, STL, PLY, OFF or `.tri`. `spec` may be null.
+SdopStatus sdop_shape_load(const char *path, const SdopShapeSpec *spec, SdopShape **out);
+
 // Frees a shape; null is fine. Cullers and worlds keep copies.
 void sdop_shape_free(SdopShape *shape);
+
+// The margin that a body needs for a whole step of `seconds`, if its origin is at most as fast as
+// `linear` and it turns at most as fast as `angular`, in radians per second. Two bodies with such
+// margins that meet at any time of the step are a pair at its start.
+SdopStatus sdop_shape_swept_margin(const SdopShape *shape,
+                                   const float (*linear)[3],
+                                   const float (*angular)[3],
+                                   float seconds,
+                                   float *margin);
 
 // Makes the culler of these bodies. `options` may be null.
 SdopStatus sdop_culler_new(const SdopShape *const *shapes,
@@ -337,6 +352,15 @@ SdopStatus sdop_culler_cull_up_to(SdopCuller *culler,
 // are.
 SdopStatus sdop_culler_pairs(SdopCuller *culler, SdopPair *buffer, size_t capacity, size_t *count);
 
+// Culls as `sdop_culler_cull` does and passes the pairs to `take`, about 65,000 at a time, so that
+// memory doesn't grow with their number. With several threads, `take` is called from any of them,
+// one call at a time.
+SdopStatus sdop_culler_cull_each(SdopCuller *culler,
+                                 const float (*rotation)[4],
+                                 const float (*translation)[3],
+                                 SdopTakePairs take,
+                                 void *user);
+
 // A box that is neither fixed nor resting, in all groups. Change what differs.
 SdopBoxBody sdop_box_body_at(SdopBox bounds);
 
@@ -349,6 +373,13 @@ void sdop_box_world_free(SdopBoxWorld *world);
 // Adds a box; `id` gets its id, which stays until the box is removed.
 SdopStatus sdop_box_world_insert(SdopBoxWorld *world, const SdopBoxBody *body, uint64_t *id);
 
+// Reads a box.
+SdopStatus sdop_box_world_body(const SdopBoxWorld *world, uint64_t id, SdopBoxBody *body);
+
+// Copies the ids of all boxes into `buffer`, sorted by slots. If they don't fit, `count` says how
+// many there are.
+SdopStatus sdop_box_world_ids(const SdopBoxWorld *world, uint64_t *buffer, size_t capacity, size_t *count);
+
 // Removes a box.
 SdopStatus sdop_box_world_remove(SdopBoxWorld *world, uint64_t id);
 
@@ -360,6 +391,9 @@ SdopStatus sdop_box_world_set_bounds(SdopBoxWorld *world,
                                      const uint64_t *ids,
                                      const SdopBox *boxes,
                                      size_t count);
+
+// Puts a box to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
+SdopStatus sdop_box_world_set_motion(SdopBoxWorld *world, uint64_t id, bool fixed, bool resting);
 
 // Never reports the pair of two boxes again until it is included or one of them is removed.
 SdopStatus sdop_box_world_exclude(SdopBoxWorld *world, uint64_t a, uint64_t b);
@@ -377,6 +411,11 @@ SdopStatus sdop_box_world_cull_up_to(SdopBoxWorld *world, size_t limit, size_t *
 // Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 // says how many there are.
 SdopStatus sdop_box_world_pairs(SdopBoxWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
+
+// Culls as `sdop_box_world_cull` does and passes the pairs to `take`, not sorted, about 65,000 at
+// a time: the world keeps none. With several threads, `take` is called from any of them, one call
+// at a time.
+SdopStatus sdop_box_world_cull_each(SdopBoxWorld *world, SdopTakeIdPairs take, void *user);
 
 // Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 // function.
@@ -527,6 +566,16 @@ SdopStatus sdop_periodic_boxes_set_periods(SdopPeriodicBoxes *world, const doubl
 // Adds a box; `id` gets its id, which stays until the box is removed.
 SdopStatus sdop_periodic_boxes_insert(SdopPeriodicBoxes *world, const SdopPeriodicBox *body, uint64_t *id);
 
+// Reads a box, as it was inserted or set.
+SdopStatus sdop_periodic_boxes_body(const SdopPeriodicBoxes *world, uint64_t id, SdopPeriodicBox *body);
+
+// Copies the ids of all boxes into `buffer`, sorted by slots. If they don't fit, `count` says how
+// many there are.
+SdopStatus sdop_periodic_boxes_ids(const SdopPeriodicBoxes *world,
+                                   uint64_t *buffer,
+                                   size_t capacity,
+                                   size_t *count);
+
 // Removes a box.
 SdopStatus sdop_periodic_boxes_remove(SdopPeriodicBoxes *world, uint64_t id);
 
@@ -582,6 +631,16 @@ SdopStatus sdop_periodic_world_set_periods(SdopPeriodicWorld *world, const doubl
 // Adds a body; `id` gets its id, which stays until the body is removed.
 SdopStatus sdop_periodic_world_insert(SdopPeriodicWorld *world, const SdopBody *body, uint64_t *id);
 
+// Reads a body, as it was inserted or set.
+SdopStatus sdop_periodic_world_body(const SdopPeriodicWorld *world, uint64_t id, SdopBody *body);
+
+// Copies the ids of all bodies into `buffer`, sorted by slots. If they don't fit, `count` says how
+// many there are.
+SdopStatus sdop_periodic_world_ids(const SdopPeriodicWorld *world,
+                                   uint64_t *buffer,
+                                   size_t capacity,
+                                   size_t *count);
+
 // Removes a body.
 SdopStatus sdop_periodic_world_remove(SdopPeriodicWorld *world, uint64_t id);
 
@@ -622,6 +681,10 @@ SdopStatus sdop_periodic_world_events(SdopPeriodicWorld *world, SdopTakePeriodic
 // Makes an index without bodies.
 SdopStatus sdop_query_index_new(SdopQueryIndex **out);
 
+// `sdop_query_index_new`, for the pairs of two sets: found by `threads` threads, and an error if
+// there are more than `limit`.
+SdopStatus sdop_query_index_with(size_t threads, size_t limit, SdopQueryIndex **out);
+
 // Frees an index; null is fine.
 void sdop_query_index_free(SdopQueryIndex *index);
 
@@ -650,12 +713,30 @@ SdopStatus sdop_query_index_touching_ball(const SdopQueryIndex *index,
                                           size_t capacity,
                                           size_t *count);
 
+// `sdop_query_index_touching_box` for a shape, grown by `margin`. The rotation is a quaternion of
+// any non-zero norm.
+SdopStatus sdop_query_index_touching_shape(const SdopQueryIndex *index,
+                                           const SdopShape *shape,
+                                           const double (*rotation)[4],
+                                           const double (*translation)[3],
+                                           float margin,
+                                           uint64_t *buffer,
+                                           size_t capacity,
+                                           size_t *count);
+
 // Finds the body whose volume a segment may meet first: no other is met at a smaller s. `found`
 // gets whether there is such a body, and `hit`, unless it is null, gets it.
 SdopStatus sdop_query_index_first(const SdopQueryIndex *index,
                                   const SdopSegment *segment,
                                   SdopHit *hit,
                                   bool *found);
+
+// `sdop_query_index_first` for a ray, the points origin + s·direction for 0 ≤ s.
+SdopStatus sdop_query_index_first_of_ray(const SdopQueryIndex *index,
+                                         const double (*origin)[3],
+                                         const double (*direction)[3],
+                                         SdopHit *hit,
+                                         bool *found);
 
 // Writes all bodies that a segment may meet into `buffer`, sorted by s. If they don't fit, `count`
 // says how many there are.
@@ -664,6 +745,22 @@ SdopStatus sdop_query_index_along(const SdopQueryIndex *index,
                                   SdopHit *buffer,
                                   size_t capacity,
                                   size_t *count);
+
+// `sdop_query_index_along` for a ray.
+SdopStatus sdop_query_index_along_ray(const SdopQueryIndex *index,
+                                      const double (*origin)[3],
+                                      const double (*direction)[3],
+                                      SdopHit *buffer,
+                                      size_t capacity,
+                                      size_t *count);
+
+// Writes the pairs of a body of this index and one of another that may touch into `buffer`, in
+// this order, sorted by slots. If they don't fit, `count` says how many there are.
+SdopStatus sdop_query_index_pairs_with(const SdopQueryIndex *index,
+                                       const SdopQueryIndex *other,
+                                       SdopIdPair *buffer,
+                                       size_t capacity,
+                                       size_t *count);
 
 // A body of a shape at a place in the world frame: not turned, neither fixed nor resting, without
 // a margin, in all groups. Change what differs.
@@ -689,8 +786,18 @@ SdopStatus sdop_world_add_shape(SdopWorld *world, const SdopShape *shape, uint32
 // Removes a shape that no body has.
 SdopStatus sdop_world_remove_shape(SdopWorld *world, uint32_t shape);
 
+// Replaces a shape by another: its bodies have the new shape from the next cull on.
+SdopStatus sdop_world_replace_shape(SdopWorld *world, uint32_t number, const SdopShape *shape);
+
 // Adds a body; `id` gets its id, which stays until the body is removed.
 SdopStatus sdop_world_insert(SdopWorld *world, const SdopBody *body, uint64_t *id);
+
+// Reads a body.
+SdopStatus sdop_world_body(const SdopWorld *world, uint64_t id, SdopBody *body);
+
+// Copies the ids of all bodies into `buffer`, sorted by slots. If they don't fit, `count` says how
+// many there are.
+SdopStatus sdop_world_ids(const SdopWorld *world, uint64_t *buffer, size_t capacity, size_t *count);
 
 // Removes a body.
 SdopStatus sdop_world_remove(SdopWorld *world, uint64_t id);
@@ -714,6 +821,12 @@ SdopStatus sdop_world_set_poses_f64(SdopWorld *world,
                                     const double (*translation)[3],
                                     size_t count);
 
+// Puts a body to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
+SdopStatus sdop_world_set_motion(SdopWorld *world, uint64_t id, bool fixed, bool resting);
+
+// Sets the bodies of interest, for the strategies that use them.
+SdopStatus sdop_world_set_interest(SdopWorld *world, const uint64_t *ids, size_t count);
+
 // Never reports the pair of two bodies again, such as two links that share a joint, until it is
 // included or one of them is removed.
 SdopStatus sdop_world_exclude(SdopWorld *world, uint64_t a, uint64_t b);
@@ -732,6 +845,11 @@ SdopStatus sdop_world_cull_up_to(SdopWorld *world, size_t limit, size_t *pairs);
 // Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 // says how many there are.
 SdopStatus sdop_world_pairs(SdopWorld *world, SdopIdPair *buffer, size_t capacity, size_t *count);
+
+// Culls as `sdop_world_cull` does and passes the pairs to `take`, not sorted, about 65,000 at a
+// time: the world keeps none. With several threads, `take` is called from any of them, one call at
+// a time.
+SdopStatus sdop_world_cull_each(SdopWorld *world, SdopTakeIdPairs take, void *user);
 
 // Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 // function.

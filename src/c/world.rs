@@ -1,21 +1,14 @@
 //! Long-lived worlds of meshes.
 
-use std::ffi::c_void;
-
-use super::bodies::{SdopOptions, SdopShape, builder, shapes};
-use super::border::{
-    Buffer, Out, SdopIdPair, SdopStatus, SdopTakeEvent, answer, call, call_back, column, cull,
-    culls, free, handle, list, make, pass_events, read_back, saved, shared,
-};
+use super::bodies::{SdopOptions, SdopShape, builder, copies};
+use super::border::{SdopIdPair, SdopTakeEvent, SdopTakeIdPairs, bodies, border, read_back, saved};
 use crate::bodies::{Groups, Motion};
-use crate::world::{Body, BodyId, World, WorldError};
+use crate::world::{Body, BodyId, World};
 
 /// A long-lived set of bodies: ids that stay, groups, margins, translations in double, pairs and
 /// events.
 #[derive(Debug)]
 pub struct SdopWorld(pub(super) World);
-
-culls!(SdopWorld);
 
 /// A body to be inserted.
 #[repr(C)]
@@ -40,34 +33,13 @@ pub struct SdopBody {
     pub rounded: bool,
 }
 
-impl From<SdopBody> for Body {
-    fn from(body: SdopBody) -> Self {
-        Self {
-            shape: body.shape,
-            motion: Motion::of(!body.fixed, body.resting),
-            rotation: body.rotation,
-            rounded: body.rounded,
-            translation: body.translation,
-            groups: body.groups,
-            margin: body.margin,
-        }
-    }
-}
+bodies!(SdopBody = Body { shape, rotation, rounded, translation, margin, groups });
 
 /// A body of a shape at a place in the world frame: not turned, neither fixed nor resting, without
 /// a margin, in all groups. Change what differs.
 #[unsafe(no_mangle)]
 pub extern "C" fn sdop_body_at(shape: u32, x: f64, y: f64, z: f64) -> SdopBody {
-    SdopBody {
-        shape,
-        fixed: false,
-        resting: false,
-        rotation: [0.0, 0.0, 0.0, 1.0],
-        rounded: false,
-        translation: [x, y, z],
-        margin: 0.0,
-        groups: Groups::ALL,
-    }
+    Body::at(shape, [0.0, 0.0, 0.0, 1.0], [x, y, z]).into()
 }
 
 /// A body with a rotation in double, a quaternion of any non-zero norm: `rotation` gets the nearest
@@ -78,251 +50,115 @@ pub extern "C" fn sdop_body_turned(body: SdopBody, x: f64, y: f64, z: f64, w: f6
     SdopBody { rotation, rounded, ..body }
 }
 
+border! {
+world: SdopWorld;
+
 /// Makes a world without bodies. `shapes` may be null if there are none yet, `options` for the
 /// defaults.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_new(
-    shapes: *const *const SdopShape,
-    shape_count: usize,
-    options: *const SdopOptions,
-    out: *mut *mut SdopWorld,
-) -> SdopStatus {
+fn sdop_world_new(
+    [*const shapes: Option<&SdopShape>; shape_count],
+    ?const options: SdopOptions,
+) -> new SdopWorld {
     // SAFETY: the caller's promise.
-    make(unsafe { Out::new(out) }, || {
-        // SAFETY: the caller's promise.
-        let (shapes, builder) = unsafe { (self::shapes(shapes, shape_count)?, builder(options)?) };
-        let world = World::with(shapes, &builder)?;
-        Ok(SdopWorld(world))
-    })
+    let culler = unsafe { builder(options) }?;
+    SdopWorld(World::with(copies(shapes)?, &culler)?)
 }
 
 /// Frees a world; null is fine.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_free(world: *mut SdopWorld) {
-    // SAFETY: the caller's promise.
-    unsafe { free(world) }
-}
-
+free sdop_world_free;
 /// Adds a shape; `number` gets its number.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_add_shape(
-    world: *mut SdopWorld,
-    shape: *const SdopShape,
-    number: *mut u32,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(number) }, "number", || {
-        // SAFETY: the caller's promise.
-        let (it, shape) = unsafe { (handle(world, "world")?, shared(shape, "shape")?) };
-        Ok(it.0.add_shape(shape.0.clone())?)
-    })
+fn sdop_world_add_shape(*mut world, *const shape: SdopShape) -> *mut number: u32 {
+    world.0.add_shape(shape.0.clone())?
 }
 
 /// Removes a shape that no body has.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_remove_shape(world: *mut SdopWorld, shape: u32) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    call(|| Ok(unsafe { handle(world, "world") }?.0.remove_shape(shape)?))
+fn sdop_world_remove_shape(*mut world, shape: u32) { world.0.remove_shape(shape)?; }
+/// Replaces a shape by another: its bodies have the new shape from the next cull on.
+fn sdop_world_replace_shape(*mut world, number: u32, *const shape: SdopShape) {
+    world.0.replace_shape(number, &shape.0)?;
 }
 
 /// Adds a body; `id` gets its id, which stays until the body is removed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_insert(
-    world: *mut SdopWorld,
-    body: *const SdopBody,
-    id: *mut u64,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    answer(unsafe { Out::new(id) }, "id", || {
-        // SAFETY: the caller's promise.
-        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
-        Ok(it.0.insert(Body::from(body))?.to_bits())
-    })
+fn sdop_world_insert(*mut world, *const body: SdopBody) -> *mut id: u64 {
+    world.0.insert(*body)?.to_bits()
+}
+
+/// Reads a body.
+fn sdop_world_body(*const world, #id) -> *mut body: SdopBody { world.0.body(id)?.into() }
+/// Copies the ids of all bodies into `buffer`, sorted by slots. If they don't fit, `count` says how
+/// many there are.
+fn sdop_world_ids(*const world) -> [u64] {
+    world.0.ids().map(BodyId::to_bits).collect::<Vec<_>>()
 }
 
 /// Removes a body.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_remove(world: *mut SdopWorld, id: u64) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    call(|| Ok(unsafe { handle(world, "world") }?.0.remove(BodyId::from_bits(id))?))
-}
-
+fn sdop_world_remove(*mut world, #id) { world.0.remove(id)?; }
 /// Changes a body in any of its properties.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_set(
-    world: *mut SdopWorld,
-    id: u64,
-    body: *const SdopBody,
-) -> SdopStatus {
-    call(|| {
-        // SAFETY: the caller's promise.
-        let (it, body) = unsafe { (handle(world, "world")?, *shared(body, "body")?) };
-        Ok(it.0.set(BodyId::from_bits(id), Body::from(body))?)
-    })
-}
-
+fn sdop_world_set(*mut world, #id, *const body: SdopBody) { world.0.set(id, *body)?; }
 /// Moves bodies: columns of ids, rotations and translations. If one is rejected, those before it
 /// have moved.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_set_poses(
-    world: *mut SdopWorld,
-    ids: *const u64,
-    rotation: *const [f32; 4],
-    translation: *const [f64; 3],
-    count: usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    unsafe { set_poses(world, ids, rotation, translation, count, World::set_pose) }
+fn sdop_world_set_poses(
+    *mut world,
+    [*const ids: u64, *const rotation: [f32; 4], *const translation: [f64; 3]; count],
+) {
+    for ((&id, &rotation), &translation) in ids.iter().zip(rotation).zip(translation) {
+        world.0.set_pose(BodyId::from_bits(id), rotation, translation)?;
+    }
 }
 
 /// Moves bodies as `sdop_world_set_poses` does, with rotations in double: no pair of the exact
 /// poses is missed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_set_poses_f64(
-    world: *mut SdopWorld,
-    ids: *const u64,
-    rotation: *const [f64; 4],
-    translation: *const [f64; 3],
-    count: usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    unsafe { set_poses(world, ids, rotation, translation, count, World::set_pose_f64) }
+fn sdop_world_set_poses_f64(
+    *mut world,
+    [*const ids: u64, *const rotation: [f64; 4], *const translation: [f64; 3]; count],
+) {
+    for ((&id, &rotation), &translation) in ids.iter().zip(rotation).zip(translation) {
+        world.0.set_pose_f64(BodyId::from_bits(id), rotation, translation)?;
+    }
 }
 
-/// Moves bodies by a method of the world.
-///
-/// # Safety
-/// As `sdop_world_set_poses`.
-unsafe fn set_poses<Q: Copy>(
-    world: *mut SdopWorld,
-    ids: *const u64,
-    rotation: *const Q,
-    translation: *const [f64; 3],
-    count: usize,
-    set_pose: impl Fn(&mut World, BodyId, Q, [f64; 3]) -> Result<(), WorldError>,
-) -> SdopStatus {
-    call(|| {
-        // SAFETY: the caller's promise.
-        let it = unsafe { handle(world, "world") }?;
-        // SAFETY: the caller's promise.
-        let (ids, rotations, translations) = unsafe {
-            (
-                column(ids, count, "ids")?,
-                column(rotation, count, "rotation")?,
-                column(translation, count, "translation")?,
-            )
-        };
-        for ((&id, &q), &t) in ids.iter().zip(rotations).zip(translations) {
-            set_pose(&mut it.0, BodyId::from_bits(id), q, t)?;
-        }
-        Ok(())
-    })
+/// Puts a body to rest, wakes it, or fixes it. The first two change no pair and cost nothing.
+fn sdop_world_set_motion(*mut world, #id, fixed: bool, resting: bool) {
+    world.0.set_motion(id, Motion::of(!fixed, resting))?;
+}
+
+/// Sets the bodies of interest, for the strategies that use them.
+fn sdop_world_set_interest(*mut world, [*const ids: u64; count]) {
+    world.0.set_interest(&ids.iter().copied().map(BodyId::from_bits).collect::<Vec<_>>())?;
 }
 
 /// Never reports the pair of two bodies again, such as two links that share a joint, until it is
 /// included or one of them is removed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_exclude(world: *mut SdopWorld, a: u64, b: u64) -> SdopStatus {
-    call(|| {
-        // SAFETY: the caller's promise.
-        let it = unsafe { handle(world, "world") }?;
-        it.0.exclude(BodyId::from_bits(a), BodyId::from_bits(b))?;
-        Ok(())
-    })
-}
-
+fn sdop_world_exclude(*mut world, #a, #b) { world.0.exclude(a, b)?; }
 /// Reports the pair of two bodies again when it meets.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_include(world: *mut SdopWorld, a: u64, b: u64) -> SdopStatus {
-    call(|| {
-        // SAFETY: the caller's promise.
-        let it = unsafe { handle(world, "world") }?;
-        it.0.include(BodyId::from_bits(a), BodyId::from_bits(b))?;
-        Ok(())
-    })
-}
-
+fn sdop_world_include(*mut world, #a, #b) { world.0.include(a, b)?; }
 /// Finds the pairs that might touch now. `pairs` gets their number; read them with
 /// `sdop_world_pairs`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_cull(world: *mut SdopWorld, pairs: *mut usize) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    unsafe { cull(world, None, pairs) }
-}
-
+fn sdop_world_cull(*mut world) -> *mut pairs: usize { world.0.cull()?.len() }
 /// `sdop_world_cull`, if there are at most `limit` pairs; more are an error that
 /// has their number, and memory for them is never allocated.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_cull_up_to(
-    world: *mut SdopWorld,
-    limit: usize,
-    pairs: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    unsafe { cull(world, Some(limit), pairs) }
+fn sdop_world_cull_up_to(*mut world, limit: usize) -> *mut pairs: usize {
+    world.0.cull_up_to(limit)?.len()
 }
 
 /// Copies the pairs of the last cull into `buffer`, sorted by slots. If they don't fit, `count`
 /// says how many there are.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_pairs(
-    world: *mut SdopWorld,
-    buffer: *mut SdopIdPair,
-    capacity: usize,
-    count: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
-        // SAFETY: the caller's promise.
-        let it = unsafe { handle(world, "world") }?;
-        Ok(it.0.pairs().map(SdopIdPair::from))
-    })
+fn sdop_world_pairs(*mut world) -> [SdopIdPair] { world.0.pairs() }
+/// Culls as `sdop_world_cull` does and passes the pairs to `take`, not sorted, about 65,000 at a
+/// time: the world keeps none. With several threads, `take` is called from any of them, one call at
+/// a time.
+fn sdop_world_cull_each(*mut world, |take: SdopTakeIdPairs|) {
+    world.0.cull_in_portions(move |pairs| take.all(pairs.iter()))?;
 }
 
 /// Calls `take` for each pair that has begun, persists or has ended since the previous call of this
 /// function.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_events(
-    world: *mut SdopWorld,
-    take: SdopTakeEvent,
-    user: *mut c_void,
-) -> SdopStatus {
-    call_back(take, |take| {
-        // SAFETY: the caller's promise.
-        let events = unsafe { handle(world, "world") }?.0.events();
-        // SAFETY: the caller's promise.
-        unsafe { pass_events(&events, take, user) };
-        Ok(())
-    })
-}
-
+fn sdop_world_events(*mut world, |take: SdopTakeEvent|) { take.each(world.0.events().iter()); }
 /// Copies the world as bytes into `buffer`, for `sdop_world_restore`. If they don't fit, `count`
 /// says how many there are.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_snapshot(
-    world: *mut SdopWorld,
-    buffer: *mut u8,
-    capacity: usize,
-    count: *mut usize,
-) -> SdopStatus {
-    // SAFETY: the caller's promise.
-    list(unsafe { Buffer::new(buffer, capacity, count) }, || {
-        // SAFETY: the caller's promise.
-        let bytes = saved(&unsafe { handle(world, "world") }?.0.snapshot())?;
-        Ok(bytes.into_iter())
-    })
-}
-
+fn sdop_world_snapshot(*mut world) -> [u8] { saved(&world.0.snapshot())? }
 /// Gives this world the state of a snapshot. It must have the same shapes under the same numbers.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sdop_world_restore(
-    world: *mut SdopWorld,
-    bytes: *const u8,
-    count: usize,
-) -> SdopStatus {
-    call(|| {
-        // SAFETY: the caller's promise.
-        let (it, bytes) = unsafe { (handle(world, "world")?, column(bytes, count, "bytes")?) };
-        Ok(it.0.restore(&read_back(bytes)?)?)
-    })
+fn sdop_world_restore(*mut world, [*const bytes: u8; count]) {
+    world.0.restore(&read_back(bytes)?)?;
+}
 }
