@@ -97,6 +97,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, PartialOrd, Ord)]
 struct Entity(u64);
 
+#[derive(Clone, Copy)]
 enum RigidBody {
     Dynamic,
     Static,
