@@ -18,10 +18,12 @@ class CollisionManager:
 
     Method names and meanings are those of ``trimesh.collision.CollisionManager``; a pair collides
     when its posed meshes share a point, or one lies inside of a closed part of the other, in exact
-    arithmetic. Transforms are rigid: 4 × 4, a rotation and a translation. The rotation is rounded
-    to a quaternion of float32, the translation stays in float64. A mesh far from its origin is
-    placed by a point near it, whose position is computed in float64. Distances and contact points
-    are not computed.
+    arithmetic. python-fcl, which trimesh asks, doesn't report a mesh that is inside of another, so
+    this manager may report more pairs. Distances and contact points are not computed.
+
+    Transforms are rigid: 4 × 4, a rotation and a translation. The rotation is rounded to a
+    quaternion of float32, the translation stays in float64. A mesh far from its origin is placed by
+    a point near it, whose position is computed in float64.
     """
 
     def __init__(self) -> None:
@@ -30,7 +32,11 @@ class CollisionManager:
         self._names: dict[int, str] = {}
 
     def add_object(self, name: str, mesh: Any, transform: ArrayLike | None = None) -> None:
-        """Adds a ``trimesh.Trimesh`` or a `Shape`; an object of the same name is replaced."""
+        """Adds a mesh as `Shape` takes it, or a `Shape`, and prepares it for questions. An object
+        of the same name is replaced."""
+        self._add(name, mesh, transform).shape._prepare()
+
+    def _add(self, name: str, mesh: Any, transform: ArrayLike | None) -> _Object:
         shape = mesh if isinstance(mesh, Shape) else Shape(mesh, name=name)
         offset = np.array(shape.pose_offset)
         if offset.any():
@@ -40,8 +46,9 @@ class CollisionManager:
             self.remove_object(name)
         number = self._world.add_shape(shape)
         id = self._world.insert(number, rotation, translation)
-        self._objects[name] = _Object(id, number, shape, offset, rotation, translation)
+        added = self._objects[name] = _Object(id, number, shape, offset, rotation, translation)
         self._names[id] = name
+        return added
 
     def remove_object(self, name: str) -> None:
         """Removes an object."""
@@ -74,7 +81,7 @@ class CollisionManager:
         """Whether a mesh that is not in the manager collides with any object; on request with their
         names."""
         one = CollisionManager()
-        one.add_object("", mesh, transform)
+        one._add("", mesh, transform)
         found = self._colliding(one)
         names = {mine for mine, _ in found}
         return (bool(names), names) if return_names else bool(names)
@@ -101,6 +108,9 @@ class CollisionManager:
             if self._objects[mine].meets(other._objects[theirs]):
                 names.add((mine, theirs))
         return names
+
+    def __repr__(self) -> str:
+        return f"<sdop.CollisionManager: {len(self._objects):,} object{'s' * (len(self._objects) != 1)}>"
 
     def _find(self, name: str) -> _Object:
         if name not in self._objects:

@@ -70,7 +70,7 @@ class Verdict:
 
 def judge(
     make: Callable[[Scene], Any],
-    claims: str = "mesh",
+    claims: _sdop._Claim = "mesh",
     *,
     cases: str = "*",
     seed: int | None = None,
@@ -82,13 +82,24 @@ def judge(
     Parameters
     ----------
     make : a class, or anything else that makes a culler of a `Scene`
-        The culler has ``frame(rotations, translations)``, which returns the pairs i < j as an array
-        of shape (m, 2); with the claim "aabb" it has ``frame(boxes)``. If its set of bodies can
-        change, it has ``change(body_shapes, dynamic, was)``, where ``was`` holds each body's former
-        number, or -1; otherwise cases with such a change are skipped. A culler that can't answer a
-        case raises `CaseSkipped` with the reason.
-    claims : {"mesh", "hull", "or-dop", "sphere", "aabb"}
-        What it never misses.
+        The culler has ``frame(rotations, translations)``, or with a claim about boxes
+        ``frame(boxes)``, which returns the pairs i < j as an array of shape (m, 2). If its set of
+        bodies can change, it has ``change(body_shapes, dynamic, was)``, where ``was`` holds each
+        body's former number, or -1. Cases that need a method which it lacks are skipped. A culler
+        that can't answer a case raises `CaseSkipped` with the reason.
+    claims : str
+        What it never misses, touching included:
+
+        - "mesh": meshes that share a point, or one in a closed part of the other
+        - "hull", "or-dop", "sphere": convex hulls, oriented k-DOPs, or balls that share a point
+        - "aabb": boxes that share a point, which all claims below are about, except for "parts"
+        - "filter": without pairs excluded by ``filter(groups, excluded)``, given before a frame
+        - "margin": boxes nearer on each axis than both ``margins(margins)`` reach
+        - "order": the same pairs in whatever order bodies come
+        - "restore": the same pairs again after ``save()`` and ``restore()``
+        - "periodic": any image of a box, with ``periods(periods)``: a period or None for each axis
+        - "parts": as "mesh" for bodies of several shapes, with ``body_parts(parts)``: for each body
+          a list of (shape number, pose), which is empty for a body that is its shape alone
     cases : str
         Names of cases; ``*`` matches any text.
     seed : int, optional
@@ -120,7 +131,7 @@ def cost(scene: str | os.PathLike[str], *flags: str) -> list[dict[str, str | flo
     list of dict
         The rows of ``sdop cost --format csv``, for ``pandas.DataFrame``.
     """
-    return _rows("cost", os.fspath(scene), *flags)
+    return _rows("cost", scene, *flags)
 
 
 def tradeoff(scene: str | os.PathLike[str], *flags: str) -> list[dict[str, str | float]]:
@@ -128,12 +139,14 @@ def tradeoff(scene: str | os.PathLike[str], *flags: str) -> list[dict[str, str |
 
     Parameters and result as for `cost`; the rows are those of ``sdop tradeoff --format csv``.
     """
-    return _rows("tradeoff", os.fspath(scene), *flags)
+    return _rows("tradeoff", scene, *flags)
 
 
-def _rows(*arguments: str) -> list[dict[str, str | float]]:
+def _rows(name: str, scene: str | os.PathLike[str], *flags: str) -> list[dict[str, str | float]]:
     """Runs the command in a separate process, which can be interrupted, and reads its table."""
-    command = [sys.executable, "-m", "sdop", *arguments, "--format", "csv"]
+    with open(scene):  # a missing file is a FileNotFoundError
+        pass
+    command = [sys.executable, "-m", "sdop", name, os.fspath(scene), *flags, "--format", "csv"]
     run = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8")
     if run.returncode == 2:
         raise SdopError(run.stderr.strip())

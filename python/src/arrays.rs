@@ -8,7 +8,7 @@ use numpy::{
     PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn,
     PyUntypedArrayMethods as _,
 };
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -89,8 +89,7 @@ pub fn one_row<'py, const N: usize>(
     what: &str,
     remedy: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    check_mask(given, what)?;
-    let array = numpy(given.py())?.call_method1("asarray", (given,))?;
+    let array = as_any(given, what)?;
     if array.getattr("size")?.extract::<usize>()? != N {
         let shape: Vec<usize> = array.getattr("shape")?.extract()?;
         return Err(with_help(format!("{what} has shape {shape:?}"), remedy));
@@ -129,8 +128,7 @@ pub fn id_column(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<u64>> {
 
 /// A column of true and false.
 pub fn flags(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<bool>> {
-    check_mask(given, what)?;
-    let array = numpy(given.py())?.call_method1("asarray", (given,))?;
+    let array = as_any(given, what)?;
     let Ok(array) = array.cast::<PyArrayDyn<bool>>() else {
         let text = format!("{what} has dtype {}", array.getattr("dtype")?);
         return Err(PyTypeError::new_err(format!("{text}, and must be of bool")));
@@ -172,8 +170,7 @@ fn as_array<'py>(
     dtype: &str,
     what: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    check_mask(given, what)?;
-    let array = numpy(given.py())?.call_method1("asarray", (given,))?;
+    let array = as_any(given, what)?;
     if array.getattr("size")?.extract::<usize>()? == 0 {
         return array.call_method1("astype", (dtype,)); // an empty list has no kind
     }
@@ -193,6 +190,13 @@ fn as_array<'py>(
     if !accepted.is_empty() {
         return Err(PyTypeError::new_err(format!("{what} has dtype {own}; {accepted}")));
     }
+    if (dtype, kind.as_str()) == ("uint64", "i") {
+        let least: i64 = array.call_method0("min")?.extract()?;
+        if least < 0 {
+            let number = format!("{what} has the number {least}");
+            return Err(with_help(number, "ids are whole numbers, as `insert` returned them"));
+        }
+    }
     let options = PyDict::new(given.py());
     options.set_item("copy", false)?;
     let converted = array.call_method("astype", (dtype,), Some(&options))?;
@@ -206,6 +210,16 @@ fn as_array<'py>(
         }
     }
     Ok(converted)
+}
+
+/// What numpy makes an array of.
+fn as_any<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, PyAny>> {
+    check_mask(given, what)?;
+    let array = numpy(given.py())?.call_method1("asarray", (given,));
+    array.map_err(|error| match error.is_instance_of::<PyValueError>(given.py()) {
+        true => with_help(format!("{what} has rows of unequal lengths"), "pad the short ones"),
+        false => error,
+    })
 }
 
 /// Refuses a masked array with masked numbers, which NumPy hands over as if they were valid.

@@ -3,15 +3,21 @@
 use std::sync::Mutex;
 use std::time::Instant;
 
-use numpy::PyArray2;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyIterator, PyTuple};
 use sdop::boxes::BoxBody;
 use sdop::{Aabb, BodyId, CullError, Finder, Groups, PairList};
 
+use super::arguments::{GroupBits, Id};
 use super::arrays::{Rows, check_length, id_column, matrix, one_row, pairs, rows, whole_rows};
 use super::errors::{locked, refused};
-use super::ids::{bits_of, collected};
-use super::world::Events;
+use super::ids::{IdPairs, bits_of, collected};
+use super::pickles::{self, reduced};
+use super::world::{Events, read_back, saved};
+use super::worlds::{
+    Choices, SavedWorld, ShapeSlots, WorldState, counted, living_class, world_class,
+};
 
 const ROUND: &str = "pass float32, or leave `exact` out: boxes are then rounded as by `sdop.rounded_outward`, which misses none and may report boxes that all but touch";
 
@@ -174,144 +180,67 @@ impl BoxCuller {
     }
 }
 
-/// A long-lived set of boxes: stable ids, boxes at rest, groups, and pairs as a list or as events.
-#[pyclass(frozen, module = "sdop")]
-pub struct BoxWorld(pub(super) Mutex<sdop::BoxWorld>);
+living_class! {
+    /// A long-lived set of boxes: stable ids, boxes at rest, groups, and pairs as a list or as
+    /// events. Pairs are exactly those of boxes that share a point.
+    ///
+    /// Parameters
+    /// ----------
+    /// finder : str
+    ///     The algorithm that finds candidates. The reported set doesn't depend on it.
+    /// threads : int
+    ///     Number of threads.
+    BoxWorld, sdop::BoxWorld, BoxBody, |boxes, _| counted(boxes, "box", "boxes"), {
+        #[new]
+        #[pyo3(signature = (*, finder="auto", threads=1))]
+        fn new(finder: &str, threads: usize) -> PyResult<Self> {
+            let choices = (String::new(), finder.to_owned(), threads);
+            Ok(Self(Mutex::new(Self::made(Vec::new(), choices)?)))
+        }
 
-#[pymethods]
+        /// Adds a box (lower corner x, y, z, then the upper one, rounded outward if float32 can't
+        /// hold them) and returns its id, which stays until `remove`. `motion` and `groups` are
+        /// those of `World.insert`; `exact` rejects bounds that float32 can't hold.
+        #[pyo3(signature = (bounds, *, motion="dynamic", groups=GroupBits(Groups::ALL), exact=false))]
+        fn insert(
+            &self, py: Python<'_>, bounds: &Bound<'_, PyAny>, motion: &str, groups: GroupBits, exact: bool,
+        ) -> PyResult<u64> {
+            let bounds = one(bounds, exact)?;
+            let body = BoxBody { bounds, motion: super::world::motion(motion)?, groups: groups.0 };
+            locked(py, &self.0, |state| state.world.insert(body)).map(BodyId::to_bits).map_err(refused)
+        }
+
+        /// Moves or resizes a box.
+        #[pyo3(signature = (id, bounds, *, exact=false))]
+        fn set_bounds(
+            &self, py: Python<'_>, id: Id, bounds: &Bound<'_, PyAny>, exact: bool,
+        ) -> PyResult<()> {
+            let bounds = one(bounds, exact)?;
+            locked(py, &self.0, |state| state.world.set_bounds(id.0, bounds)).map_err(refused)
+        }
+
+        /// Moves many boxes: ids of shape (n,), boxes in the form of `box_pairs`. If one is
+        /// rejected, those before it have moved.
+        #[pyo3(signature = (ids, boxes, *, exact=false))]
+        fn set_many(
+            &self, py: Python<'_>, ids: &Bound<'_, PyAny>, boxes: &Bound<'_, PyAny>, exact: bool,
+        ) -> PyResult<()> {
+            let (ids, given) = (id_column(ids, "ids")?, self::boxes(boxes, exact)?);
+            let boxes = aabbs(&given);
+            check_length("boxes", boxes.len(), ids.len())?;
+            let ids: Vec<_> = ids.iter().map(|&id| BodyId::from_bits(id)).collect();
+            locked(py, &self.0, |state| state.world.set_many(&ids, boxes)).map_err(refused)
+        }
+    }
+}
+
 impl BoxWorld {
-    #[new]
-    #[pyo3(signature = (*, finder="auto", threads=1))]
-    fn new(finder: &str, threads: usize) -> PyResult<Self> {
-        let finder: Finder = finder.parse().map_err(refused)?;
-        let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
-        Ok(Self(Mutex::new(sdop::BoxWorld::with(&builder).map_err(refused)?)))
-    }
-
-    /// Adds a box (lower corner x, y, z, then the upper one) and returns its id, which stays until
-    /// `remove`.
-    #[pyo3(signature = (bounds, *, motion="dynamic", groups=(u32::MAX, u32::MAX), exact=false))]
-    fn insert(
-        &self,
-        py: Python<'_>,
-        bounds: &Bound<'_, PyAny>,
-        motion: &str,
-        groups: (u32, u32),
-        exact: bool,
-    ) -> PyResult<u64> {
-        let (member, mask) = groups;
-        let body = BoxBody {
-            bounds: one(bounds, exact)?,
-            motion: super::world::motion(motion)?,
-            groups: Groups { member, mask },
-        };
-        locked(py, &self.0, |world| world.insert(body)).map(BodyId::to_bits).map_err(refused)
-    }
-
-    /// Removes a box.
-    fn remove(&self, py: Python<'_>, id: u64) -> PyResult<()> {
-        locked(py, &self.0, |world| world.remove(BodyId::from_bits(id))).map_err(refused)
-    }
-
-    /// Moves or resizes a box.
-    #[pyo3(signature = (id, bounds, *, exact=false))]
-    fn set_bounds(
-        &self,
-        py: Python<'_>,
-        id: u64,
-        bounds: &Bound<'_, PyAny>,
-        exact: bool,
-    ) -> PyResult<()> {
-        let bounds = one(bounds, exact)?;
-        locked(py, &self.0, |world| world.set_bounds(BodyId::from_bits(id), bounds))
-            .map_err(refused)
-    }
-
-    /// Puts a box to rest, wakes it, or fixes it: "resting", "dynamic" or "fixed". Putting a box
-    /// to rest begins and ends no pair.
-    fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
-        let motion = super::world::motion(motion)?;
-        locked(py, &self.0, |world| world.set_motion(BodyId::from_bits(id), motion))
-            .map_err(refused)
-    }
-
-    /// Never reports the pair of two boxes again until `include` or until one of them is removed.
-    /// Returns whether it wasn't excluded yet.
-    fn exclude(&self, py: Python<'_>, a: u64, b: u64) -> PyResult<bool> {
-        let [a, b] = [a, b].map(BodyId::from_bits);
-        locked(py, &self.0, |world| world.exclude(a, b)).map_err(refused)
-    }
-
-    /// Reports the pair of two boxes again when it meets. Returns whether it was excluded.
-    fn include(&self, py: Python<'_>, a: u64, b: u64) -> PyResult<bool> {
-        let [a, b] = [a, b].map(BodyId::from_bits);
-        locked(py, &self.0, |world| world.include(a, b)).map_err(refused)
-    }
-
-    /// Moves many boxes: ids of shape (n,), boxes in the form of `box_pairs`. If one is rejected,
-    /// those before it have moved.
-    #[pyo3(signature = (ids, boxes, *, exact=false))]
-    fn set_many(
-        &self,
-        py: Python<'_>,
-        ids: &Bound<'_, PyAny>,
-        boxes: &Bound<'_, PyAny>,
-        exact: bool,
-    ) -> PyResult<()> {
-        let (ids, given) = (id_column(ids, "ids")?, self::boxes(boxes, exact)?);
-        let boxes = aabbs(&given);
-        check_length("boxes", boxes.len(), ids.len())?;
-        let ids: Vec<_> = ids.iter().map(|&id| BodyId::from_bits(id)).collect();
-        locked(py, &self.0, |world| world.set_many(&ids, boxes)).map_err(refused)
-    }
-
-    /// Finds the pairs that meet now: ids of shape (m, 2), sorted. More than `limit` pairs are an
-    /// error.
-    #[pyo3(signature = (*, limit=None))]
-    fn cull<'py>(
-        &self,
-        py: Python<'py>,
-        limit: Option<usize>,
-    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        let found = locked(py, &self.0, |world| {
-            let found = match limit {
-                Some(limit) => world.cull_up_to(limit)?,
-                None => world.cull()?,
-            };
-            Ok::<_, sdop::WorldError>(bits_of(found.iter())?)
-        });
-        pairs(py, found.map_err(refused)?)
-    }
-
-    /// The pairs of the last cull.
-    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
-        pairs(py, locked(py, &self.0, |world| bits_of(world.pairs())).map_err(refused)?)
-    }
-
-    /// The pairs that began, persisted or ended between the last call of this method and the last
-    /// cull.
-    fn events(&self, py: Python<'_>) -> PyResult<Events> {
-        locked(py, &self.0, |world| Events::new(&world.events())).map_err(refused)
-    }
-
-    /// The world as bytes, for `restore`.
-    fn snapshot(&self, py: Python<'_>) -> PyResult<Vec<u8>> {
-        let snapshot = locked(py, &self.0, |world| world.snapshot());
-        super::world::saved(&snapshot)
-    }
-
-    /// Replaces this world by that of a snapshot.
-    fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
-        let snapshot = super::world::read_back(snapshot)?;
-        locked(py, &self.0, |world| world.restore(&snapshot)).map_err(refused)
-    }
-
-    fn __len__(&self, py: Python<'_>) -> usize {
-        locked(py, &self.0, |world| world.len())
-    }
-
-    fn __contains__(&self, py: Python<'_>, id: u64) -> bool {
-        locked(py, &self.0, |world| world.contains(BodyId::from_bits(id)))
+    /// A world of choices by name. It has no shapes and one strategy.
+    fn made(shapes: ShapeSlots, choices: Choices) -> PyResult<WorldState<sdop::BoxWorld>> {
+        let finder: Finder = choices.1.parse().map_err(refused)?;
+        let builder = sdop::BoxCuller::builder().finder(finder).threads(choices.2);
+        let world = sdop::BoxWorld::with(&builder).map_err(refused)?;
+        Ok(WorldState { world, shapes, choices })
     }
 }
 

@@ -1,16 +1,19 @@
 //! Bodies of several shapes, and the pairs of their parts.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use numpy::PyArray2;
 use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict as _, PyTuple};
 use sdop::compound::{CompoundError, Part};
 
+use super::arguments::{ShapeList, ShapeNumber};
 use super::arrays::{check_length, pairs, rows, whole_column, wide_rows};
 use super::errors::{lock, locked, refused};
-use super::ids::{bits_of, collected};
-use super::shape::{Shape, built};
+use super::ids::{IdPairs, bits_of, collected};
+use super::shape::Shape;
 use super::world::{ROUND, World};
+use super::worlds::counted;
 
 /// Several shapes that move as one body: a robot, a vehicle, a concave mesh in convex pieces.
 ///
@@ -32,14 +35,21 @@ use super::world::{ROUND, World};
 /// exact : bool
 ///     Whether rotations that float32 can't hold are rejected.
 #[pyclass(frozen, module = "sdop")]
-pub struct Compound(sdop::compound::Compound);
+pub struct Compound {
+    built: sdop::compound::Compound,
+    shapes: Vec<Arc<sdop::Shape>>,
+    parts: PoseColumns,
+}
+
+/// The number of each part's shape, its rotation and its translation.
+type PoseColumns = (Vec<u32>, Vec<[f64; 4]>, Vec<[f64; 3]>);
 
 #[pymethods]
 impl Compound {
     #[new]
     #[pyo3(signature = (shapes, part_shapes, rotations, translations, *, name="compound", exact=false))]
     fn new(
-        shapes: Vec<PyRef<'_, Shape>>,
+        shapes: ShapeList,
         part_shapes: &Bound<'_, PyAny>,
         rotations: &Bound<'_, PyAny>,
         translations: &Bound<'_, PyAny>,
@@ -51,24 +61,39 @@ impl Compound {
         let translations = wide_rows::<3>(translations, "translations")?;
         check_length("rotations", rotations.len(), part_shapes.len())?;
         check_length("translations", translations.len(), part_shapes.len())?;
-        let poses = rotations.into_iter().zip(translations);
-        let part = |(shape, (rotation, translation)): (u32, ([f64; 4], [f64; 3]))| {
+        let poses = rotations.iter().zip(&translations);
+        let part = |(&shape, (&rotation, &translation)): (&u32, (&[f64; 4], &[f64; 3]))| {
             Part { shape, translation, ..Part::default() }.turned(rotation)
         };
-        let parts: Vec<Part> = part_shapes.into_iter().zip(poses).map(part).collect();
-        let compound = sdop::compound::Compound::build(name, &built(&shapes), &parts);
-        Ok(Self(compound.map_err(refused)?))
+        let parts: Vec<Part> = part_shapes.iter().zip(poses).map(part).collect();
+        let built = sdop::compound::Compound::build(name, &shapes.built(), &parts);
+        let parts = (part_shapes, rotations, translations);
+        Ok(Self { built: built.map_err(refused)?, shapes: shapes.0, parts })
     }
 
     /// The shape that contains all parts, for a `World`.
     #[getter]
     fn shape(&self) -> Shape {
-        self.0.shape().clone().into()
+        Arc::new(self.built.shape().clone()).into()
     }
 
     /// Number of parts.
     fn __len__(&self) -> usize {
-        self.0.parts()
+        self.built.parts()
+    }
+
+    /// The arguments of which `pickle` makes it again.
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let shapes: Vec<Shape> = self.shapes.iter().map(|shape| shape.clone().into()).collect();
+        let (numbers, rotations, translations) = self.parts.clone();
+        let name = [("name", &self.built.shape().name)].into_py_dict(py)?;
+        ((shapes, numbers, rotations, translations), name).into_pyobject(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let shape = self.built.shape();
+        let (parts, radius) = (counted(self.built.parts(), "part", "parts"), shape.ball.radius);
+        format!("<sdop.Compound {}: {parts}, radius {radius:.3}>", shape.name)
     }
 }
 
@@ -82,7 +107,7 @@ impl Compound {
 pub struct PartCuller(Mutex<sdop::compound::PartCuller>);
 
 /// Ids of bodies and numbers of parts.
-type PartPairs<'py> = (Bound<'py, PyArray2<u64>>, Bound<'py, PyArray2<u32>>);
+type PartPairs<'py> = (IdPairs<'py>, Bound<'py, PyArray2<u32>>);
 
 #[pymethods]
 impl PartCuller {
@@ -93,14 +118,14 @@ impl PartCuller {
 
     /// Says which parts a shape of the world has. The world's shape of that number has to be
     /// `compound.shape`.
-    fn set_parts(&self, py: Python<'_>, shape: u32, compound: &Compound) {
-        let compound = compound.0.clone();
-        locked(py, &self.0, |culler| culler.set_parts(shape, compound));
+    fn set_parts(&self, py: Python<'_>, shape: ShapeNumber, compound: &Compound) {
+        let compound = compound.built.clone();
+        locked(py, &self.0, |culler| culler.set_parts(shape.0, compound));
     }
 
     /// From now on, the world's shape of that number is one part.
-    fn remove_parts(&self, py: Python<'_>, shape: u32) {
-        locked(py, &self.0, |culler| culler.remove_parts(shape));
+    fn remove_parts(&self, py: Python<'_>, shape: ShapeNumber) {
+        locked(py, &self.0, |culler| culler.remove_parts(shape.0));
     }
 
     /// The pairs of parts in the pairs of the world's last `cull`: call it after each, before
@@ -115,7 +140,7 @@ impl PartCuller {
     fn cull<'py>(&self, py: Python<'py>, world: &World) -> PyResult<PartPairs<'py>> {
         let world = &world.0;
         let found: Result<_, CompoundError> = locked(py, &self.0, |culler| {
-            let found = culler.cull(&lock(world))?;
+            let found = culler.cull(&lock(world).world)?;
             let bodies = bits_of(found.iter().map(|pair| pair.bodies));
             Ok((bodies, collected(found.iter().map(|pair| pair.parts))))
         });
@@ -124,7 +149,7 @@ impl PartCuller {
     }
 
     /// The pairs of bodies of which some parts may touch: ids of shape (m, 2), sorted.
-    fn body_pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u64>>> {
+    fn body_pairs<'py>(&self, py: Python<'py>) -> PyResult<IdPairs<'py>> {
         let found = locked(py, &self.0, |culler| bits_of(culler.body_pairs()));
         pairs(py, found.map_err(refused)?)
     }

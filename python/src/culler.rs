@@ -1,6 +1,6 @@
 //! Culling a fixed set of bodies.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use numpy::PyArray2;
@@ -8,12 +8,13 @@ use pyo3::prelude::*;
 use sdop::culler::CullerBuilder;
 use sdop::{Bodies, Body, BodyId, Groups, Interest, World};
 
+use super::arguments::ShapeList;
 use super::arrays::{check_length, flags, pairs, rows, whole_column};
 use super::boxes::{groups, list};
 use super::errors::{locked, refused};
 use super::ids::collected;
-use super::shape::{Shape, built};
 use super::world::builder;
+use super::worlds::counted;
 
 const ROUND: &str =
     "pass float32, or leave `exact` out: poses of float64 are then culled as they are";
@@ -52,7 +53,7 @@ struct State {
     /// What culls poses of float64 that float32 can't hold, since the first of them.
     wide: Option<(World, Vec<BodyId>)>,
     /// What it is made of.
-    shapes: Vec<Py<Shape>>,
+    shapes: Vec<Arc<sdop::Shape>>,
     builder: CullerBuilder,
     interest: Option<Vec<u32>>,
     groups: Option<Vec<Groups>>,
@@ -64,7 +65,7 @@ impl Culler {
     #[pyo3(signature = (shapes, body_shapes, *, dynamic=None, strategy="s-dop-sequential", finder="auto", interest=None, groups=None, threads=1))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
-        shapes: Vec<PyRef<'_, Shape>>,
+        shapes: ShapeList,
         body_shapes: &Bound<'_, PyAny>,
         dynamic: Option<&Bound<'_, PyAny>>,
         strategy: &str,
@@ -87,18 +88,16 @@ impl Culler {
         }
         let (rotation, translation) = (vec![[0.0, 0.0, 0.0, 1.0]; n], vec![[0.0; 3]; n]);
         let bodies = Bodies { shape, dynamic, rotation, translation };
-        let mut culler = with_interest.build(&built(&shapes), &bodies).map_err(refused)?;
+        let mut culler = with_interest.build(&shapes.built(), &bodies).map_err(refused)?;
         let groups = self::groups(groups, n)?;
         culler.set_groups(groups.clone()).map_err(refused)?;
-        let (shapes, wide) = (shapes.into_iter().map(Into::into).collect(), None);
-        let (is_new, seconds) = (true, 0.0);
         Ok(Self(Mutex::new(State {
             culler,
             bodies,
-            is_new,
-            seconds,
-            wide,
-            shapes,
+            is_new: true,
+            seconds: 0.0,
+            wide: None,
+            shapes: shapes.0,
             builder,
             interest,
             groups,
@@ -164,6 +163,13 @@ impl Culler {
     fn __len__(&self, py: Python<'_>) -> usize {
         locked(py, &self.0, |state| state.bodies.len())
     }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let (bodies, shapes) =
+            locked(py, &self.0, |state| (state.bodies.len(), state.shapes.len()));
+        let bodies = counted(bodies, "body", "bodies");
+        format!("<sdop.Culler: {bodies} of {}>", counted(shapes, "shape", "shapes"))
+    }
 }
 
 impl State {
@@ -199,7 +205,7 @@ impl State {
 
     /// A world of the bodies, at the origin.
     fn world(&self) -> PyResult<(World, Vec<BodyId>)> {
-        let shapes = self.shapes.iter().map(|shape| shape.get().built.clone()).collect();
+        let shapes = self.shapes.iter().map(|shape| sdop::Shape::clone(shape)).collect();
         let mut world = World::with(shapes, &self.builder).map_err(refused)?;
         let mut ids = Vec::new();
         for (i, &shape) in self.bodies.shape.iter().enumerate() {

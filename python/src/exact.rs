@@ -3,6 +3,7 @@
 use pyo3::prelude::*;
 use sdop_reference::{WidePose, wide};
 
+use super::arguments::two;
 use super::arrays::{one_row, wide_rows};
 use super::errors::with_help;
 use super::shape::Shape;
@@ -29,21 +30,19 @@ use super::world::{POSITION, QUATERNION};
 pub fn exact_meet(
     py: Python<'_>,
     shape_a: &Shape,
-    pose_a: (Bound<'_, PyAny>, Bound<'_, PyAny>),
+    pose_a: &Bound<'_, PyAny>,
     shape_b: &Shape,
-    pose_b: (Bound<'_, PyAny>, Bound<'_, PyAny>),
+    pose_b: &Bound<'_, PyAny>,
 ) -> PyResult<bool> {
-    let poses = [pose("pose_a", &pose_a)?, pose("pose_b", &pose_b)?];
+    let poses = [pose("pose_a", pose_a)?, pose("pose_b", pose_b)?];
     py.detach(|| {
         let [a, b] = [shape_a.judged()?, shape_b.judged()?];
         Ok(wide::meet((a, &poses[0]), (b, &poses[1])).meets)
     })
 }
 
-fn pose(
-    what: &str,
-    (rotation, translation): &(Bound<'_, PyAny>, Bound<'_, PyAny>),
-) -> PyResult<WidePose> {
+fn pose(what: &str, given: &Bound<'_, PyAny>) -> PyResult<WidePose> {
+    let [rotation, translation] = &two(given, what, "pass (rotation, translation)")?;
     let rotation = row::<4>(rotation, &format!("{what}'s rotation"), QUATERNION)?;
     let translation = row::<3>(translation, &format!("{what}'s translation"), POSITION)?;
     WidePose::new(rotation, translation).map_err(|error| {

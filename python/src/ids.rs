@@ -1,6 +1,11 @@
 //! Ids of bodies as Python's whole numbers, in columns of uint64.
 
+use numpy::PyArray2;
+use pyo3::Bound;
 use sdop::{BodyId, CullError};
+
+/// An array of shape (m, 2): the ids of pairs.
+pub type IdPairs<'py> = Bound<'py, PyArray2<u64>>;
 
 /// Ids of pairs.
 pub fn bits_of(pairs: impl Iterator<Item = [BodyId; 2]>) -> Result<Vec<[u64; 2]>, CullError> {

@@ -15,17 +15,6 @@ use super::errors::{CaseSkipped, SdopError, refused};
 
 /// Judges a culler against the exact reference.
 ///
-/// `make` is called with a `Scene` for each case and returns an object with `frame(rotations,
-/// translations)`, which returns the pairs i < j as an array of shape (m, 2). For the claim "aabb"
-/// it has `frame(boxes)` instead. If its set of bodies can change, it has `change(body_shapes,
-/// dynamic, was)`, where `was` holds each body's former number, or −1; cases with such a change are
-/// skipped otherwise. So are those of the claims "filter", "margin", "restore", "parts" and
-/// "periodic" without `filter(groups, excluded)`, `margins(margins)`, `save()` and `restore()`,
-/// `body_parts(parts)`, which gets a list for each body (the shape number and the pose of each
-/// part, nothing for a body that is its shape alone), or `periods(periods)`, which gets a period
-/// or `None` for each axis. `CaseSkipped` skips a case, any other exception is an error of the
-/// case.
-///
 /// Returns whether it is a pass, the verdict as text and as JSON, and the smallest case of a miss;
 /// `sdop.judge` makes a `Verdict` of it.
 #[pyfunction]

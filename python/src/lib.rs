@@ -4,6 +4,7 @@
 //! Every class guards its culler with a lock that is taken without the interpreter's, so that
 //! threads of Python take turns instead of failing, and others run while a frame is culled.
 
+mod arguments;
 mod arrays;
 mod boxes;
 mod compound;
@@ -13,10 +14,12 @@ mod exact;
 mod ids;
 mod judge;
 mod periodic;
+mod pickles;
 mod program;
 mod query;
 mod shape;
 mod world;
+mod worlds;
 
 #[pyo3::pymodule]
 mod _sdop {

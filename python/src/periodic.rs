@@ -2,17 +2,18 @@
 
 use std::sync::Mutex;
 
-use numpy::PyArray2;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use sdop::periodic::{ImageSource, Periodic, PeriodicBox, PeriodicError, PeriodicPair};
+use pyo3::types::{PyDict, PyIterator};
+use sdop::periodic::{PeriodicBox, PeriodicError, PeriodicPair};
 use sdop::{Body, BodyId, Finder, Groups};
 
+use super::arguments::{GroupBits, Id, ShapeList, ShapeNumber, mistyped};
 use super::arrays::{check_length, id_column, matrix, one_row, pairs, rows, wide_rows};
 use super::errors::{locked, refused, with_help};
 use super::ids::{bits_of, collected};
-use super::shape::{Shape, built};
-use super::world::{ROUND, body, builder, motion, named, pose};
+use super::world::{ROUND, builder, motion, named, pose};
+use super::worlds::{WorldState, counted, events_class, mesh_class, world_class};
 
 /// The ids of pairs, and the image of each.
 type PeriodicPairs<'py> = (Bound<'py, PyArray2<u64>>, Bound<'py, PyArray2<i32>>);
@@ -25,101 +26,35 @@ fn arrays<'py>(py: Python<'py>, found: &[PeriodicPair]) -> PyResult<PeriodicPair
 
 /// A period for each axis that has one.
 fn periods(given: &Bound<'_, PyAny>) -> PyResult<[Option<f64>; 3]> {
-    let periods = given.try_iter()?.map(|period| period?.extract());
-    let periods: Vec<Option<f64>> = periods.collect::<PyResult<_>>()?;
-    periods.try_into().map_err(|periods: Vec<_>| {
-        with_help(
-            format!("periods has {} entries", periods.len()),
-            "pass three: the period along x, y and z, or None for an axis without one",
-        )
-    })
+    let help = "pass three numbers: the period along x, y and z, or None for an axis without one";
+    let periods = given.try_iter().and_then(|all| all.map(|period| period?.extract()).collect());
+    let periods: Vec<Option<f64>> = periods.map_err(|_| mistyped("periods", given, help))?;
+    let wrong = |given: Vec<_>| with_help(format!("periods has {} entries", given.len()), help);
+    periods.try_into().map_err(wrong)
 }
 
-/// Changes a body by what `change` makes of it.
-fn changed<V: ImageSource>(
-    world: &mut Periodic<V>,
-    id: u64,
-    change: impl FnOnce(&mut V::UserBody),
-) -> Result<(), PeriodicError> {
-    let id = BodyId::from_bits(id);
-    let mut body = world.body(id)?;
-    change(&mut body);
-    world.set(id, body)
-}
-
-/// The changes between two calls of `events`: pairs in the form of `cull`, sorted.
-#[pyclass(frozen, module = "sdop")]
-pub struct PeriodicEvents(sdop::periodic::PeriodicEvents);
-
-#[pymethods]
-impl PeriodicEvents {
-    /// Pairs reported now and not before.
-    #[getter]
-    fn begun<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
-        arrays(py, self.0.begun())
-    }
-
-    /// Pairs reported now and before.
-    #[getter]
-    fn persisting<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
-        arrays(py, self.0.persisting())
-    }
-
-    /// Pairs reported before and not now, with their former images.
-    #[getter]
-    fn ended<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
-        arrays(py, self.0.ended())
-    }
+events_class! {
+    /// The changes between two calls of `events`: pairs in the form of `cull`, sorted.
+    PeriodicEvents, sdop::periodic::PeriodicEvents, PeriodicPairs<'py>, arrays
 }
 
 /// A class with its own methods, and those of both periodic worlds.
 macro_rules! periodic_class {
-    ($(#[$doc:meta])* $name:ident, $world:ty, { $($own:tt)* }) => {
-        $(#[$doc])*
-        #[pyclass(frozen, module = "sdop")]
-        pub struct $name(Mutex<$world>);
-
-        #[pymethods]
-        impl $name {
+    ($(#[$doc:meta])* $name:ident, $world:ty, $body:ty, $contents:expr, { $($own:tt)* }) => {
+        world_class! { $(#[$doc])* $name, $world, $body, $contents, {
             $($own)*
-
-            /// Removes a body.
-            fn remove(&self, py: Python<'_>, id: u64) -> PyResult<()> {
-                locked(py, &self.0, |world| world.remove(BodyId::from_bits(id))).map_err(refused)
-            }
-
-            /// Puts a body to rest, wakes it, or fixes it: "resting", "dynamic" or "fixed". Putting
-            /// a body to rest begins and ends no pair.
-            fn set_motion(&self, py: Python<'_>, id: u64, motion: &str) -> PyResult<()> {
-                let motion = self::motion(motion)?;
-                locked(py, &self.0, |world| changed(world, id, |body| body.motion = motion))
-                    .map_err(refused)
-            }
-
-            /// Never reports the pair of two bodies again, in any image, until `include` or until
-            /// one of them is removed. Returns whether it wasn't excluded yet.
-            fn exclude(&self, py: Python<'_>, a: u64, b: u64) -> PyResult<bool> {
-                let [a, b] = [a, b].map(BodyId::from_bits);
-                locked(py, &self.0, |world| world.exclude(a, b)).map_err(refused)
-            }
-
-            /// Reports the pair of two bodies again when it meets. Returns whether it was excluded.
-            fn include(&self, py: Python<'_>, a: u64, b: u64) -> PyResult<bool> {
-                let [a, b] = [a, b].map(BodyId::from_bits);
-                locked(py, &self.0, |world| world.include(a, b)).map_err(refused)
-            }
 
             /// The period along x, y and z; None for an axis without one.
             #[getter]
             fn periods(&self, py: Python<'_>) -> [Option<f64>; 3] {
-                locked(py, &self.0, |world| world.periods())
+                locked(py, &self.0, |state| state.world.periods())
             }
 
             /// Changes the periods. Bodies stay where they were put. If a body is too large for
             /// them, nothing changes.
             fn set_periods(&self, py: Python<'_>, periods: &Bound<'_, PyAny>) -> PyResult<()> {
                 let periods = self::periods(periods)?;
-                locked(py, &self.0, |world| world.set_periods(periods)).map_err(refused)
+                locked(py, &self.0, |state| state.world.set_periods(periods)).map_err(refused)
             }
 
             /// Finds the pairs that might touch now, each once. If images have more than `limit`
@@ -134,36 +69,26 @@ macro_rules! periodic_class {
             ///     it was put, so that it may touch the first.
             #[pyo3(signature = (*, limit=None))]
             fn cull<'py>(
-                &self,
-                py: Python<'py>,
-                limit: Option<usize>,
+                &self, py: Python<'py>, limit: Option<usize>,
             ) -> PyResult<PeriodicPairs<'py>> {
-                let found = locked(py, &self.0, |world| match limit {
-                    Some(limit) => world.cull_up_to(limit).map(<[_]>::to_vec),
-                    None => world.cull().map(<[_]>::to_vec),
+                let found = locked(py, &self.0, |state| match limit {
+                    Some(limit) => state.world.cull_up_to(limit).map(<[_]>::to_vec),
+                    None => state.world.cull().map(<[_]>::to_vec),
                 });
                 arrays(py, &found.map_err(refused)?)
             }
 
             /// The pairs of the last cull, in the form of `cull`.
             fn pairs<'py>(&self, py: Python<'py>) -> PyResult<PeriodicPairs<'py>> {
-                arrays(py, &locked(py, &self.0, |world| world.pairs().to_vec()))
+                arrays(py, &locked(py, &self.0, |state| state.world.pairs().to_vec()))
             }
 
             /// What has changed between the last call of `events` and the last cull. Two bodies are
             /// one pair, whatever their image.
             fn events(&self, py: Python<'_>) -> PeriodicEvents {
-                PeriodicEvents(locked(py, &self.0, |world| world.events()))
+                PeriodicEvents(locked(py, &self.0, |state| state.world.events()))
             }
-
-            fn __len__(&self, py: Python<'_>) -> usize {
-                locked(py, &self.0, |world| world.ids().count())
-            }
-
-            fn __contains__(&self, py: Python<'_>, id: u64) -> bool {
-                locked(py, &self.0, |world| world.contains(BodyId::from_bits(id)))
-            }
-        }
+        } }
     };
 }
 
@@ -183,59 +108,48 @@ periodic_class! {
     ///     The algorithm that finds candidates. The reported set doesn't depend on it.
     /// threads : int
     ///     Number of threads.
-    PeriodicBoxes, sdop::periodic::PeriodicBoxes, {
+    PeriodicBoxes, sdop::periodic::PeriodicBoxes, PeriodicBox, |boxes, _| counted(boxes, "box", "boxes"), {
         #[new]
         #[pyo3(signature = (periods, *, finder="auto", threads=1))]
         fn new(periods: &Bound<'_, PyAny>, finder: &str, threads: usize) -> PyResult<Self> {
-            let finder: Finder = finder.parse().map_err(refused)?;
-            let builder = sdop::BoxCuller::builder().finder(finder).threads(threads);
+            let choice: Finder = finder.parse().map_err(refused)?;
+            let builder = sdop::BoxCuller::builder().finder(choice).threads(threads);
             let boxes = sdop::periodic::PeriodicBoxes::with(&builder, self::periods(periods)?);
-            Ok(Self(Mutex::new(boxes.map_err(refused)?)))
+            let (world, choices) = (boxes.map_err(refused)?, Default::default());
+            Ok(Self(Mutex::new(WorldState { world, shapes: Vec::new(), choices })))
         }
 
         /// Adds a box (lower corner x, y, z, then the upper one, float64) and returns its id, which
-        /// stays until `remove`.
-        #[pyo3(signature = (bounds, *, motion="dynamic", groups=(u32::MAX, u32::MAX)))]
+        /// stays until `remove`. Other parameters are those of `BoxWorld.insert`.
+        #[pyo3(signature = (bounds, *, motion="dynamic", groups=GroupBits(Groups::ALL)))]
         fn insert(
-            &self,
-            py: Python<'_>,
-            bounds: &Bound<'_, PyAny>,
-            motion: &str,
-            groups: (u32, u32),
+            &self, py: Python<'_>, bounds: &Bound<'_, PyAny>, motion: &str, groups: GroupBits,
         ) -> PyResult<u64> {
             let [min, max] = one(bounds)?;
-            let (member, mask) = groups;
-            let body = PeriodicBox {
-                motion: self::motion(motion)?,
-                groups: Groups { member, mask },
-                ..PeriodicBox::new(min, max)
-            };
-            locked(py, &self.0, |world| world.insert(body))
-                .map(BodyId::to_bits)
-                .map_err(refused)
+            let (motion, groups) = (self::motion(motion)?, groups.0);
+            let body = PeriodicBox { motion, groups, ..PeriodicBox::new(min, max) };
+            locked(py, &self.0, |state| state.world.insert(body)).map(BodyId::to_bits).map_err(refused)
         }
 
         /// Moves or resizes a box.
-        fn set_bounds(&self, py: Python<'_>, id: u64, bounds: &Bound<'_, PyAny>) -> PyResult<()> {
+        fn set_bounds(&self, py: Python<'_>, id: Id, bounds: &Bound<'_, PyAny>) -> PyResult<()> {
             let ends = one(bounds)?;
-            locked(py, &self.0, |world| changed(world, id, |body| [body.min, body.max] = ends))
-                .map_err(refused)
+            self.change(py, id, |body| [body.min, body.max] = ends)
         }
 
         /// Moves many boxes: ids of shape (n,), boxes of float64 in shape (n, 6) or (n, 2, 3). If
         /// one is rejected, those before it have moved.
         fn set_many(
-            &self,
-            py: Python<'_>,
-            ids: &Bound<'_, PyAny>,
-            boxes: &Bound<'_, PyAny>,
+            &self, py: Python<'_>, ids: &Bound<'_, PyAny>, boxes: &Bound<'_, PyAny>,
         ) -> PyResult<()> {
             let (ids, boxes) = (id_column(ids, "ids")?, wide_rows::<6>(boxes, "boxes")?);
             check_length("boxes", boxes.len(), ids.len())?;
-            locked(py, &self.0, |world| {
+            locked(py, &self.0, |WorldState { world, .. }| {
                 let mut all = ids.iter().zip(boxes);
                 all.try_for_each(|(&id, row)| {
-                    changed(world, id, |body| [body.min, body.max] = corners(row))
+                    let ([min, max], id) = (corners(row), BodyId::from_bits(id));
+                    let body = PeriodicBox { min, max, ..world.body(id)? };
+                    world.set(id, body)
                 })
             })
             .map_err(refused)
@@ -243,7 +157,8 @@ periodic_class! {
     }
 }
 
-periodic_class! {
+mesh_class! {
+    periodic_class, set_pose,
     /// A long-lived set of posed meshes in space that repeats along some axes.
     ///
     /// Bodies may be anywhere, also many periods away. If two meshes, each grown by its body's
@@ -266,87 +181,26 @@ periodic_class! {
         #[new]
         #[pyo3(signature = (shapes, periods, *, strategy="s-dop-sequential", finder="auto", threads=1))]
         fn new(
-            shapes: Vec<PyRef<'_, Shape>>,
-            periods: &Bound<'_, PyAny>,
-            strategy: &str,
-            finder: &str,
-            threads: usize,
+            shapes: ShapeList, periods: &Bound<'_, PyAny>, strategy: &str, finder: &str, threads: usize,
         ) -> PyResult<Self> {
             let builder = builder(strategy, finder, threads)?;
             let periods = self::periods(periods)?;
-            let world = sdop::world::PeriodicWorld::with(built(&shapes), &builder, periods);
-            Ok(Self(Mutex::new(world.map_err(refused)?)))
-        }
-
-        /// Adds a body and returns its id, which stays until `remove`. Parameters are those of
-        /// `World.insert`.
-        #[pyo3(signature = (shape, rotation, translation, *, margin=0.0, dynamic=true, groups=(u32::MAX, u32::MAX), exact=false))]
-        #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-        fn insert(
-            &self,
-            py: Python<'_>,
-            shape: u32,
-            rotation: &Bound<'_, PyAny>,
-            translation: &Bound<'_, PyAny>,
-            margin: f32,
-            dynamic: bool,
-            groups: (u32, u32),
-            exact: bool,
-        ) -> PyResult<u64> {
-            let body = body(shape, pose(rotation, translation, exact)?, margin, dynamic, groups);
-            locked(py, &self.0, |world| world.insert(body))
-                .map(BodyId::to_bits)
-                .map_err(refused)
-        }
-
-        /// Moves a body by any distance.
-        #[pyo3(signature = (id, rotation, translation, *, exact=false))]
-        fn set_pose(
-            &self,
-            py: Python<'_>,
-            id: u64,
-            rotation: &Bound<'_, PyAny>,
-            translation: &Bound<'_, PyAny>,
-            exact: bool,
-        ) -> PyResult<()> {
-            let pose = pose(rotation, translation, exact)?;
-            locked(py, &self.0, |world| changed(world, id, |body| set_pose(body, pose)))
-                .map_err(refused)
-        }
-
-        /// Moves many bodies: ids of shape (n,), rotations (n, 4), translations (n, 3). If one is
-        /// rejected, those before it have moved.
-        #[pyo3(signature = (ids, rotations, translations, *, exact=false))]
-        fn set_poses(
-            &self,
-            py: Python<'_>,
-            ids: &Bound<'_, PyAny>,
-            rotations: &Bound<'_, PyAny>,
-            translations: &Bound<'_, PyAny>,
-            exact: bool,
-        ) -> PyResult<()> {
-            let ids = id_column(ids, "ids")?;
-            let rotations = rows::<4>(rotations, "rotations", exact, ROUND)?.wide();
-            let translations = wide_rows::<3>(translations, "translations")?;
-            check_length("rotations", rotations.len(), ids.len())?;
-            check_length("translations", translations.len(), ids.len())?;
-            locked(py, &self.0, |world| {
-                let mut all = ids.iter().zip(rotations.into_iter().zip(translations));
-                all.try_for_each(|(&id, pose)| changed(world, id, |body| set_pose(body, pose)))
-            })
-            .map_err(refused)
-        }
-
-        /// The present body, in the form of `World.body`.
-        fn body<'py>(&self, py: Python<'py>, id: u64) -> PyResult<Bound<'py, PyDict>> {
-            let body = locked(py, &self.0, |world| world.body(BodyId::from_bits(id)));
-            named(py, &body.map_err(refused)?)
+            let world = sdop::world::PeriodicWorld::with(shapes.built(), &builder, periods);
+            let (world, shapes) = (world.map_err(refused)?, shapes.0.into_iter().map(Some));
+            let (shapes, choices) = (shapes.collect(), Default::default());
+            Ok(Self(Mutex::new(WorldState { world, shapes, choices })))
         }
     }
 }
 
-fn set_pose(body: &mut Body, (rotation, translation): ([f64; 4], [f64; 3])) {
-    *body = Body { translation, ..*body }.turned(rotation);
+fn set_pose(
+    world: &mut sdop::world::PeriodicWorld,
+    id: BodyId,
+    rotation: [f64; 4],
+    translation: [f64; 3],
+) -> Result<(), PeriodicError> {
+    let body = Body { translation, ..world.body(id)? };
+    world.set(id, body.turned(rotation))
 }
 
 /// One box: six numbers, or two corners.

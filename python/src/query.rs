@@ -2,16 +2,19 @@
 
 use std::sync::Mutex;
 
-use numpy::{PyArray1, PyArray2};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use sdop::query::{Answers, LineHit, QueryShape, QueryVolume};
 use sdop::{BodyId, Line};
 
+use super::arguments::mistyped;
 use super::arrays::{check_length, pairs, rows, wide_column, wide_rows};
 use super::boxes::BoxWorld;
-use super::errors::{lock, locked, refused};
+use super::errors::{lock, locked, refused, with_help};
+use super::ids::{IdPairs, bits_of};
 use super::shape::Shape;
 use super::world::{ROUND, World};
+use super::worlds::counted;
 
 /// The bodies of a `World` or a `BoxWorld`, prepared for queries: which may touch a volume, and
 /// which does a segment meet?
@@ -33,17 +36,8 @@ use super::world::{ROUND, World};
 #[pyclass(frozen, module = "sdop")]
 pub struct QueryIndex(Mutex<sdop::QueryIndex>);
 
-/// What an index reads.
-#[derive(FromPyObject)]
-enum AnyWorld<'py> {
-    #[pyo3(annotation = "World")]
-    Bodies(Bound<'py, World>),
-    #[pyo3(annotation = "BoxWorld")]
-    Boxes(Bound<'py, BoxWorld>),
-}
-
 /// Rows of a query's number and a body's id, and the hits' parameters.
-type Hits<'py> = (Bound<'py, PyArray2<u64>>, Bound<'py, PyArray1<f64>>);
+type Hits<'py> = (IdPairs<'py>, Bound<'py, PyArray1<f64>>);
 
 #[pymethods]
 impl QueryIndex {
@@ -56,17 +50,15 @@ impl QueryIndex {
 
     /// Brings the index up to date with a `World` or a `BoxWorld`. Only bodies that have changed
     /// since the last update cost more than a comparison.
-    fn update(&self, py: Python<'_>, world: AnyWorld<'_>) {
-        match &world {
-            AnyWorld::Bodies(world) => {
-                let world = &world.get().0;
-                locked(py, &self.0, |index| index.update(&*lock(world)));
-            }
-            AnyWorld::Boxes(world) => {
-                let world = &world.get().0;
-                locked(py, &self.0, |index| index.update(&*lock(world)));
-            }
+    fn update(&self, py: Python<'_>, world: &Bound<'_, PyAny>) -> PyResult<()> {
+        if let Ok(world) = world.cast::<World>().map(Bound::get) {
+            locked(py, &self.0, |index| index.update(&lock(&world.0).world));
+        } else if let Ok(world) = world.cast::<BoxWorld>().map(Bound::get) {
+            locked(py, &self.0, |index| index.update(&lock(&world.0).world));
+        } else {
+            return Err(mistyped("the world", world, "pass a `World` or a `BoxWorld`"));
         }
+        Ok(())
     }
 
     /// The bodies that may touch boxes on the world's axes.
@@ -84,7 +76,7 @@ impl QueryIndex {
         &self,
         py: Python<'py>,
         boxes: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+    ) -> PyResult<IdPairs<'py>> {
         let boxes = wide_rows::<6>(boxes, "boxes")?;
         let volumes = boxes.into_iter().map(|[ax, ay, az, bx, by, bz]| {
             let (min, max) = ([ax, ay, az], [bx, by, bz]);
@@ -109,7 +101,7 @@ impl QueryIndex {
         py: Python<'py>,
         centres: &Bound<'py, PyAny>,
         radii: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+    ) -> PyResult<IdPairs<'py>> {
         let (centres, radii) = (wide_rows::<3>(centres, "centres")?, wide_column(radii, "radii")?);
         check_length("radii", radii.len(), centres.len())?;
         let balls = centres.into_iter().zip(radii);
@@ -145,7 +137,7 @@ impl QueryIndex {
         translations: &Bound<'py, PyAny>,
         margin: f32,
         exact: bool,
-    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+    ) -> PyResult<IdPairs<'py>> {
         let rotations = rows::<4>(rotations, "rotations", exact, ROUND)?.wide();
         let translations = wide_rows::<3>(translations, "translations")?;
         check_length("translations", translations.len(), rotations.len())?;
@@ -155,41 +147,61 @@ impl QueryIndex {
         self.touching(py, volumes.collect())
     }
 
-    /// All bodies that segments may meet.
+    /// All bodies that segments or rays may meet.
     ///
     /// Parameters
     /// ----------
-    /// starts, ends : arrays of floats, shape (n, 3)
-    ///     The points start + s·(end − start) for 0 ≤ s ≤ 1.
+    /// starts : array of floats, shape (n, 3)
+    /// ends : array of floats, shape (n, 3)
+    ///     For segments: the points start + s·(end − start) for 0 ≤ s ≤ 1.
+    /// directions : array of floats, shape (n, 3)
+    ///     For rays, in place of ends: the points start + s·direction for 0 ≤ s.
     ///
     /// Returns
     /// -------
     /// array of uint64, shape (m, 2)
-    ///     Rows of a segment's number and a body's id, sorted by the number and by s.
+    ///     Rows of a line's number and a body's id, sorted by the number and by s.
     /// array of float64, shape (m,)
-    ///     For each row an s at or before the first point that the segment shares with the body.
+    ///     For each row an s at or before the first point that the line shares with the body.
+    #[pyo3(signature = (starts, ends=None, *, directions=None))]
     fn along<'py>(
         &self,
         py: Python<'py>,
         starts: &Bound<'py, PyAny>,
-        ends: &Bound<'py, PyAny>,
+        ends: Option<&Bound<'py, PyAny>>,
+        directions: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Hits<'py>> {
-        let lines = segments(starts, ends)?;
+        let lines = lines(starts, ends, directions)?;
         let found = locked(py, &self.0, |index| index.along_all(&lines));
         hits(py, &found.map_err(refused)?)
     }
 
-    /// The body that each segment may meet first: none is met at a smaller s. Parameters and result
-    /// as for `along`, with at most one row per segment.
+    /// The body that each segment or ray may meet first: none is met at a smaller s. Parameters and
+    /// result as for `along`, with at most one row per line.
+    #[pyo3(signature = (starts, ends=None, *, directions=None))]
     fn first<'py>(
         &self,
         py: Python<'py>,
         starts: &Bound<'py, PyAny>,
-        ends: &Bound<'py, PyAny>,
+        ends: Option<&Bound<'py, PyAny>>,
+        directions: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Hits<'py>> {
-        let lines = segments(starts, ends)?;
+        let lines = lines(starts, ends, directions)?;
         let found = locked(py, &self.0, |index| index.first_all(&lines));
         hits(py, &found.map_err(refused)?)
+    }
+
+    /// The pairs of a body of this index and one of another that may touch: ids of shape (m, 2),
+    /// this index's first. More than this index's `limit` are an error.
+    fn pairs_with<'py>(&self, py: Python<'py>, other: &Self) -> PyResult<IdPairs<'py>> {
+        // A copy, so that one lock at a time is held.
+        let other = locked(py, &other.0, |index| index.clone());
+        let found = locked(py, &self.0, |index| index.pairs_with(&other)).map_err(refused)?;
+        pairs(py, bits_of(found.into_iter()).map_err(refused)?)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("<sdop.QueryIndex: {}>", counted(self.__len__(py), "body", "bodies"))
     }
 
     fn __len__(&self, py: Python<'_>) -> usize {
@@ -202,17 +214,30 @@ impl QueryIndex {
         &self,
         py: Python<'py>,
         volumes: Vec<QueryVolume<'_>>,
-    ) -> PyResult<Bound<'py, PyArray2<u64>>> {
+    ) -> PyResult<IdPairs<'py>> {
         let found = locked(py, &self.0, |index| index.touching_all(&volumes));
         pairs(py, numbered(&found.map_err(refused)?, |&id| id))
     }
 }
 
-fn segments(starts: &Bound<'_, PyAny>, ends: &Bound<'_, PyAny>) -> PyResult<Vec<Line>> {
-    let (starts, ends) = (wide_rows::<3>(starts, "starts")?, wide_rows(ends, "ends")?);
-    check_length("ends", ends.len(), starts.len())?;
-    let segments = starts.into_iter().zip(ends);
-    Ok(segments.map(|(from, to)| Line::Segment { from, to }).collect())
+fn lines(
+    starts: &Bound<'_, PyAny>,
+    ends: Option<&Bound<'_, PyAny>>,
+    directions: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<Line>> {
+    let starts = wide_rows::<3>(starts, "starts")?;
+    let Some(given) = ends.xor(directions) else {
+        let help = "pass `ends` for segments, or `directions` for rays";
+        return Err(with_help("a line has either an end or a direction", help));
+    };
+    let what = if ends.is_some() { "ends" } else { "directions" };
+    let given = wide_rows::<3>(given, what)?;
+    check_length(what, given.len(), starts.len())?;
+    let line = |(from, to)| match ends {
+        Some(_) => Line::Segment { from, to },
+        None => Line::Ray { origin: from, direction: to },
+    };
+    Ok(starts.into_iter().zip(given).map(line).collect())
 }
 
 fn hits<'py>(py: Python<'py>, answers: &Answers<LineHit>) -> PyResult<Hits<'py>> {

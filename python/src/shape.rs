@@ -1,28 +1,32 @@
 //! Meshes prepared for culling.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::{PyOSError, PyUserWarning};
 use pyo3::prelude::*;
-use sdop::mesh::{MeshError, Problem, ReadOptions};
+use pyo3::types::PyTuple;
+use sdop::mesh::{MeshError, Problem, ReadOptions, Scale};
 use sdop::{Axes, DirectionSet, Origin, ShapeSpec, TriangleMesh};
-use sdop_judge::truth::reference_shapes::Shapes;
 use sdop_reference as reference;
 
-use super::arrays::{matrix, whole_rows, wide_rows};
+use super::arguments::mistyped;
+use super::arrays::{matrix, rows, whole_rows, wide_rows};
 use super::errors::{refused, with_help};
+use super::pickles::{self, reduced};
+use super::worlds::counted;
 
 /// A mesh with its bounding ball and or-DOP, made once and shared by any number of bodies.
 ///
 /// Parameters
 /// ----------
-/// vertices : array of floats, shape (n, 3), or a `trimesh.Trimesh`
+/// vertices : array of floats, shape (n, 3)
 ///     Positions in the mesh's frame, whose origin poses place. float64 is rounded to float32, about
 ///     a point near the mesh if it is far from its origin. Ball and or-DOP are grown by the bound of
-///     that, `rounding`, so that no pair of the float64 meshes is missed.
+///     that, `rounding`, so that no pair of the float64 meshes is missed. A `trimesh.Trimesh`, all
+///     meshes of a `trimesh.Scene`, or a tuple (vertices, triangles) may be given alone.
 /// triangles : array of whole numbers, shape (m, 3)
-///     Vertex indices of each triangle; left out for a `trimesh.Trimesh`.
+///     Vertex indices of each triangle.
 /// radius : float, optional
 ///     Scales the mesh about its origin until its smallest enclosing ball has this radius.
 /// origin : {"file", "ball"}
@@ -36,9 +40,17 @@ use super::errors::{refused, with_help};
 ///     Its name in errors.
 #[pyclass(frozen, module = "sdop")]
 pub struct Shape {
-    pub(super) built: sdop::Shape,
+    pub(super) built: Arc<sdop::Shape>,
     judged: OnceLock<Result<reference::Shape, reference::InvalidInput>>,
 }
+
+/// What `pickle` stores of a shape. Slabs are computed again, to the same bits.
+type SavedShape<'py> = (
+    (String, Bound<'py, PyAny>, Bound<'py, PyAny>),
+    ([f64; 3], [f64; 3], f64),
+    (f32, f32, [f32; 3], f32),
+    (usize, [[f32; 3]; 3]),
+);
 
 #[pymethods]
 impl Shape {
@@ -55,9 +67,9 @@ impl Shape {
         axes: &str,
         name: &str,
     ) -> PyResult<Self> {
-        let (vertices, triangles) = match triangles {
-            Some(triangles) => (vertices.clone(), triangles.clone()),
-            None => (vertices.getattr("vertices")?, vertices.getattr("faces")?),
+        let [vertices, triangles] = match triangles {
+            Some(triangles) => [vertices.clone(), triangles.clone()],
+            None => mesh_of(vertices)?,
         };
         let vertices = wide_rows::<3>(&vertices, "vertices")?;
         let triangles = whole_rows::<3>(&triangles, "triangles")?;
@@ -68,13 +80,15 @@ impl Shape {
         })
     }
 
-    /// Reads a mesh file: OBJ, STL, PLY, OFF or .tri. Keywords as for `Shape`. Warns of what had to
-    /// be guessed or ignored. A missing file is a `FileNotFoundError`.
+    /// Reads a mesh file: OBJ, STL, PLY, OFF or .tri. Coordinates are multiplied by `scale`, a
+    /// number or one for each axis; negative ones mirror. Other keywords as for `Shape`. Warns of
+    /// what had to be guessed or ignored. A missing file is a `FileNotFoundError`.
     #[staticmethod]
-    #[pyo3(signature = (path, *, radius=None, origin="file", k=18, axes="principal"))]
+    #[pyo3(signature = (path, *, scale=None, radius=None, origin="file", k=18, axes="principal"))]
     fn load(
         py: Python<'_>,
         path: std::path::PathBuf,
+        scale: Option<&Bound<'_, PyAny>>,
         radius: Option<f32>,
         origin: &str,
         k: u32,
@@ -82,12 +96,20 @@ impl Shape {
     ) -> PyResult<Self> {
         let spec = spec(radius, origin, k, axes)?;
         let read = || sdop::mesh::read(&path, &ReadOptions::default());
-        let mesh = py.detach(read).map_err(unread)?;
+        let mut mesh = py.detach(read).map_err(unread)?;
+        if let Some(scale) = scale.map(self::scale).transpose()? {
+            mesh = mesh.scaled(scale).map_err(refused)?;
+        }
         for warning in &mesh.warnings {
             let text = std::ffi::CString::new(warning.replace('\0', " "))?;
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
         }
         py.detach(|| Self::build(&mesh, &spec))
+    }
+
+    /// Prepares the shape for `exact_meet`, which otherwise does so when it first gets the shape.
+    fn _prepare(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| self.judged().map(|shape| _ = shape.mesh()))
     }
 
     /// The mesh's name.
@@ -156,14 +178,37 @@ impl Shape {
         self.built.scale
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let (it, (centre, radius)) = (&self.built, self.ball());
+        let (vertices, triangles) = (self.vertices(py)?.into_any(), self.triangles(py)?.into_any());
+        let mesh = (it.name.clone(), vertices, triangles);
+        let sizes = (it.rounding, it.reach, centre, radius);
+        let ordop = (self.k(), it.ordop.basis.columns);
+        reduced::<Self>(py, (mesh, (it.offset, it.pose_offset, it.scale), sizes, ordop))
+    }
+
+    #[staticmethod]
+    fn _unpickled(version: u32, state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let saved: SavedShape<'_> = pickles::state(version, state)?;
+        let ((name, vertices, triangles), place, sizes, (k, columns)) = saved;
+        let vertices = rows::<3>(&vertices, "vertices", true, "pass what was pickled")?;
+        let triangles = whole_rows::<3>(&triangles, "triangles")?;
+        let mesh = TriangleMesh::from_f32(vertices.narrow().unwrap_or_default(), &triangles);
+        let directions = k.to_string().parse().map_err(refused)?;
+        let spec = ShapeSpec { directions, axes: Axes::Model, ..ShapeSpec::default() };
+        let mesh = mesh.map_err(refused)?.named(name);
+        let mut built = sdop::Shape::build(&mesh, &spec).map_err(refused)?;
+        (built.offset, built.pose_offset, built.scale) = place;
+        (built.rounding, built.reach, built.ball.centre, built.ball.radius) = sizes;
+        built.ordop.basis.columns = columns;
+        Ok(Arc::new(built.with_directions(directions)).into())
+    }
+
     fn __repr__(&self) -> String {
-        let Self { built, .. } = self;
+        let triangles = counted(self.built.triangles.len(), "triangle", "triangles");
         format!(
-            "<sdop.Shape {}: {} vertices, {} triangles, k = {}>",
-            built.name,
-            built.vertices.len(),
-            built.triangles.len(),
-            self.k()
+            "<sdop.Shape {}: {triangles}, radius {:.3}>",
+            self.built.name, self.built.ball.radius
         )
     }
 }
@@ -171,27 +216,26 @@ impl Shape {
 impl Shape {
     fn build(mesh: &TriangleMesh, spec: &ShapeSpec) -> PyResult<Self> {
         let built = sdop::Shape::build(mesh, spec).map_err(refused)?;
-        Ok(built.into())
+        Ok(Arc::new(built).into())
     }
 
-    /// The shape for the exact reference, prepared at first use.
+    /// The mesh for the exact reference, prepared at first use.
     pub(super) fn judged(&self) -> PyResult<&reference::Shape> {
+        let sdop::Shape { name, vertices, triangles, .. } = &*self.built;
         if self.built.is_far() {
             return Err(with_help(
-                format!("shape `{}` is far from the origin of its mesh", self.built.name),
+                format!("shape `{name}` is far from the origin of its mesh"),
                 "the exact answer is about float32 vertices: move the mesh to its origin, and add its place to the translations",
             ));
         }
-        let judged = self.judged.get_or_init(|| {
-            let mut shapes = Shapes::new(vec![self.built.clone()])?;
-            Ok(shapes.judged.remove(0))
-        });
+        let of_mesh = || reference::Shape::of_mesh(vertices.clone(), triangles.clone());
+        let judged = self.judged.get_or_init(of_mesh);
         judged.as_ref().map_err(|error| with_help(error, "pass a mesh that `Culler` takes"))
     }
 }
 
-impl From<sdop::Shape> for Shape {
-    fn from(built: sdop::Shape) -> Self {
+impl From<Arc<sdop::Shape>> for Shape {
+    fn from(built: Arc<sdop::Shape>) -> Self {
         Self { built, judged: OnceLock::new() }
     }
 }
@@ -214,7 +258,22 @@ fn spec(radius: Option<f32>, origin: &str, k: u32, axes: &str) -> PyResult<Shape
     Ok(ShapeSpec { origin, radius, directions, axes })
 }
 
-/// Shapes of a list.
-pub fn built(shapes: &[PyRef<'_, Shape>]) -> Vec<sdop::Shape> {
-    shapes.iter().map(|shape| shape.built.clone()).collect()
+/// Vertices and triangles of a mesh that comes as one object.
+fn mesh_of<'py>(given: &Bound<'py, PyAny>) -> PyResult<[Bound<'py, PyAny>; 2]> {
+    if let Ok(Ok(pair)) = given.cast::<PyTuple>().map(|tuple| tuple.extract()) {
+        return Ok(pair);
+    }
+    let merged = given.getattr_opt("to_mesh")?.map(|merge| merge.call0()); // of a `trimesh.Scene`
+    let given = &merged.unwrap_or_else(|| Ok(given.clone()))?;
+    match (given.getattr_opt("vertices")?, given.getattr_opt("faces")?) {
+        (Some(vertices), Some(triangles)) => Ok([vertices, triangles]),
+        _ => Err(mistyped("the mesh", given, "pass a `trimesh.Trimesh`, or (vertices, triangles)")),
+    }
+}
+
+/// One factor, or one for each axis.
+fn scale(given: &Bound<'_, PyAny>) -> PyResult<Scale> {
+    let axes = || given.extract::<[f64; 3]>().map(Scale::from);
+    let scale = given.extract::<f64>().map(Scale::from).or_else(|_| axes());
+    scale.map_err(|_| mistyped("scale", given, "pass a number, or three: for x, y and z"))
 }

@@ -39,7 +39,7 @@ def hash_of(numbers):
 def world_of(shape):
     """A world of all bodies, each fifth fixed, and the number of each id."""
     world = sdop.World([shape])
-    ids = [world.insert(0, q, t, dynamic=i % 5 != 0) for i, (q, t) in enumerate(zip(*poses(0, BODIES)))]
+    ids = [world.insert(0, q, t, motion="dynamic" if i % 5 else "fixed") for i, (q, t) in enumerate(zip(*poses(0, BODIES)))]
     return world, np.vectorize({id: i for i, id in enumerate(ids)}.get)
 
 

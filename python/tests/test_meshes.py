@@ -1,10 +1,12 @@
 """Meshes: nothing missed against the exact answer, in the mesh's own coordinates."""
 
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
 import sdop
+import trimesh
 from scipy.spatial.transform import Rotation
 
 BRACKET = (
@@ -111,7 +113,7 @@ def test_poses_of_float64_lose_no_pair(strategy):
         narrow = culler.cull(np.float32(rotations), np.float32(translations))
         assert sdop.Culler([shape], [0] * 60, **options).cull(np.float32(rotations), np.float32(translations)).tolist() == narrow.tolist()
     world = sdop.World([shape])
-    ids = [world.insert(0, q, t, dynamic=bool(i % 3)) for i, (q, t) in enumerate(zip(rotations, translations))]
+    ids = [world.insert(0, q, t, motion=["fixed", "dynamic"][i % 3 > 0]) for i, (q, t) in enumerate(zip(rotations, translations))]
     assert all([ids[i], ids[j]] in world.cull().tolist() for i, j in truth)
     world.set_poses(ids, rotations[::-1], translations)
     assert world.body(ids[0])["rounded"] and world.body(ids[0])["rotation"] == np.float32(rotations[-1]).tolist()
@@ -155,24 +157,6 @@ def test_periodic_worlds_take_float64():
     assert not world.body(a)["rounded"] and world.body(b)["rounded"] and len(world.cull()[0]) == 0
 
 
-def test_a_world_is_saved_and_restored():
-    shape = sdop.Shape(*bracket())
-    rotations, translations = poses(30)
-    world = sdop.World([shape])
-    ids = [world.insert(0, q, t, margin=0.1) for q, t in zip(rotations, translations)]
-    world.remove(ids.pop())
-    world.cull()
-    saved = world.snapshot()
-    other = sdop.World([shape])
-    other.restore(saved)
-    for it in (world, other):
-        it.set_poses(ids, *[column[: len(ids)] for column in poses(30, seed=1)])
-    np.testing.assert_array_equal(world.cull(), other.cull())
-    for kind in ("begun", "persisting", "ended"):
-        np.testing.assert_array_equal(getattr(world.events(), kind), getattr(other.events(), kind))
-    assert world.body(ids[3])["margin"] == pytest.approx(0.1) and world.snapshot() == other.snapshot()
-
-
 def two_that_touch():
     world = sdop.World([tetrahedron()])
     ids = [world.insert(0, [0, 0, 0, 1], [x, 0, 0]) for x in (0, 0.5)]
@@ -211,11 +195,12 @@ def test_resting_bodies_keep_their_pairs_and_fixed_ones_lose_them(made):
         world.set_motion(ids[0], "asleep")
 
 
-def test_a_body_says_that_it_rests():
+def test_a_body_is_inserted_again_as_it_is():
     world, (a, b) = two_that_touch()
     world.set_motion(a, "resting")
-    assert [world.body(id)["resting"] for id in (a, b)] == [True, False]
-    assert world.body(a)["dynamic"]
+    assert [world.body(id)["motion"] for id in (a, b)] == ["resting", "dynamic"]
+    body = world.body(a)
+    assert not body.pop("rounded") and world.body(world.insert(**body)) == world.body(a)
 
 
 @pytest.mark.parametrize(
@@ -245,6 +230,11 @@ def test_a_body_says_that_it_rests():
         (lambda s: sdop.Shape(np.ma.masked_equal(BRACKET, 4), [[0, 1, 2]]), "vertices is a masked array"),
         (lambda s: sdop.Culler([s], np.ma.masked_equal([0], 0)), "body_shapes is a masked array"),
         (lambda s: sdop.World([s]).insert(0, [0, 0, 0, 1], [2**60 + 1, 0, 0]), r"translation has whole numbers above 2\*\*53"),
+        (lambda s: sdop.World([s]).remove(-1), "the id is -1\nhelp: .*`insert`"),
+        (lambda s: sdop.World([s]).set_poses([-1], [[0, 0, 0, 1]], [[0, 0, 0]]), "ids has the number -1"),
+        (lambda s: sdop.World([s]).insert(-1, [0, 0, 0, 1], [0, 0, 0]), "number of the shape is -1"),
+        (lambda s: sdop.BoxWorld().insert([0] * 6, groups=(1, 2**32)), r"one of groups is 4294967296\nhelp: .*2\*\*32"),
+        (lambda s: sdop.Shape(BRACKET, [[0, 1, 2], [3]]), "triangles has rows of unequal lengths"),
         (lambda s: sdop.World([s]).insert(0, np.ma.masked_equal([0, 0, 0, 1], 1), [0, 0, 0]), "rotation is a masked array"),
     ],
 )
@@ -253,10 +243,34 @@ def test_what_is_wrong_is_said_with_a_remedy(call, text):
         call(sdop.Shape(*bracket()))
 
 
-def test_missing_file_is_not_found():
+@pytest.mark.parametrize("read", [sdop.Shape.load, sdop.cost, sdop.tradeoff])
+def test_missing_file_is_not_found(read):
     with pytest.raises(FileNotFoundError, match="No such file.*nowhere.obj") as raised:
-        sdop.Shape.load("nowhere.obj")
+        read("nowhere.obj")
     assert raised.value.filename == "nowhere.obj"
+
+
+def test_meshes_come_in_several_forms():
+    vertices, triangles = bracket()
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    moved = trimesh.Scene({"first": mesh})
+    moved.add_geometry(mesh, transform=trimesh.transformations.translation_matrix([9, 0, 0]))
+    for given, copies in [((vertices, triangles), 1), (mesh, 1), (trimesh.Scene(mesh), 1), (moved, 2)]:
+        shape = sdop.Shape(given)
+        assert shape.vertices[:, 0].max() == 4 + 9 * (copies - 1) and len(shape.triangles) == 20 * copies
+    with pytest.raises(TypeError, match=r"the mesh is 3 of type int\nhelp: .*Trimesh"):
+        sdop.Shape(3)
+
+
+def test_a_mesh_is_scaled_when_it_is_loaded():
+    path = Path(__file__).resolve().parents[2] / "data/meshes/spot.tri"
+    spot = sdop.Shape.load(path)
+    np.testing.assert_array_equal(sdop.Shape.load(path, scale=0.5).vertices, spot.vertices / 2)
+    mirrored = sdop.Shape.load(path, scale=(-1, 1, 2))
+    np.testing.assert_array_equal(mirrored.vertices, spot.vertices * np.float32([-1, 1, 2]))
+    np.testing.assert_array_equal(mirrored.triangles, spot.triangles[:, [0, 2, 1]])
+    with pytest.raises(TypeError, match="scale is '2' of type str"):
+        sdop.Shape.load(path, scale="2")
 
 
 @pytest.mark.parametrize(
@@ -268,7 +282,11 @@ def test_missing_file_is_not_found():
         (lambda s: sdop.Culler([s], [0]).cull([[0, 0, 0, 1]], [["x", "y", "z"]]), "translations has dtype <U1"),
         (lambda s: sdop.Shape(BRACKET, np.zeros((1, 3))), "triangles has dtype float64"),
         (lambda s: sdop.World([s]).insert(0, [True] * 4, [0, 0, 0]), "rotation has dtype bool"),
-        (lambda s: sdop.Culler("shapes", [0]), "shapes"),
+        (lambda s: sdop.Culler("s", [0]), r"shapes\[0\] is 's' of type str\nhelp: .*list of `sdop.Shape`"),
+        (lambda s: sdop.World(s), "shapes is <sdop.Shape .*> of type Shape"),
+        (lambda s: sdop.World([s]).remove(1.0), "the id is 1.0 of type float"),
+        (lambda s: sdop.BoxWorld().insert([0] * 6, groups=3), "groups is 3 of type int"),
+        (lambda s: sdop.exact_meet(s, 3, s, 3), "pose_a is 3 of type int\nhelp: .*rotation, translation"),
         (lambda s: sdop.World([s]).set_poses(np.array([np.uint64(1), -1]), [], []), "ids has dtype float64; .*np.uint64"),
         (lambda s: sdop.World([s]).set_poses(["1"], [], []), "ids has dtype <U1; accepted are integers"),
     ],

@@ -69,6 +69,29 @@ def test_segments_meet_boxes_in_their_order():
     assert 10 < len(first) < 60  # some meet nothing
 
 
+def test_rays_meet_what_long_segments_meet():
+    _, _, _, index = world_of_boxes()
+    starts, directions = quarters(7, 60, 12)[:, :3], np.random.default_rng(8).normal(size=(60, 3))
+    for ask in (index.along, index.first):
+        by_segment, at_segment = ask(starts, starts + 64 * directions)
+        by_ray, at_ray = ask(starts, directions=directions)
+        np.testing.assert_array_equal(by_ray, by_segment)
+        np.testing.assert_allclose(at_ray, 64 * at_segment, atol=1e-9)
+    assert len(by_ray) > 30 and at_ray.max() > 1  # beyond the directions' ends
+
+
+def test_two_sets_are_compared_in_either_order():
+    _, boxes, ids, index = world_of_boxes()
+    others, world = quarters(9, 200, 12), sdop.BoxWorld()
+    theirs, other = [world.insert(box) for box in others], sdop.QueryIndex()
+    other.update(world)
+    meet = (boxes[:, None, :3] <= others[None, :, 3:]) & (others[None, :, :3] <= boxes[:, None, 3:])
+    wanted = [[ids[i], theirs[j]] for i, j in np.argwhere(meet.all(axis=2))]
+    assert len(wanted) > 100 and index.pairs_with(other).tolist() == wanted
+    assert sorted(other.pairs_with(index)[:, ::-1].tolist()) == sorted(wanted)
+    assert {(id, id) for id in ids} < {tuple(pair) for pair in index.pairs_with(index).tolist()}
+
+
 def test_an_index_is_of_its_last_update():
     world, _, ids, index = world_of_boxes()
     far = [[100, 100, 100, 101, 101, 101]]
@@ -110,6 +133,8 @@ def test_shapes_at_poses_miss_no_body():
         (lambda i: i.first([[0, 0, np.nan]], [[0, 0, 1]]), sdop.SdopError, "query 0: from .*NaN"),
         (lambda i: i.along([[0, 0, 0]], [[0, 0, 1]] * 2), sdop.SdopError, "ends has 2 rows"),
         (lambda i: i.along("here", "there"), TypeError, "starts"),
+        (lambda i: i.along([[0, 0, 0]]), sdop.SdopError, "either an end or a direction\nhelp: pass `ends`"),
+        (lambda i: i.first([[0, 0, 0]], directions=[[0, 0, 0]]), sdop.SdopError, "query 0: direction"),
         (lambda i: i.touching_shapes(tetrahedron(), [[0, 0, 0, 0]], [[0, 0, 0]]), sdop.SdopError, "query 0: rotation"),
         (lambda i: i.update(3), TypeError, "World"),
     ],
