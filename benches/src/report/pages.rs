@@ -72,8 +72,8 @@ pub fn whole(page: &str, template: &str, sources: &PageSources) -> miette::Resul
 /// changes.
 ///
 /// # Errors
-/// A block without an end or a template, an expression that has no value, a record that was
-/// changed.
+/// A block without an end or a template, a part without a block, an expression that has no value,
+/// a record that was changed.
 pub fn blocks(page: &str, text: &str, sources: &PageSources) -> miette::Result<String> {
     let environment = environment(page, sources)?;
     let mut rendered = BTreeMap::new();
@@ -101,16 +101,18 @@ pub fn blocks(page: &str, text: &str, sources: &PageSources) -> miette::Result<S
             .ok_or_else(|| failed(format!("`BEGIN {name}` without `END {name}`")))?;
         out.push_str(end);
     }
+    for (file, value) in &rendered {
+        let parts = value.matches("<!-- ").count();
+        let used = text.matches(&format!("<!-- BEGIN {file}/")).count();
+        miette::ensure!(used == parts, "{page}: {used} blocks for the {parts} parts of {file}.md");
+    }
     Ok(out)
 }
 
 /// What a rendered template has after the line of this part, up to the next part.
 fn part_of<'t>(rendered: &'t str, part: &str) -> Option<&'t str> {
-    let after = match part {
-        "" => rendered,
-        _ => rendered.split_once(&format!("<!-- {part} -->\n"))?.1,
-    };
-    after.split("<!-- ").next()
+    let mark = if part.is_empty() { String::new() } else { format!("<!-- {part} -->\n") };
+    rendered.split_once(&mark)?.1.split("<!-- ").next()
 }
 
 /// The name in a line that is `<!-- WORD NAME -->`.

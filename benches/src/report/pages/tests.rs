@@ -55,7 +55,6 @@ fn blocks_are_rendered_from_templates() {
     }
     for (text, problem) in [
         ("x\n<!-- BEGIN nothing -->\n<!-- END nothing -->", "no template"),
-        ("x\n<!-- BEGIN nothing/us -->\n", "no template `paper/templates/nothing.md`"),
         ("x\n<!-- BEGIN times/us -->\n", "no line `<!-- us -->`"),
         ("x\n<!-- BEGIN times -->\n", "without `END times`"),
         (
@@ -81,6 +80,7 @@ fn parts_of_a_template_are_separate_blocks() {
     let page = |k: &str, us: &str| block("us", us) + &block("k", k);
     let rendered = blocks("page.md", &page("", "- 1 µs\n"), &sources).unwrap();
     assert_eq!(rendered, page("k = 18\n", "- 300.9 µs\n- 62.1 µs\n"));
+    assert!(blocks("page.md", &block("k", ""), &sources).is_err(), "a block is missing");
 }
 
 #[test]
