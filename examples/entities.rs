@@ -16,8 +16,9 @@ use sdop::{Aabb, BoxWorld, Groups, Motion};
 struct BroadPhase {
     world: BoxWorld,
     ids: HashMap<Entity, BodyId>,
-    /// Indexed by [`BodyId::slot`].
-    entities: Vec<Entity>,
+    entities: HashMap<BodyId, Entity>,
+    /// Boxes whose pairs have yet to end.
+    removed: Vec<BodyId>,
 }
 
 /// Colliders that are new.
@@ -28,14 +29,13 @@ fn add_colliders(phase: &mut BroadPhase, added: &[Collider]) -> Result<(), World
             motion: collider.body.into(),
             groups: Groups { member: collider.layers.memberships, mask: collider.layers.filters },
         })?;
-        phase.entities.resize(phase.world.slots(), collider.entity);
-        phase.entities[id.slot()] = collider.entity;
         phase.ids.insert(collider.entity, id);
+        phase.entities.insert(id, collider.entity);
     }
     Ok(())
 }
 
-/// Colliders that have moved. The cost of a frame follows their number, not that of all colliders.
+/// Colliders that have moved. Those that haven't cost nothing.
 fn update_colliders(phase: &mut BroadPhase, moved: &[(Entity, Aabb)]) -> Result<(), WorldError> {
     for (entity, aabb) in moved {
         phase.world.set_bounds(phase.ids[entity], *aabb)?;
@@ -48,6 +48,7 @@ fn remove_colliders(phase: &mut BroadPhase, removed: &[Entity]) -> Result<(), Wo
     for entity in removed {
         if let Some(id) = phase.ids.remove(entity) {
             phase.world.remove(id)?;
+            phase.removed.push(id);
         }
     }
     Ok(())
@@ -61,12 +62,15 @@ fn collect_collision_pairs(
 ) -> Result<(), Box<dyn std::error::Error>> {
     phase.world.cull()?;
     let events = phase.world.events();
-    let of = |pair: [BodyId; 2]| pair.map(|id| phase.entities[id.slot()]);
+    let of = |pair: [BodyId; 2]| pair.map(|id| phase.entities[&id]);
     for pair in events.ended() {
         graph.edges.remove(&of(pair));
     }
     for pair in events.begun() {
         graph.edges.insert(of(pair));
+    }
+    for id in phase.removed.drain(..) {
+        phase.entities.remove(&id);
     }
     Ok(())
 }
@@ -86,7 +90,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for step in 0..=8_u8 {
         update_colliders(&mut phase, &[(Entity(0), cube(f32::from(step)))])?;
         if step == 5 {
-            remove_colliders(&mut phase, &[Entity(3)])?;
+            remove_colliders(&mut phase, &[Entity(2)])?; // while a contact lasts
+            add_colliders(&mut phase, &[collider(5, RigidBody::Static)])?;
         }
         collect_collision_pairs(&mut phase, &mut graph)?;
         println!("step {step}: {:?}", graph.edges);
@@ -107,7 +112,7 @@ impl From<RigidBody> for Motion {
     fn from(body: RigidBody) -> Self {
         match body {
             RigidBody::Dynamic => Self::Dynamic,
-            RigidBody::Static => Self::Fixed, // and `Resting` for a body with `Sleeping`
+            RigidBody::Static => Self::Fixed, // a body with `Sleeping` is `Resting`
         }
     }
 }

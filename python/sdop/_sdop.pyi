@@ -7,9 +7,27 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self
 
 __all__ = [
-    "BoxCuller", "BoxWorld", "CaseSkipped", "Compound", "Culler", "Events", "PartCuller", "PeriodicBoxes",
-    "PeriodicEvents", "PeriodicWorld", "QueryIndex", "Scene", "SdopError", "Shape", "World", "__version__",
-    "box_pairs", "exact_meet", "judge", "main", "rounded_outward",
+    "BoxCuller",
+    "BoxWorld",
+    "CaseSkipped",
+    "Compound",
+    "Culler",
+    "Events",
+    "PartCuller",
+    "PeriodicBoxes",
+    "PeriodicEvents",
+    "PeriodicWorld",
+    "QueryIndex",
+    "Scene",
+    "SdopError",
+    "Shape",
+    "World",
+    "__version__",
+    "box_pairs",
+    "exact_meet",
+    "judge",
+    "main",
+    "rounded_outward",
 ]
 
 _Axes = Literal["principal", "model"]

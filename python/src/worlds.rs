@@ -40,7 +40,7 @@ macro_rules! world_class {
         pub struct $name(pub(super) Mutex<WorldState<$world>>);
 
         impl $name {
-            /// Changes a body by what `change` makes of it.
+            /// Changes a body, as `change` says.
             fn change(
                 &self, py: Python<'_>, Id(id): Id, change: impl Send + FnOnce(&mut $body),
             ) -> PyResult<()> {

@@ -33,17 +33,17 @@ impl Aabb {
 
     /// This box grown on every side by a margin, a length ≥ 0, and rounded outward: boxes that are
     /// on each axis at most the sum of their margins apart meet when each is grown by its own.
-    /// Without a margin it is the same; an invalid box or margin gives an invalid box.
+    /// Without a margin it stays the same; an invalid box or margin gives an invalid box.
     #[must_use]
     pub fn grown(self, margin: f32) -> Self {
-        let is_valid = |axis: usize| margin >= 0.0 && self.min[axis] <= self.max[axis];
-        if margin == 0.0 || in_default_mode(|| !(0..3).all(is_valid)) {
-            return if margin >= 0.0 { self } else { Self::new([f32::NAN; 3], [f32::NAN; 3]) };
-        }
-        let margin = f64::from(margin);
-        in_default_mode(|| Self {
-            min: self.min.map(|x| down(f64::from(x) - margin)),
-            max: self.max.map(|x| up(f64::from(x) + margin)),
+        in_default_mode(|| {
+            if margin == 0.0 {
+                return self;
+            }
+            let is_valid = margin > 0.0 && (0..3).all(|axis| self.min[axis] <= self.max[axis]);
+            let margin = if is_valid { f64::from(margin) } else { f64::NAN };
+            let min = self.min.map(|x| down(f64::from(x) - margin));
+            Self { min, max: self.max.map(|x| up(f64::from(x) + margin)) }
         })
     }
 

@@ -2,7 +2,8 @@
 
 use std::ffi::c_char;
 
-use super::border::{Refusal, SdopPair, SdopTakePairs, border, column, optional, required, text};
+use super::border::{SdopPair, SdopTakePairs, border};
+use super::call::{Refusal, column, optional, required, text};
 use crate::bodies::{Bodies, Groups};
 use crate::culler::{Culler, CullerBuilder};
 use crate::mesh::{self, ReadOptions, TriangleMesh};
@@ -62,8 +63,8 @@ fn sdop_shape_new(
 }
 
 /// Makes a shape of the mesh in a file: OBJ, STL, PLY, OFF or `.tri`. `spec` may be null.
-fn sdop_shape_load(?text path = "", ?const spec: SdopShapeSpec) -> new SdopShape {
-    let mesh = mesh::read(path, &ReadOptions::default())?;
+fn sdop_shape_load(?text path, ?const spec: SdopShapeSpec) -> new SdopShape {
+    let mesh = mesh::read(required(path, "path")?, &ReadOptions::default())?;
     SdopShape(Shape::build(&mesh, &self::spec(spec)?)?)
 }
 

@@ -1,9 +1,9 @@
 //! Boxes: long-lived worlds, and a culler that gets all boxes anew in each frame.
 
 use super::border::{
-    Refusal, SdopIdPair, SdopPair, SdopStatus, SdopTakeEvent, SdopTakeIdPairs, SdopTakePairs,
-    bodies, border, call, check_list, column, read_back, saved, write_all,
+    SdopIdPair, SdopPair, SdopStatus, SdopTakeEvent, SdopTakeIdPairs, SdopTakePairs, bodies, border,
 };
+use super::call::{self, Refusal, check_list, column, read_back, saved, write_all};
 use crate::bodies::{Aabb, Groups, Motion};
 use crate::boxes::{BoxBody, BoxCuller, BoxCullerBuilder, BoxWorld};
 use crate::living::BodyId;
@@ -135,7 +135,7 @@ pub unsafe extern "C" fn sdop_boxes_outward(
     count: usize,
     out: *mut Aabb,
 ) -> SdopStatus {
-    call(|| {
+    call::run(|| {
         let mut written = 0;
         check_list(out, count, &raw mut written)?;
         // SAFETY: the caller's promise.

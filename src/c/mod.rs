@@ -14,6 +14,7 @@
 mod bodies;
 mod border;
 mod boxes;
+mod call;
 mod compounds;
 mod pair_test;
 mod periodic;
@@ -44,5 +45,5 @@ pub extern "C" fn sdop_version() -> *const c_char {
 /// not.
 #[unsafe(no_mangle)]
 pub extern "C" fn sdop_last_error() -> *const c_char {
-    border::last_error()
+    call::last_error()
 }

@@ -1,7 +1,8 @@
 //! Long-lived worlds of meshes.
 
 use super::bodies::{SdopOptions, SdopShape, builder, copies};
-use super::border::{SdopIdPair, SdopTakeEvent, SdopTakeIdPairs, bodies, border, read_back, saved};
+use super::border::{SdopIdPair, SdopTakeEvent, SdopTakeIdPairs, bodies, border};
+use super::call::{read_back, saved};
 use crate::bodies::{Groups, Motion};
 use crate::world::{Body, BodyId, World};
 

@@ -293,7 +293,7 @@ static void prepare(Caller *it) {
     check(it, sdop_shape_load("target/c/triangle.obj", NULL, &loaded));
     sdop_shape_free(loaded);
     refused(it, sdop_shape_load("no-such.stl", NULL, &loaded), "no-such.stl");
-    refused(it, sdop_shape_load(NULL, NULL, &loaded), "help: ");
+    refused(it, sdop_shape_load(NULL, NULL, &loaded), "path is null");
     const SdopShape *const shapes[] = {shape};
     const SdopPart parts[] = {{0, {0, 0, 0, 1}, {0, 0, 0}, false}, {0, {0, 0, 0, 1}, {1.5, 0, 0}, false}};
     check(it, sdop_compound_new("the-arm", shapes, 1, parts, 2, &compound));
